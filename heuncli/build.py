@@ -1,17 +1,18 @@
-"""How the package is built: the kernel by Cython, one extension module, optional by default; one wheel a platform.
+"""Build the package: Cython compiles the kernel into one extension module, optional by default; one wheel per platform.
 
-Its text is made of the kernel's Python files in the build folder (kernel/one_module.py). HEUN_KERNEL at build time:
+The extension's source text is made from the kernel's Python files, in the build folder (kernel/one_module.py).
+HEUN_KERNEL at build time:
 
-    unset      compile; where that fails (no compiler, no Python headers, no Cython) install the plain files instead
+    unset      compile; if that fails (no compiler, no Python headers, no Cython) install the plain files instead
     require    a failed compilation fails the build
     pure       compile nothing
 
-`python -m heuncli.build` compiles in place, in a checkout; with --quick in a third of the time, for a kernel that is
-edited and tried and runs slower; with --sanitize so that every access to memory and all arithmetic is checked as it
-runs, for tests (tests/sanitized.py). All give the same bits.
+`python -m heuncli.build` compiles in place, in a checkout. With --quick it takes a third of the time, for trying an
+edited kernel, and the kernel runs slower. With --sanitize every memory access and all arithmetic are checked at run
+time, for tests (tests/sanitized.py). All variants give the same bits.
 
-A compiled kernel asks for nothing but Python's stable interface (PEP 384), so that one wheel serves the oldest Python
-that heun runs on and all that follow. Impure: reads HEUN_KERNEL, writes the build tree and to standard error.
+A compiled kernel uses only Python's stable interface (PEP 384), so one wheel serves the oldest Python that heun runs on
+and all later ones. Impure: reads HEUN_KERNEL, writes the build tree and to standard error.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ try:
     from setuptools.command.bdist_wheel import bdist_wheel
     from setuptools.command.build_ext import build_ext
     from setuptools.command.sdist import sdist
-except ImportError:  # a virtual environment may bring one that is too old
+except ImportError:  # a virtual environment may contain an old version
     raise SystemExit(
         'the build needs setuptools 77 or newer and Cython: pip install -U "setuptools>=77" Cython'
     ) from None
@@ -47,22 +48,22 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
 }
-# No contraction to fused multiply-adds, so compiled and plain files give the same bits. No error numbers from sqrt:
-# nobody reads them, and the call that would set one stands in the way of its loop. No debugging information, which
-# Python's own flags ask for: it takes a fifth of the time and most of the room of a wheel, and changes no instruction.
+# No contraction to fused multiply-adds, so compiled and plain files give the same bits. No errno from sqrt: nobody
+# reads it, and setting it prevents vectorization. No debugging information, which Python's own flags request: it
+# takes a fifth of the build time and most of the size of a wheel, and changes no instruction.
 BITS = ("-g0", "-ffp-contract=off", "-fno-math-errno")
-# The operations of expressions, of one body, freedom or row, a line or two each, go into the loops over them, not so
-# many that the loops no longer fit the processor's memory for instructions.
+# Short functions (operations of expressions, of one body, freedom or row) are inlined into the loops over them, but
+# not so many that the loops no longer fit the processor's instruction cache.
 GNU_FLAGS = ("-O3", *BITS, "--param=max-inline-insns-auto=60", "--param=inline-unit-growth=120")
 QUICK_FLAGS = ("-O1", *BITS)
-# What would be memory of another, or has no meaning in C (as NaN made a whole number), ends the process with its place.
+# Invalid memory access and undefined behaviour in C (such as NaN cast to an integer) end the process with a location.
 SANITIZED_FLAGS = (
     "-O1", "-g", "-fno-omit-frame-pointer", "-ffp-contract=off", "-fno-wrapv",
     "-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all",
 )  # fmt: skip
 CHECKED = {"boundscheck": True, "initializedcheck": True}
 MSVC_FLAGS = ("/O2", "/fp:precise")
-# What is said while it builds.
+# Messages of the build.
 COMPILES = "heun: the kernel is compiled, which takes about a minute on two cores"
 QUICKLY = "heun: the kernel is compiled quickly, to be tried: it runs slower than it can"
 PLAIN = (
@@ -74,19 +75,26 @@ TERMINAL = "CONOUT$" if os.name == "nt" else "/dev/tty"
 STABLE = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
 
 
-def oldest(distribution: Distribution) -> int:
-    """The minor version of the oldest Python served; 3.11's stable interface is the first with buffers, for arrays."""
+def find_oldest_minor(distribution: Distribution) -> int:
+    """Return the minor version of the oldest Python that the package supports.
+
+    It is 11 or more: 3.11's stable interface is the first with buffers, which arrays need.
+    """
     return int(str(distribution.python_requires).removeprefix(">=3."))  # type: ignore[attr-defined]
 
 
 def add_kernel(distribution: Distribution) -> None:
-    """Make the kernel part of what is built, unless it was decided otherwise; its text is made when it is compiled."""
+    """Add the kernel extension to the distribution, unless its extensions are already set; its source is made on
+    compiling.
+    """
     if distribution.ext_modules is None:
         distribution.ext_modules = [Extension(f"{PACKAGE}.{NAME}", [])]
 
 
-def say(text: str) -> None:
-    """A line for who waits: on the terminal itself, for what a build prints installers keep to themselves."""
+def print_to_terminal(text: str) -> None:
+    """Print a line on the terminal itself, because installers swallow what a build prints; without a terminal, on
+    standard error.
+    """
     try:
         with Path(TERMINAL).open("w", encoding="utf-8") as terminal:
             print(text, file=terminal)
@@ -95,7 +103,7 @@ def say(text: str) -> None:
 
 
 class BuildKernel(build_ext):
-    """build_ext with the kernel's text and flags, and the meaning of HEUN_KERNEL."""
+    """build_ext with the kernel's source text and flags; it obeys HEUN_KERNEL."""
 
     sanitized = False
     quick = False
@@ -105,7 +113,7 @@ class BuildKernel(build_ext):
         super().initialize_options()
 
     def finalize_options(self) -> None:
-        limit = ("Py_LIMITED_API", f"0x03{oldest(self.distribution):02X}0000")
+        limit = ("Py_LIMITED_API", f"0x03{find_oldest_minor(self.distribution):02X}0000")
         for extension in self.distribution.ext_modules or []:
             extension.py_limited_api = STABLE  # type: ignore[attr-defined]
             extension.define_macros = [limit] if STABLE else []
@@ -119,7 +127,7 @@ class BuildKernel(build_ext):
         self.generated = Path(self.build_temp, "generated")
         self.cython_include_dirs = [str(self.generated)]
         if self.kernel == "pure":
-            self.forget()
+            self.remove_old_kernels()
             self.extensions = []
 
     @property
@@ -127,15 +135,15 @@ class BuildKernel(build_ext):
         """Whether a failed compilation fails the build."""
         return self.kernel in ("require", "compiled")
 
-    def forget(self, but: str = "") -> None:
-        """Remove what earlier builds left: it would be packed beside a newer source, or imported in its place.
+    def remove_old_kernels(self, exclude: str = "") -> None:
+        """Delete compiled kernels that earlier builds left, except the file named `exclude`.
 
-        A file for one version of Python alone comes before one for all, whichever is newer; and once each of the
-        kernel's modules was compiled by itself.
+        An old file would be packed beside a newer source, or imported in its place: Python prefers a file for its own
+        version to one for all versions, whichever is newer. Older releases compiled each kernel module to its own file.
         """
         for folder in [Path(self.build_lib) / FOLDER, *([FOLDER] if self.inplace else [])]:
             for file in folder.glob("*"):
-                if file.suffix in (".so", ".pyd") and file.name != but:
+                if file.suffix in (".so", ".pyd") and file.name != exclude:
                     file.unlink()
 
     def build_extension(self, ext: Extension) -> None:
@@ -143,18 +151,18 @@ class BuildKernel(build_ext):
         flags = SANITIZED_FLAGS if self.sanitized else MSVC_FLAGS if msvc else QUICK_FLAGS if self.quick else GNU_FLAGS
         ext.extra_compile_args = [*flags]
         ext.extra_link_args = [flag for flag in flags if flag.startswith("-fsanitize=")]
-        self.forget(but=Path(self.get_ext_fullpath(ext.name)).name)
-        say(QUICKLY if self.quick else COMPILES)
-        self.force = True  # whether what lies there was made with these flags nobody knows
+        self.remove_old_kernels(exclude=Path(self.get_ext_fullpath(ext.name)).name)
+        print_to_terminal(QUICKLY if self.quick else COMPILES)
+        self.force = True  # the flags of an existing file are unknown
         try:
-            ext.sources = [str(one_module.write(FOLDER, self.generated))]
+            ext.sources = [str(one_module.write_sources(FOLDER, self.generated))]
             gc.disable()  # Cython makes a tree of millions of objects, in which there is no garbage
             super().build_extension(ext)
         except Exception as reason:  # whatever stops a compiler: the plain files run everywhere
-            self.forget()
+            self.remove_old_kernels()
             if self.is_required:
                 raise
-            say(PLAIN.format(reason=str(reason).strip().partition("\n")[0]))
+            print_to_terminal(PLAIN.format(reason=str(reason).strip().partition("\n")[0]))
         finally:
             gc.enable()
 
@@ -164,10 +172,10 @@ class BuildKernel(build_ext):
 
 
 class Wheel(bdist_wheel):
-    """bdist_wheel with nothing left from another day, labelled by what was compiled, not by what might have been."""
+    """bdist_wheel that clears earlier build output and labels the wheel by what was really compiled."""
 
     def initialize_options(self) -> None:
-        add_kernel(self.distribution)  # an editable install asks for this command alone
+        add_kernel(self.distribution)  # an editable install runs only this command
         super().initialize_options()
 
     def run(self) -> None:
@@ -181,28 +189,28 @@ class Wheel(bdist_wheel):
             self.distribution.ext_modules = []
             self.root_is_pure = True
         elif STABLE:
-            self.py_limited_api = f"cp3{oldest(self.distribution)}"
+            self.py_limited_api = f"cp3{find_oldest_minor(self.distribution)}"
         super().run()
 
 
 class Source(sdist):
-    """sdist with what a checkout has beyond the package: examples, tests, and the gate."""
+    """sdist that also packs the specs, the tests and the CI checks of a checkout."""
 
     def make_release_tree(self, base_dir: str, files: list[str]) -> None:
-        found = [path for folder in ("specs", "tests", ".ci") for path in Path(folder).rglob("*") if path.is_file()]
-        more = {path.as_posix() for path in found if "__pycache__" not in path.parts}
-        super().make_release_tree(base_dir, sorted({*files, *more}))
+        paths = [path for folder in ("specs", "tests", ".ci") for path in Path(folder).rglob("*") if path.is_file()]
+        extra_files = {path.as_posix() for path in paths if "__pycache__" not in path.parts}
+        super().make_release_tree(base_dir, sorted({*files, *extra_files}))
 
 
-def main(words: list[str]) -> None:
-    """Compile in place; a failure is one, unless HEUN_KERNEL says otherwise."""
+def main(arguments: list[str]) -> None:
+    """Compile in place; a failed compilation fails the build, unless HEUN_KERNEL says otherwise."""
     os.environ.setdefault("HEUN_KERNEL", "require")
-    BuildKernel.sanitized = "--sanitize" in words
-    BuildKernel.quick = "--quick" in words
+    BuildKernel.sanitized = "--sanitize" in arguments
+    BuildKernel.quick = "--quick" in arguments
     setup(script_args=["build_ext", "--inplace"])
 
 
 if __name__ == "__main__":
-    from heuncli import build  # the module whose commands setup() takes
+    from heuncli import build  # setup() needs the commands of the imported module
 
     build.main(sys.argv[1:])

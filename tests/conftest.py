@@ -13,7 +13,7 @@ import pytest
 
 from heuncli.app.cli import alarm
 from heuncli.app.cli.entry import enter
-from heuncli.base.nearest import begin_file
+from heuncli.base.nearest import reset_effort
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 from tests.shared.processes import hand_down_signals
@@ -33,7 +33,7 @@ SHARES = {"laws": 1, "oracle": 1, "references": 1}
 @pytest.fixture(autouse=True)
 def suggestions() -> None:
     """Suggestions are limited file by file; a test that reads none is a file of its own."""
-    begin_file()
+    reset_effort()
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What long work tells before it is done: nobody listens unless a listener was set."""
+"""Progress messages of long computations; they are dropped unless a listener was set."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ _LISTENER: ContextVar[Callable[[str], None] | None] = ContextVar("listener", def
 
 
 @contextmanager
-def listening(write: Callable[[str], None] | None) -> Iterator[None]:
-    """Hand what is announced in here to `write`."""
+def progress_listener(write: Callable[[str], None] | None) -> Iterator[None]:
+    """Send progress messages to `write` inside the `with` block; None drops them."""
     token = _LISTENER.set(write)
     try:
         yield
@@ -19,6 +19,6 @@ def listening(write: Callable[[str], None] | None) -> Iterator[None]:
         _LISTENER.reset(token)
 
 
-def listener() -> Callable[[str], None] | None:
-    """Who listens, if anybody does."""
+def current_listener() -> Callable[[str], None] | None:
+    """Return the function that receives progress messages, or None."""
     return _LISTENER.get()

@@ -1,18 +1,22 @@
-"""What can go wrong, as values: a Problem has a message, a location, a hint and a code; an error carries all of them.
+"""Errors as values: a Problem has a message, a location, a hint and a code; an exception carries one or more of them.
 
-Named tuples: to import dataclasses would take 10 ms, and `heun --version` needs no others.
+Problems are named tuples: importing dataclasses would take 10 ms, and `heun --version` needs no others.
 """
 
 from __future__ import annotations
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
 
-LONGEST = 5000  # characters of a message that are told: an expression of the longest, twice, and what is said of it
+MAX_MESSAGE_LENGTH = (
+    5000  # characters of a message that are shown: the longest expression, twice, and the text around it
+)
 
 
 class SourceLocation(NamedTuple):
-    """Where in a file: 1-based line and column, and the dotted path of the value; line 0 of what is no file."""
+    """A place in a file: 1-based line and column, and the dotted path of the value; line 0 if the source is not a
+    file.
+    """
 
     file: str
     line: int
@@ -20,13 +24,14 @@ class SourceLocation(NamedTuple):
     path: str = ""
 
     def __str__(self) -> str:
-        return f"{shown(self.file)}:{self.line}:{self.column}" if self.line else shown(self.file)
+        return f"{escape(self.file)}:{self.line}:{self.column}" if self.line else escape(self.file)
 
 
 class Problem(NamedTuple):
-    """One thing wrong: a sentence and its code, what to do next, and, where known, the location.
+    """One error: a sentence, its code, a hint what to do next and, where known, the location.
 
-    about: the path in a spec of the entry at fault, `joints.elbow`, where who finds it knows names, but no places.
+    about: the path in a spec of the entry at fault, such as `joints.elbow`, set where names are known but locations are
+    not
     """
 
     code: str
@@ -36,22 +41,22 @@ class Problem(NamedTuple):
     about: str = ""
 
     def __str__(self) -> str:
-        path = f"{told(self.location.path)}: " if self.location and self.location.path else ""
+        path = f"{shorten_text(self.location.path)}: " if self.location and self.location.path else ""
         where = f"{self.location}: {path}" if self.location else ""
-        hint = f"\n  hint: {told(self.hint)}" if self.hint else ""
-        return f"{where}{told(self.message)} [{self.code}]{hint}"
+        hint = f"\n  hint: {shorten_text(self.hint)}" if self.hint else ""
+        return f"{where}{shorten_text(self.message)} [{self.code}]{hint}"
 
 
-def told(text: str) -> str:
-    """A part of a problem on one line; of a word of a million letters its ends."""
-    left_out = len(text) - LONGEST
-    if left_out <= 0:
-        return shown(text)
-    return f"{shown(text[: LONGEST // 2])} ... ({left_out} characters more) ... {shown(text[-LONGEST // 2 :])}"
+def shorten_text(text: str) -> str:
+    """Return part of a problem's text on one line; a text longer than MAX_MESSAGE_LENGTH loses its middle."""
+    surplus = len(text) - MAX_MESSAGE_LENGTH
+    if surplus <= 0:
+        return escape(text)
+    return f"{escape(text[: MAX_MESSAGE_LENGTH // 2])} ... ({surplus} characters more) ... {escape(text[-MAX_MESSAGE_LENGTH // 2 :])}"
 
 
 class Finding(ValueError):
-    """A problem in a value, raised by code that does not know where the value stands; the caller adds the location."""
+    """A problem in a value, raised by code that does not know the value's location; the caller adds the location."""
 
     def __init__(self, code: str, message: str, hint: str) -> None:
         super().__init__(message)
@@ -63,7 +68,7 @@ class Finding(ValueError):
 
 
 class HeunError(Exception):
-    """A failure the user can act on; `exit_code` is the command's exit status (manual/commands.md, "Exit codes")."""
+    """An error the user can act on; `exit_code` is the command's exit status (manual/commands.md, "Exit codes")."""
 
     exit_code = 70
 
@@ -72,16 +77,16 @@ class HeunError(Exception):
         self.problems = problems
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickle it by its attributes: some classes make the problem of other arguments."""
+        """Pickle the error by its attributes: some subclasses build the problem from other arguments."""
         return restore_error, (type(self), self.args, self.__dict__)
 
-    def tell(self, *problems: Problem) -> None:
-        """Tell these problems instead."""
+    def replace_problems(self, *problems: Problem) -> None:
+        """Replace the problems of this error."""
         self.args, self.problems = ("\n".join(map(str, problems)),), problems
 
 
 def restore_error(cls: type[BaseException], args: tuple[object, ...], attributes: dict[str, object]) -> BaseException:
-    """Make an error that was pickled, without the arguments of its class."""
+    """Restore a pickled error without calling its constructor."""
     error = cls.__new__(cls, *args)
     error.args = args
     error.__dict__.update(attributes)
@@ -89,26 +94,26 @@ def restore_error(cls: type[BaseException], args: tuple[object, ...], attributes
 
 
 class UsageError(HeunError):
-    """What is asked for is not there: by a word of the command line, or by an argument in Python."""
+    """The request cannot be met: a wrong word on the command line, or a wrong argument in Python."""
 
     exit_code = 2
 
 
 class SpecError(HeunError):
-    """The spec is missing, unreadable, not YAML or not a scene."""
+    """The spec is missing, unreadable, not YAML or not a valid scene."""
 
     exit_code = 2
 
 
 class SolveError(HeunError):
-    """The scene cannot be solved: it does not close, is singular, or no acceleration exists."""
+    """The scene cannot be solved: its loops do not close, it is singular, or no acceleration exists."""
 
     exit_code = 3
     reached: float | None = None  # the instant up to which a motion went
 
 
 class LimitError(HeunError):
-    """A limit was reached: time, steps, memory, output size."""
+    """A limit was exceeded: time, steps, memory or output size."""
 
     exit_code = 4
 

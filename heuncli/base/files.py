@@ -1,7 +1,8 @@
-"""A file that is written whole or not at all, and what stands for one: pipes, devices, open descriptors. Impure.
+"""Write files atomically, and write to pipes, devices and open descriptors. Impure.
 
-An ordinary file is written beside its place and put there as a whole: at every moment the old content or the new one
-stands there, and nothing that ends the process leaves anything else. Where that cannot be, it is said before the work.
+An ordinary file is first written under a temporary name in the same folder and then renamed over the target: at every
+moment the target holds either the old content or the new one, and no partial file is left behind however the process
+ends. If the target cannot be replaced in this way, that is reported before the work begins.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ from typing import TYPE_CHECKING
 
 from heuncli.base.errors import HeunError, OutputError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.signals import Undoing
+from heuncli.base.signals import CleanupOnSignal
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 STDOUT = "-"  # what stands for standard output where a file is named
-MOST_LINKS = 40  # that lead to one file; the system follows no more
+MAX_LINKS = 40  # that lead to one file; the system follows no more
 HINTS = {
     errno.ENOSPC: "make room, or name a place on another disk",
     errno.EDQUOT: "make room, or name a place on another disk",
@@ -37,150 +38,158 @@ HINTS = {
     errno.ENOTDIR: "name a folder that exists",
     errno.EBADF: "open it for writing, such as: heun run scene.yaml -o /dev/fd/3 3> results",
 }
-NO_NAMES = ("", ".", "..")  # behind the last / of what is a folder
+FOLDER_NAMES = ("", ".", "..")  # after the last / of a folder's name
 OTHER_HINT = "name another file"
-# What a system or a file system says that knows no files without names.
-KNOWS_NO_SUCH = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL, errno.ENOENT, errno.ENOSYS, errno.EPERM)
-IS_CHANGED_OPEN = os.chmod in os.supports_fd  # whether the rights of an open file may be changed
-LEFT_BEHIND = 60.0  # seconds since anything was written to a file of nobody; what was just made may not be locked yet
+# Errors of a system or a file system without nameless files.
+NO_TMPFILE_ERRORS = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL, errno.ENOENT, errno.ENOSYS, errno.EPERM)
+CAN_CHMOD_DESCRIPTOR = os.chmod in os.supports_fd  # whether the rights of an open file may be changed
+MIN_LEFTOVER_AGE = 60.0  # seconds since the last write to a file without owner; a new file may not be locked yet
 _looked_into: set[str] = set()  # folders
 
 
-class ReaderGone(HeunError):
-    """Nobody reads any more what is written; nothing needs saying."""
+class ReaderGoneError(HeunError):
+    """The reader of a pipe has closed it; no message is printed."""
 
     exit_code = 141
 
 
-class FilePlace(NamedTuple):
-    """Where content goes: an open descriptor, else a file by its path, with what stands there (None: nothing yet)."""
+class FileTarget(NamedTuple):
+    """Where content goes: an open descriptor, or else the file at a path with its present state (None: no file yet)."""
 
     path: str
     state: os.stat_result | None
     descriptor: int | None = None
 
     @property
-    def ordinary(self) -> bool:
-        """Whether it can be replaced as a whole."""
+    def is_replaceable(self) -> bool:
+        """Whether the target can be replaced as a whole: a regular file or none yet."""
         return self.descriptor is None and (self.state is None or stat.S_ISREG(self.state.st_mode))
 
 
 def write(content: bytes | Iterable[bytes], name: str) -> None:
-    """Write to a file, or to what stands for one; pieces as they come. Raises OutputError, ReaderGone."""
-    place = place_of(name)
+    """Write content to a file, pipe, device or descriptor; pieces are written as they come. Raises OutputError,
+    ReaderGoneError.
+    """
+    target = find_target(name)
     pieces = [content] if isinstance(content, bytes) else content
     try:
-        if place.descriptor is not None:
-            write_pieces(place.descriptor, pieces)
-        elif place.ordinary:
-            replace(pieces, place)
+        if target.descriptor is not None:
+            write_pieces(target.descriptor, pieces)
+        elif target.is_replaceable:
+            replace(pieces, target)
         else:
-            _into(pieces, place.path)
+            _write_directly(pieces, target.path)
     except BrokenPipeError:
-        raise ReaderGone from None
+        raise ReaderGoneError from None
     except OSError as reason:
-        raise OutputError(failed(name, reason)) from None
+        raise OutputError(write_problem(name, reason)) from None
 
 
-def place_of(name: str) -> FilePlace:
-    """Where a name leads. Raises OutputError where nothing could be written there, as far as that is seen before."""
+def find_target(name: str) -> FileTarget:
+    """Find the target that a name leads to. Raises OutputError if it is already clear that nothing can be written
+    there.
+    """
     try:
-        place = _place(name)
-        if place.state is not None and stat.S_ISDIR(place.state.st_mode):
+        target = _resolve_target(name)
+        if target.state is not None and stat.S_ISDIR(target.state.st_mode):
             raise OutputError(Problem("output-failed", f"{name}: this is a folder", hint="name a file in it"))
-        if place.ordinary:
-            _require_room(name, place)
+        if target.is_replaceable:
+            _require_replaceable(name, target)
     except OSError as reason:
-        raise OutputError(failed(name, reason)) from None
+        raise OutputError(write_problem(name, reason)) from None
     except ValueError:
         raise OutputError(Problem("output-failed", f"{name}: a name holds no NUL", hint=OTHER_HINT)) from None
-    return place
+    return target
 
 
-def failed(name: str, reason: OSError) -> Problem:
-    """Why something could not be written, in the system's words."""
-    hint = HINTS.get(reason.errno or 0, OTHER_HINT)
-    return Problem("output-failed", f"{name}: {reason.strerror or reason}", hint=hint)
+def write_problem(name: str, error: OSError) -> Problem:
+    """Return the problem for a failed write, in the system's words."""
+    hint = HINTS.get(error.errno or 0, OTHER_HINT)
+    return Problem("output-failed", f"{name}: {error.strerror or error}", hint=hint)
 
 
-def write_pieces(number: int, pieces: Iterable[bytes]) -> None:
-    """Write to an open descriptor, piece by piece."""
+def write_pieces(descriptor: int, pieces: Iterable[bytes]) -> None:
+    """Write pieces to an open descriptor, one after the other."""
     for piece in pieces:
-        write_all(number, piece)
+        write_all(descriptor, piece)
 
 
-def write_all(number: int, content: bytes) -> None:
-    """Write to an open descriptor, which may take a part at a time, or none while its reader rests."""
-    left = memoryview(content)
-    while left:
+def write_all(descriptor: int, content: bytes) -> None:
+    """Write all content to an open descriptor, which may accept only part of it at a time, or nothing while its reader
+    is busy.
+    """
+    remaining = memoryview(content)
+    while remaining:
         try:
-            left = left[os.write(number, left) :]
+            remaining = remaining[os.write(descriptor, remaining) :]
         except BlockingIOError:
             import select
 
-            select.select([], [number], [])
+            select.select([], [descriptor], [])
 
 
-def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
-    """Write beside the place, into a file without a name where the system has such, then put that into the place.
+def replace(pieces: Iterable[bytes], target: FileTarget) -> None:
+    """Replace a file: write a temporary file, nameless where the system allows it, then rename it over the target.
 
-    So a process that is killed leaves nothing, but where there are none, or between the calls that name, close and
-    place a file: what it leaves then the next run removes.
+    A killed process leaves nothing behind, except where nameless files do not exist, or between the calls that link,
+    close and rename the file; the next run removes such a leftover.
     """
-    folder = os.path.dirname(place.path)  # noqa: PTH120
-    _remove_left_behind(folder)
+    folder = os.path.dirname(target.path)  # noqa: PTH120
+    _remove_leftovers(folder)
     temporary = os.path.join(folder, f".heun-{os.urandom(8).hex()}")  # noqa: PTH118 - pathlib takes 3 ms
     remove = partial(_path(temporary).unlink, missing_ok=True)
-    with Undoing(remove):
+    with CleanupOnSignal(remove):
         try:
-            number, is_named = _open_new(folder, temporary, 0o600 if place.state is not None else 0o666)
+            descriptor, is_named = _open_new(folder, temporary, 0o600 if target.state is not None else 0o666)
             try:
-                _lock(number)
-                write_pieces(number, pieces)
-                if place.state is not None:
-                    which = number if IS_CHANGED_OPEN else temporary
-                    os.chmod(which, stat.S_IMODE(place.state.st_mode))  # noqa: PTH101
-                os.fsync(number)
+                _lock(descriptor)
+                write_pieces(descriptor, pieces)
+                if target.state is not None:
+                    which = descriptor if CAN_CHMOD_DESCRIPTOR else temporary
+                    os.chmod(which, stat.S_IMODE(target.state.st_mode))  # noqa: PTH101
+                os.fsync(descriptor)
                 if not is_named:
-                    _link(number, folder, os.path.basename(temporary))  # noqa: PTH119
+                    _link(descriptor, folder, os.path.basename(temporary))  # noqa: PTH119
             finally:
-                os.close(number)
-            os.replace(temporary, place.path)  # noqa: PTH105
+                os.close(descriptor)
+            os.replace(temporary, target.path)  # noqa: PTH105
         except BaseException:
             remove()
             raise
 
 
 def _open_new(folder: str, temporary: str, mode: int) -> tuple[int, bool]:
-    """A new file, open, with no more rights than `mode` from the start; and whether it has its temporary name."""
+    """Open a new file with at most the rights `mode` from the start; return its descriptor and whether it has its
+    temporary name.
+    """
     if hasattr(os, "O_TMPFILE") and os.path.isdir("/proc/self/fd"):  # noqa: PTH112 - by which it gets its name
         try:
             return os.open(folder, os.O_WRONLY | os.O_TMPFILE, mode), False
         except OSError as reason:
-            if reason.errno not in KNOWS_NO_SUCH:
+            if reason.errno not in NO_TMPFILE_ERRORS:
                 raise
     return os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode), True
 
 
-def _link(number: int, folder: str, name: str) -> None:
-    """Give an open file without a name one."""
-    place = os.open(folder, os.O_RDONLY)
+def _link(descriptor: int, folder: str, name: str) -> None:
+    """Give a name to an open nameless file."""
+    folder_descriptor = os.open(folder, os.O_RDONLY)
     try:  # only with a folder given Python lets the system follow the link
-        os.link(f"/proc/self/fd/{number}", name, src_dir_fd=place, dst_dir_fd=place)
+        os.link(f"/proc/self/fd/{descriptor}", name, src_dir_fd=folder_descriptor, dst_dir_fd=folder_descriptor)
     finally:
-        os.close(place)
+        os.close(folder_descriptor)
 
 
-def _lock(number: int) -> None:
-    """Mark a file as one that somebody writes, for as long as it is open."""
+def _lock(descriptor: int) -> None:
+    """Lock a file for as long as it is open, which marks it as being written."""
     with suppress(ImportError, OSError):  # no such locks there; then nothing is removed there either
         import fcntl
 
-        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-def _remove_left_behind(folder: str) -> None:
-    """Remove files of this user that a process was writing which is dead; looked for once in each folder."""
+def _remove_leftovers(folder: str) -> None:
+    """Remove temporary files of this user whose writing process has died; done once per folder."""
     if folder in _looked_into:
         return
     _looked_into.add(folder)
@@ -190,15 +199,15 @@ def _remove_left_behind(folder: str) -> None:
         for entry in os.scandir(folder):
             if entry.name.startswith(".heun-") and len(entry.name) == 22:
                 with suppress(OSError):
-                    number = os.open(entry.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+                    descriptor = os.open(entry.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
                     try:
-                        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                        state = os.fstat(number)
-                        is_old = time.time() - state.st_mtime > LEFT_BEHIND
+                        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                        state = os.fstat(descriptor)
+                        is_old = time.time() - state.st_mtime > MIN_LEFTOVER_AGE
                         if stat.S_ISREG(state.st_mode) and state.st_uid == os.geteuid() and is_old:
                             os.unlink(entry.path)  # noqa: PTH108
                     finally:
-                        os.close(number)
+                        os.close(descriptor)
 
 
 def _path(name: str) -> Path:
@@ -207,42 +216,44 @@ def _path(name: str) -> Path:
     return Path(name)
 
 
-def _into(pieces: Iterable[bytes], path: str) -> None:
-    """Write into what cannot be replaced as a whole: a pipe, a device."""
-    number = os.open(path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0))
+def _write_directly(pieces: Iterable[bytes], path: str) -> None:
+    """Write to a target that cannot be replaced as a whole: a pipe or a device."""
+    descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0))
     try:
-        write_pieces(number, pieces)
+        write_pieces(descriptor, pieces)
     finally:
-        os.close(number)
+        os.close(descriptor)
 
 
-def _place(name: str) -> FilePlace:
-    number = _descriptor(name)
-    if number is not None:
-        return FilePlace(name, os.fstat(number), number)
+def _resolve_target(name: str) -> FileTarget:
+    descriptor = _find_descriptor(name)
+    if descriptor is not None:
+        return FileTarget(name, os.fstat(descriptor), descriptor)
     path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
-    state = _state(name)
+    state = _file_state(name)
     if state is None and _path(path).exists():
         state = _path(name).stat()  # it was made a moment ago; or it is not where the system looks, which is an error
     if state is not None and not stat.S_ISREG(state.st_mode):
-        return FilePlace(name, state)
-    return FilePlace(path, state)
+        return FileTarget(name, state)
+    return FileTarget(path, state)
 
 
-def _state(name: str) -> os.stat_result | None:
-    """What stands at a name; None: nothing."""
+def _file_state(name: str) -> os.stat_result | None:
+    """Return the status of the file at a name, or None if there is none."""
     try:
         return _path(name).stat()
     except FileNotFoundError:
         return None
 
 
-def _descriptor(name: str) -> int | None:
-    """The number of the open descriptor that a name stands for (/dev/stdout, /dev/fd/3), also through links."""
-    own = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
+def _find_descriptor(name: str) -> int | None:
+    """Return the number of the open descriptor that a name means (/dev/stdout, /dev/fd/3), also through links; None if
+    it is none.
+    """
+    descriptor_folders = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
     path = _path(name)
-    for _ in range(MOST_LINKS):
-        if path.name.isascii() and path.name.isdecimal() and os.path.realpath(path.parent) in own:
+    for _ in range(MAX_LINKS):
+        if path.name.isascii() and path.name.isdecimal() and os.path.realpath(path.parent) in descriptor_folders:
             return int(path.name)
         if not path.is_symlink():
             break
@@ -250,19 +261,19 @@ def _descriptor(name: str) -> int | None:
     return None
 
 
-def _require_room(name: str, place: FilePlace) -> None:
-    """Refuse what could not be replaced as a whole."""
-    path = _path(place.path)
-    shown = (path if _path(name).is_symlink() else _path(name)).parent
+def _require_replaceable(name: str, target: FileTarget) -> None:
+    """Raise OutputError if the target cannot be replaced as a whole."""
+    path = _path(target.path)
+    folder = (path if _path(name).is_symlink() else _path(name)).parent
     if not path.parent.is_dir():
         hint = "make it first, or name another place"
-        raise OutputError(Problem("output-failed", f"{name}: there is no folder {shown}", hint=hint))
-    if os.path.split(name)[1] in NO_NAMES:
+        raise OutputError(Problem("output-failed", f"{name}: there is no folder {folder}", hint=hint))
+    if os.path.split(name)[1] in FOLDER_NAMES:
         raise OutputError(Problem("output-failed", f"{name}: this is the name of a folder", hint="name a file in it"))
-    if place.state is not None and not os.access(path, os.W_OK):
+    if target.state is not None and not os.access(path, os.W_OK):
         raise OutputError(Problem("output-failed", f"{name}: the file may not be written", hint=HINTS[errno.EACCES]))
     if not os.access(path.parent, os.W_OK | os.X_OK):
         hint = HINTS[errno.EACCES]
-        if place.state is not None:  # which could be written, but not replaced as a whole
+        if target.state is not None:  # which could be written, but not replaced as a whole
             hint = f"name a file elsewhere, or > {name} in place of -o, which writes as it goes"
-        raise OutputError(Problem("output-failed", f"{name}: the folder {shown} may not be written", hint=hint))
+        raise OutputError(Problem("output-failed", f"{name}: the folder {folder} may not be written", hint=hint))

@@ -1,12 +1,13 @@
-"""The kinds of joints, one row each: everything else reads the rows, nothing branches on a kind's name.
+"""The kinds of joints, one row each: all other code reads the rows, nothing branches on a kind's name.
 
-A joint holds the point of `to` in one of a few ways, and leaves `to` to turn in one of a few ways, both seen from the
-axes of `from`. The two together are its freedoms, its closure rows when it is cut, with the forces and moments that
-they carry (manual/theory.md, "Joints as rows"), and what the assembly asks of it. What is left of a row is how users
-speak of the joint.
+A joint constrains the point of `to` in one of a few ways (Hold), and the rotation of `to` in one of a few ways (Turn),
+both in the axes of `from`. Together they give its degrees of freedom, its closure rows when it is cut, with the forces
+and moments that these transmit (manual/theory.md, "Joints as rows"), and its conditions for the assembly. The other
+fields of a row are how users speak of the joint.
 
-Directions: `axis` and the two across it, `first` and `second`, are fixed in `from`, `to_axis` in `to`; in a scene
-declared planar `z` is the world's and `across` is z × axis. Lies below the spec, and so needs no NumPy.
+Directions: `axis` and the two perpendicular to it, `first` and `second`, are fixed in `from`, `to_axis` in `to`; in a
+scene declared planar `z` is the world's and `across` is z × axis. The spec depends on this module, so it does not
+import NumPy.
 """
 
 from __future__ import annotations
@@ -20,10 +21,13 @@ Motion = Literal["turning", "sliding"]
 
 
 class Hold(NamedTuple):
-    """How the `to` point is held. asks: the gap that the assembly closes.
+    """How a joint constrains the `to` point. asks: the gap that the assembly closes.
 
-    guides: the directions along which it cannot leave the `from` point, and so those of the forces, a closure row each;
-    shifts: those along which it can. A distance has one row, along the line between the points.
+    guides: directions along which the point cannot leave the `from` point, and so those of the forces; one closure row
+    each
+    shifts: directions along which it is free
+
+    A distance has one row, along the line between the points.
     """
 
     asks: Literal["point", "line", "plane", "distance", "curve"]
@@ -32,13 +36,14 @@ class Hold(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """How `to` may turn. asks: what the assembly asks of its attitude.
+    """How a joint constrains the rotation of `to`. asks: the condition that the assembly sets on its orientation.
 
-    dots: pairs of directions d of `from` and e of `to` that stay perpendicular, a closure row each, with the moment
-    e × d; turns: the axes about which it is free, where it is not free altogether (`ball`).
-    sum_of_dots: one closure row more: the sum of such products, each so many times, stays zero, with e a direction of
-    `from` as the bend at the start turned it. As no axes in a row leave the turns that it leaves, the tree has a ball
-    there, and the row beside it.
+    dots: pairs of directions d of `from` and e of `to` that stay perpendicular; one closure row each, with the moment e
+    × d
+    turns: the axes about which it is free, where it is not entirely free (`ball`)
+    sum_of_dots: one more closure row: a weighted sum of such products stays zero, where e is a direction of `from`
+    carried along by the bend at the start. No chain of axes leaves just these rotations free, so the tree has a ball
+    joint there and this row in addition.
     """
 
     asks: Literal["free", "axis", "square", "alike", "all"]
@@ -61,34 +66,34 @@ FREE = Turn("free", (), ball=True)
 ABOUT_AXIS = Turn("axis", (("axis", "first"), ("axis", "second")), ("axis",))
 ABOUT_TWO = Turn("square", (("axis", "to_axis"),), ("axis", "to_axis"))
 ALIKE = Turn("alike", (), sum_of_dots=((-0.5, "first", "second"), (0.5, "second", "first")))  # by the bend alone
-NOT_AT_ALL = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
+NO_ROTATION = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
 ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as drawn: in the plane nothing tilts it
 
 # What of these moves in a plane, where that is all that is left of a scene: no condition across it. The axis stands
 # along the plane's normal, which is then z, or lies across it, in the plane; what has no axis is as if it stood along.
-HELD_ALONG = {
+HOLDS_AXIS_NORMAL = {
     POINT: Hold("point", ("first", "second")), LINE: Hold("point", ("first", "second")),
     PLANE: Hold("plane", (), ("first", "second")), DISTANCE: DISTANCE,
     CURVE: Hold("curve", ("across",), ("axis",)), CURVE_IN_PLANE: Hold("curve", ("across",), ("axis",)),
 }  # fmt: skip
-TURNS_ALONG = {
+TURNS_AXIS_NORMAL = {
     FREE: Turn("free", (), ("z",)), ABOUT_AXIS: Turn("axis", (), ("axis",)), ABOUT_TWO: Turn("axis", (), ("axis",)),
-    NOT_AT_ALL: Turn("all", (("first", "second"),)), ABOUT_Z: Turn("free", (), ("z",)),
+    NO_ROTATION: Turn("all", (("first", "second"),)), ABOUT_Z: Turn("free", (), ("z",)),
 }  # fmt: skip
-HELD_ACROSS = {
+HOLDS_AXIS_IN_PLANE = {
     POINT: Hold("point", ("axis", "across")), LINE: Hold("line", ("across",), ("axis",)),
     PLANE: Hold("plane", ("axis",), ("across",)), LINE_IN_PLANE: Hold("line", ("across",), ("axis",)),
     PLANE_IN_PLANE: Hold("plane", ("axis",), ("across",)),
 }  # fmt: skip
-TURNS_ACROSS = {
+TURNS_AXIS_IN_PLANE = {
     FREE: Turn("free", (), ("z",)), ABOUT_Z: Turn("free", (), ("z",)),
     ABOUT_AXIS: Turn("all", (("axis", "across"),)), ABOUT_TWO: Turn("all", (("axis", "across"),)),
-    NOT_AT_ALL: Turn("all", (("axis", "across"),)),
+    NO_ROTATION: Turn("all", (("axis", "across"),)),
 }  # fmt: skip
 
 
-class Kind(NamedTuple):
-    """One kind of joint; a row of JOINTS. What is left out is what most kinds have not."""
+class JointKind(NamedTuple):
+    """One kind of joint: a row of JOINTS. Defaults hold for most kinds."""
 
     name: str
     hold: Hold
@@ -115,62 +120,64 @@ class Kind(NamedTuple):
 
     @property
     def guides(self) -> tuple[Direction, ...]:
-        """Directions, fixed in `from`, of the forces that it carries."""
+        """Directions, fixed in `from`, of the forces that it transmits."""
         return self.hold.guides
 
     @property
     def dots(self) -> tuple[tuple[Direction, Direction], ...]:
-        """Pairs of directions whose products are the moments that it carries."""
+        """Pairs of directions whose cross products are the moments that it transmits."""
         return self.turn.dots
 
     @property
     def shifts(self) -> tuple[Direction, ...]:
-        """Directions of its free shifts, in the order of its coordinates."""
+        """Directions of its free translations, in the order of its coordinates."""
         return self.hold.shifts
 
     @property
     def turns(self) -> tuple[Direction, ...]:
-        """Axes of its free turns, in the order of its coordinates; none where all are free."""
+        """Axes of its free rotations, in the order of its coordinates; empty where all are free."""
         return self.turn.turns
 
     @property
-    def ball(self) -> bool:
-        """Whether it leaves all three turns free."""
+    def is_ball(self) -> bool:
+        """Whether all three rotations are free."""
         return self.turn.ball
 
     @property
-    def turns_alike(self) -> bool:
-        """Whether it leaves the bend of its two axes free, and neither turns about its own beside the other."""
+    def is_constant_velocity(self) -> bool:
+        """Whether it is a constant-velocity joint: its two axes may bend, but neither turns about itself relative to
+        the other.
+        """
         return bool(self.turn.sum_of_dots)
 
     @property
-    def ball_in_tree(self) -> bool:
-        """Whether the tree leaves all three turns free, whatever closure rows hold of them."""
-        return self.ball or self.turns_alike
+    def is_ball_in_tree(self) -> bool:
+        """Whether the tree leaves all three rotations free, even if closure rows constrain them."""
+        return self.is_ball or self.is_constant_velocity
 
     @property
     def keeps_distance(self) -> bool:
-        """Whether it holds the distance of its points, along whose line its force, and its drive's, acts."""
+        """Whether it holds the distance of its points; its force, and its drive's, acts along their line."""
         return self.hold is DISTANCE
 
     @property
     def follows_path(self) -> bool:
-        """Whether its point runs along a path, across which its force acts, and which it alone can hold."""
-        return self.hold.asks == "curve"
+        """Whether its point runs along a path; its force acts across the path."""
+        return self.hold.gap_type == "curve"
 
     @property
-    def rows(self) -> int:
-        """How many scalar conditions it makes."""
-        return 1 if self.keeps_distance else len(self.guides) + len(self.dots) + self.turns_alike
+    def row_count(self) -> int:
+        """The number of scalar constraints it makes."""
+        return 1 if self.keeps_distance else len(self.guides) + len(self.dots) + self.is_constant_velocity
 
     @property
     def is_rigid(self) -> bool:
-        """Whether it leaves nothing free: its two bodies are one."""
-        return self.rows == 6
+        """Whether it leaves no degree of freedom: its two bodies move as one."""
+        return self.row_count == 6
 
     @property
-    def rows_in_plane(self) -> int:
-        """How many of them concern the motion in the plane of a planar scene."""
+    def planar_row_count(self) -> int:
+        """The number of constraints on the motion in the plane of a planar scene."""
         return 1 if self.keeps_distance else 3 - len(self.turns) - len(self.shifts)
 
     @property
@@ -180,101 +187,101 @@ class Kind(NamedTuple):
 
     @property
     def has_one_axis(self) -> bool:
-        """Whether its loads act about or along its axis, and not on the whole motion: about two, or in a plane."""
-        return self.axis_key == "axis" and self.to_axis != "required" and not self.turns_alike
+        """Whether its loads act about or along a single axis: neither about two axes nor in a plane."""
+        return self.axis_key == "axis" and self.to_axis != "required" and not self.is_constant_velocity
 
     @property
-    def wanders(self) -> bool:
-        """Whether the place where it loads its `from` body moves over that body."""
+    def has_moving_contact(self) -> bool:
+        """Whether the point where it loads its `from` body moves over that body."""
         return bool(self.shifts)
 
-    def moved_by(self, load: str) -> tuple[Motion, ...]:
-        """The motions on which a load of this kind acts: a row of the kernel's table of loads each."""
+    def motions_for_load(self, load: str) -> tuple[Motion, ...]:
+        """Return the motions on which a load of this kind acts: one row of the kernel's table of loads each."""
         return ("turning",) if load == "turn_spring" else self.motions
 
-    def takes(self, load: str) -> bool:
+    def accepts_load(self, load: str) -> bool:
         """Whether a load of this kind may act in it."""
         return load in self.loads
 
 
 # what users write
-TYPES: dict[str, Kind] = {
+TYPES: dict[str, JointKind] = {
     kind.name: kind
     for kind in (
-        Kind(
-            "ball", POINT, FREE, loads=("damper",), motions=("turning",), planar="pin", looser=("line",),
+        JointKind(
+            "ball", POINT, FREE, loads=("damper",), motions=("turning",), planar="pin", weaker_kinds=("line",),
             synonyms=("spherical", "sphere", "socket", "ballsocket"),
         ),
-        Kind(
+        JointKind(
             "pin", POINT, ABOUT_AXIS, axis_key="axis", to_axis="optional", coordinates=("angle",), drives=("angle",),
             loads=("torque", "turn_spring", "damper", "friction"), motions=("turning",), planar="pin",
-            looser=("universal", "ball", "cylinder", "line"),  # a pin with side play is a line
-            looser_in_plane=("flat line",),
+            weaker_kinds=("universal", "ball", "cylinder", "line"),  # a pin with side play is a line
+            weaker_planar_kinds=("flat line",),
             synonyms=("revolute", "hinge", "pivot", "rotational", "rotary", "bearing"),
         ),
-        Kind(
-            "slide", LINE, NOT_AT_ALL, axis_key="axis", to_axis="optional", coordinates=("travel",),
+        JointKind(
+            "slide", LINE, NO_ROTATION, axis_key="axis", to_axis="optional", coordinates=("travel",),
             drives=("travel",), loads=("torque", "damper", "friction"), motions=("sliding",), planar="slide",
-            looser=("cylinder", "line"), looser_in_plane=("flat line",),
+            weaker_kinds=("cylinder", "line"), weaker_planar_kinds=("flat line",),
             synonyms=("prismatic", "translational", "slider", "sliding", "guide"),
         ),
-        Kind(
+        JointKind(
             "cylinder", LINE, ABOUT_AXIS, axis_key="axis", to_axis="optional", coordinates=("angle", "travel"),
             drives=("travel",), loads=("turn_spring", "damper", "friction"), motions=("turning", "sliding"),
-            looser=("line",),
+            weaker_kinds=("line",),
             synonyms=("cylindrical",),
         ),
-        Kind(
+        JointKind(
             "universal", POINT, ABOUT_TWO, axis_key="axis", to_axis="required", loads=("turn_spring", "damper"),
-            motions=("turning",), looser=("ball",), synonyms=("cardan", "hooke", "u"),
+            motions=("turning",), weaker_kinds=("ball",), synonyms=("cardan", "hooke", "u"),
         ),
-        Kind(
+        JointKind(
             "cv", POINT, ALIKE, axis_key="axis", to_axis="optional", loads=("damper",), motions=("turning",),
-            looser=("ball",), synonyms=("constant_velocity", "constantvelocity", "homokinetic", "rzeppa"),
+            weaker_kinds=("ball",), synonyms=("constant_velocity", "constantvelocity", "homokinetic", "rzeppa"),
         ),
-        Kind(
-            "weld", POINT, NOT_AT_ALL, planar="weld", looser=("ball",), looser_in_plane=("pin",),
+        JointKind(
+            "weld", POINT, NO_ROTATION, planar="weld", weaker_kinds=("ball",), weaker_planar_kinds=("pin",),
             synonyms=("fixed", "rigid", "lock"),
         ),
-        Kind(
+        JointKind(
             "line", LINE, FREE, "forward", axis_key="axis", loads=("damper",), motions=("sliding",),
             planar="flat line", synonyms=("inline", "in_line", "pointonline"),
         ),
-        Kind(
+        JointKind(
             "plane", PLANE, FREE, "forward", axis_key="normal", loads=("damper",), motions=("sliding",),
             planar="flat plane", synonyms=("inplane", "in_plane", "planar", "pointonplane"),
         ),
-        Kind(
+        JointKind(
             "curve", CURVE, FREE, "forward", coordinates=("travel",), drives=("travel",), loads=("damper", "friction"),
             motions=("sliding",), planar="flat curve",
             synonyms=("path", "track", "pointoncurve", "point_on_curve"),
         ),
-        Kind("rod", DISTANCE, FREE, "never", drives=("length",), planar="rod",
+        JointKind("rod", DISTANCE, FREE, "never", drives=("length",), planar="rod",
              synonyms=("distance", "link", "cable", "rope")),
     )
 }  # fmt: skip
 # with what line and plane are in a scene declared planar: the bodies' z axes stay parallel; and with a pin of what has
 # no inertia to turn about it, the angle of which no law determines
-JOINTS: dict[str, Kind] = TYPES | {
+JOINTS: dict[str, JointKind] = TYPES | {
     kind.name: kind
     for kind in (
-        Kind("flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), spoken="line"),
-        Kind("flat plane", PLANE_IN_PLANE, ABOUT_Z, "forward", axis_key="normal", motions=("sliding",),
-             spoken="plane"),
-        Kind("flat curve", CURVE_IN_PLANE, ABOUT_Z, "forward", coordinates=("travel",), motions=("sliding",),
-             spoken="curve"),
-        Kind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), looser_in_plane=("flat line",), spoken="pin"),
+        JointKind("flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), display_name="line"),
+        JointKind("flat plane", PLANE_IN_PLANE, ABOUT_Z, "forward", axis_key="normal", motions=("sliding",),
+             display_name="plane"),
+        JointKind("flat curve", CURVE_IN_PLANE, ABOUT_Z, "forward", coordinates=("travel",), motions=("sliding",),
+             display_name="curve"),
+        JointKind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), weaker_planar_kinds=("flat line",), display_name="pin"),
     )
 }  # fmt: skip
 # with what they all are where a scene is solved in its plane (multibody/reduction/plane/step.py)
-FLAT: dict[tuple[str, bool], Kind] = {
+FLAT: dict[tuple[str, bool], JointKind] = {
     (kind.name, along): kind._replace(
         name=f"{kind.name} {'along' if along else 'across'} the normal", hold=held[kind.hold], turn=turns[kind.turn],
         coordinates=tuple(x for x in kind.coordinates if kind.follows_path or x == ("angle" if along else "travel")),
-        spoken=kind.spoken or kind.name,
+        display_name=kind.display_name or kind.name,
     )
     for kind in JOINTS.values()
-    for along, held, turns in ((True, HELD_ALONG, TURNS_ALONG), (False, HELD_ACROSS, TURNS_ACROSS))
+    for along, held, turns in ((True, HOLDS_AXIS_NORMAL, TURNS_AXIS_NORMAL), (False, HOLDS_AXIS_IN_PLANE, TURNS_AXIS_IN_PLANE))
     if kind.hold in held and kind.turn in turns
 }  # fmt: skip
 JOINTS |= {kind.name: kind for kind in FLAT.values()}
@@ -283,13 +290,13 @@ RATES = {"angle": "rate", "travel": "speed"}  # of the coordinates
 SYNONYMS = {word: kind.name for kind in TYPES.values() for word in kind.synonyms}
 
 
-def taking(load: str) -> list[Kind]:
-    """The kinds in which a load of this kind may act."""
-    return [kind for kind in TYPES.values() if kind.takes(load)]
+def kinds_accepting_load(load: str) -> list[JointKind]:
+    """Return the kinds in which a load of this kind may act."""
+    return [kind for kind in TYPES.values() if kind.accepts_load(load)]
 
 
-def named(kinds: list[Kind], last: str) -> str:
-    """Kinds in words: "pin, slide and cylinder"; last: "and" or "or"."""
+def format_kind_names(kinds: list[JointKind], last: str) -> str:
+    """Return the names of kinds as words, "pin, slide and cylinder"; last: "and" or "or"."""
     names = [kind.name for kind in kinds]
     return f" {last} ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 

@@ -1,45 +1,47 @@
-"""How much memory the machine has left for results: half of what is available, within what limits allow. Impure."""
+"""How much memory is available for results: half of what the machine and its limits leave. Impure."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
 
-SHARE = 0.5  # of what is available: sizes are estimated, steps are not, and others are at work beside
-UNKNOWN = 4e9  # bytes that are taken to be there where the system does not tell
-EXPORTED = ("json", "csv")
-EXPORT, IN_TABLES = 20.0, 28.0  # bytes of a number, and of what it is made of; its text is made piece by piece
+SHARE = 0.5  # of the available memory: sizes are estimated, steps are not, and other processes run
+DEFAULT_AVAILABLE = 4e9  # bytes assumed where the system does not report them
+EXPORT_FORMATS = ("json", "csv")
+EXPORT, IN_TABLES = 20.0, 28.0  # bytes per number, with its temporaries; its text is made piece by piece
 
 
-def room(form: str) -> tuple[float, float]:
-    """How many bytes the results may take, and how many each of their numbers takes in a format."""
-    return SHARE * min(_left(), default=UNKNOWN), EXPORT if form in EXPORTED else IN_TABLES
+def result_memory(output_format: str) -> tuple[float, float]:
+    """Return how many bytes the results may take, and how many bytes each of their numbers takes in an output
+    format.
+    """
+    return SHARE * min(_left(), default=DEFAULT_AVAILABLE), EXPORT if output_format in EXPORT_FORMATS else IN_TABLES
 
 
-def within_limit() -> float | None:
-    """What a limit on addresses leaves (ulimit -v) [bytes]; None where there is none."""
+def remaining_address_space() -> float | None:
+    """Return what the limit on the address space (ulimit -v) leaves [bytes], or None if there is no limit."""
     with suppress(ImportError, OSError, ValueError):
         import resource
 
         soft, _ = resource.getrlimit(resource.RLIMIT_AS)
         if soft != resource.RLIM_INFINITY:
-            return soft - float(_text("/proc/self/statm").split()[0]) * resource.getpagesize()
+            return soft - float(_read_text("/proc/self/statm").split()[0]) * resource.getpagesize()
     return None
 
 
 def _left() -> Iterator[float]:
-    """What is left by the machine, by its container, and by the limit on addresses (ulimit -v) [bytes]."""
+    """Yield what the machine, its container and the limit on addresses (ulimit -v) leave [bytes]."""
     with suppress(OSError, ValueError, StopIteration):
-        lines = _text("/proc/meminfo").splitlines()
+        lines = _read_text("/proc/meminfo").splitlines()
         yield 1024.0 * next(float(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
     with suppress(OSError, ValueError):
-        most, taken = (float(_text(f"/sys/fs/cgroup/memory.{word}")) for word in ("max", "current"))
-        yield most - taken  # "max" where there is no limit: no number
-    limited = within_limit()
-    if limited is not None:
-        yield limited
+        limit, used = (float(_read_text(f"/sys/fs/cgroup/memory.{word}")) for word in ("max", "current"))
+        yield limit - used  # "max" where there is no limit: no number
+    remaining = remaining_address_space()
+    if remaining is not None:
+        yield remaining
 
 
-def _text(name: str) -> str:
+def _read_text(name: str) -> str:
     with open(name, encoding="utf-8") as file:  # noqa: PTH123 - pathlib takes 3 ms
         return file.read()

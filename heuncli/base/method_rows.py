@@ -1,7 +1,7 @@
-"""The methods of integration, one row each: everything else reads the rows.
+"""The integration methods, one row each: all other code reads the rows.
 
-`auto` is no method but a choice among them. Lies below the spec, and so needs no NumPy; the coefficients stand in
-heuncli/motion/integration/methods, a family to a file.
+`auto` is not a method but a choice among them. The spec depends on this module, so it does not import NumPy; the
+coefficients are in heuncli/motion/integration/methods, a family to a file.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class MethodRow(NamedTuple):
-    """A method: its name and order, how it goes, how it holds attitudes within a step, and what it is for.
+    """A method: name, order, family, step control, how it represents attitudes within a step, and its purpose.
 
-    coefficients: the module in heuncli/motion/integration/methods, and the name in it.
+    coefficients: the module in heuncli/motion/integration/methods, and the name in it
     """
 
     name: str
@@ -92,12 +92,12 @@ BY_NAME = {row.name.lower(): row for row in METHODS}
 NAMES = (AUTO, *(row.name for row in METHODS))
 
 
-def canonical(name: str) -> str:
-    """The name of a method as its row has it; other words as they are."""
-    row = row_of(name)
+def canonical_name(name: str) -> str:
+    """Return the name of a method as its row spells it; other words are returned unchanged."""
+    row = find_method(name)
     return row.name if row is not None else name.lower() if name.lower() == AUTO else name
 
 
-def row_of(name: str) -> MethodRow | None:
-    """The row of a method, its name in whatever case; None of any other word, and of `auto`."""
+def find_method(name: str) -> MethodRow | None:
+    """Return the row of a method by its name, in any case; None for any other word, and for `auto`."""
     return BY_NAME.get(name.lower())

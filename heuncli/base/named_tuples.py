@@ -1,8 +1,8 @@
-"""Named tuples that are made quickly: what small things are handed over as.
+"""Named tuples that are created quickly, for small records.
 
-`NamedTuple` is to its users and to type checkers what `typing.NamedTuple` is. Of that, each class is written as source
-and compiled when it is imported, a tenth of a millisecond, and a small run imports a hundred; here the code of a maker
-is compiled once for each number of fields and takes the names of each class.
+For its users and for type checkers `NamedTuple` is `typing.NamedTuple`. That one writes each class as source and
+compiles it on import, which takes a tenth of a millisecond, and a small run imports a hundred; here the code of the
+constructor is compiled once for each number of fields and gets the field names of each class.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Fielded(tuple["Any", ...]):
 
 
 def named(cls: Any) -> Any:
-    """A class of tuples whose annotated names read their places."""
+    """Turn a tuple class into one whose annotated names read its elements."""
     names = cls._fields = tuple(cls.__annotations__)
     setattr(cls, "__match_args__", names)  # noqa: B010 - type checkers know of no such assignment
     defaults = cls._field_defaults = {name: cls.__dict__[name] for name in names if name in cls.__dict__}
@@ -69,7 +69,7 @@ def named(cls: Any) -> Any:
     for place, name in enumerate(names):
         setattr(cls, name, _tuplegetter(place, f"Alias for field number {place}"))
     function: Any = type(named)
-    make = function(_code(len(names)).replace(co_varnames=("_cls", *names)), {"new": tuple.__new__})
+    make = function(_constructor_code(len(names)).replace(co_varnames=("_cls", *names)), {"new": tuple.__new__})
     make.__qualname__, make.__defaults__ = f"{cls.__name__}.__new__", tuple(defaults.values())
     cls.__new__ = make
     return cls
@@ -78,9 +78,9 @@ def named(cls: Any) -> Any:
 _CODES: dict[int, CodeType] = {}
 
 
-def _code(count: int) -> CodeType:
-    """The code of a function that makes a tuple of so many arguments."""
+def _constructor_code(count: int) -> CodeType:
+    """Return the code of a function that makes a tuple of `count` arguments."""
     if count not in _CODES:
-        listed = "".join(f"_{place}, " for place in range(count))
-        _CODES[count] = eval(f"lambda _cls, {listed}: new(_cls, ({listed}))").__code__
+        arguments = "".join(f"_{place}, " for place in range(count))
+        _CODES[count] = eval(f"lambda _cls, {arguments}: new(_cls, ({arguments}))").__code__
     return _CODES[count]

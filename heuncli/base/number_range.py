@@ -1,4 +1,4 @@
-"""The range of magnitudes that is computed with; why it is that range stands at its bounds in tolerances.py."""
+"""The range of magnitudes that heun accepts; the reason for its bounds is given at them in tolerances.py."""
 
 from __future__ import annotations
 
@@ -25,14 +25,16 @@ def is_in_range(value: float) -> bool:
 
 
 def are_in_range(values: Array) -> Mask:
-    """Of which numbers `is_in_range` holds, an array of their shape."""
+    """Return where `is_in_range` holds, as an array of the same shape."""
     sizes = abs(values)
     fits: Mask = (values == 0.0) | ((sizes >= tolerances.LEAST_MAGNITUDE) & (sizes <= tolerances.MOST_MAGNITUDE))
     return fits
 
 
-def out_of_range(value: float, what: str = "") -> Finding:
-    """What to say of a number that is not in range; what: of one that is not written but computed."""
+def range_error(value: float, what: str = "") -> Finding:
+    """Return the error for a number out of range; what: the name of a computed number that is not written in the
+    spec.
+    """
     is_small = abs(value) < 1.0
     subject = f"{what} is {value:g}, " if what else f"{value:g} is "
     message = f"{subject}too {'small' if is_small else 'large'} to be computed with; accepted: {ACCEPTED}"

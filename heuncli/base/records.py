@@ -1,10 +1,10 @@
-"""Frozen records: what one stage hands to the next.
+"""Frozen records: what one stage of the computation passes to the next.
 
-`@record` is to its users what `@dataclass(frozen=True, eq=False)` is: fields from the annotations, given by place or by
-name, none set afterwards, each record equal to itself alone. A dataclass is written as source and compiled when it is
-imported, half a millisecond each, and a small run imports sixty; a record class takes a hundredth of that. Defaults are
-shared by all records of a class, so they must be immutable. A mapping that is one is `MappingProxyType({})`; records
-and named tuples that hold such defaults are sent between processes, so they can be pickled.
+`@record` behaves like `@dataclass(frozen=True, eq=False)`: fields from the annotations, given by position or by name,
+none set afterwards, each record equal only to itself. A dataclass is written as source and compiled on import, half a
+millisecond each, and a small run imports sixty; a record class takes a hundredth of that. Defaults are shared by all
+records of a class, so they must be immutable. An immutable mapping is `MappingProxyType({})`; records and named tuples
+with such defaults are sent between processes, so they can be pickled.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 def restore_mapping(items: dict[Any, Any]) -> MappingProxyType[Any, Any]:
-    """Make the read-only mapping that was pickled as its items."""
+    """Restore a read-only mapping that was pickled as its items."""
     return MappingProxyType(items)
 
 
@@ -26,7 +26,7 @@ copyreg.pickle(MappingProxyType, lambda mapping: (restore_mapping, (dict(mapping
 
 @dataclass_transform(frozen_default=True, eq_default=False)
 def record(cls: type[T]) -> type[T]:
-    """A class whose annotated names are the fields of its records."""
+    """Make a class a frozen record whose annotated names are its fields."""
     names = tuple(cls.__annotations__)
     known = frozenset(names)
     required = frozenset(name for name in names if name not in cls.__dict__)
@@ -50,40 +50,40 @@ def record(cls: type[T]) -> type[T]:
         raise TypeError(f"{cls.__name__}: fields missing, unknown or given twice: {', '.join(sorted(wrong))}")
 
     made: Any = cls
-    made.__init__, made.__repr__ = __init__, _text
-    made.__setattr__ = made.__delattr__ = _frozen
+    made.__init__, made.__repr__ = __init__, _repr
+    made.__setattr__ = made.__delattr__ = _refuse_change
     made.__record_fields__, made.__record_known__, made.__record_copy__ = names, known, staticmethod(_copy)
     return cls
 
 
-def replace(one: T, **changes: Any) -> T:
-    """A record like this one but for some fields."""
-    cls: Any = type(one)
+def replace(original: T, **changes: Any) -> T:
+    """Return a copy of a record with some fields changed. Raises TypeError for an unknown field."""
+    cls: Any = type(original)
     if not changes.keys() <= cls.__record_known__:
         raise TypeError(f"{cls.__name__}: fields unknown: {', '.join(sorted(changes.keys() - cls.__record_known__))}")
-    made: T = cls.__record_copy__(one)
-    made.__dict__.update(changes)
-    return made
+    copy: T = cls.__record_copy__(original)
+    copy.__dict__.update(changes)
+    return copy
 
 
-def _copy(one: T) -> T:
-    """A record with the same fields."""
-    cls: Any = type(one)
-    made: T = object.__new__(cls)
-    given = made.__dict__  # complete, as that of `one` is
+def _copy(original: T) -> T:
+    """Return a record with the same fields."""
+    cls: Any = type(original)
+    copy: T = object.__new__(cls)
+    given = copy.__dict__  # complete, as that of `one` is
     for name in cls.__record_fields__:
-        given[name] = getattr(one, name)
-    return made
+        given[name] = getattr(original, name)
+    return copy
 
 
-def fields(one: Any) -> dict[str, Any]:
-    """The fields of a record and their values."""
-    return {name: getattr(one, name) for name in type(one).__record_fields__}
+def fields(instance: Any) -> dict[str, Any]:
+    """Return the fields of a record and their values."""
+    return {name: getattr(instance, name) for name in type(instance).__record_fields__}
 
 
-def _frozen(self: Any, name: str, *value: Any) -> None:
+def _refuse_change(self: Any, name: str, *value: Any) -> None:
     raise AttributeError(f"{type(self).__name__}.{name} cannot be changed: records are frozen")
 
 
-def _text(self: Any) -> str:
+def _repr(self: Any) -> str:
     return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in fields(self).items())})"

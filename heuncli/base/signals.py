@@ -1,8 +1,9 @@
-"""How the process ends. By a signal: one line at most, no half of a file left behind, and 128 + the signal's number.
+"""How the process ends after a signal: at most one line, no partial file left behind, exit code 128 + the signal's
+number.
 
-The handler does not raise: what a signal raises while something is imported, or while an object is destroyed, Python
-turns into a traceback or forgets. Nothing is imported here that takes time, for a signal may come while it does; of
-`signal` only the C part, without its enumerations. Impure: the process's signals, and its end.
+The handler does not raise: Python turns an exception raised during an import, or while an object is destroyed, into a
+traceback, or drops it. Only quick modules are imported here, for a signal may come during the import; of `signal` only
+the C part, without its enumerations. Impure: the process's signals, and its end.
 """
 
 from __future__ import annotations
@@ -18,83 +19,85 @@ if TYPE_CHECKING:
     from typing import Any
 
 LINES = {"SIGINT": b"heun: interrupted\n", "SIGTERM": b"heun: terminated\n", "SIGHUP": b""}  # whose terminal is gone
-_undone: list[Callable[[], None]] = []  # what a signal has to do away with
+_cleanups: list[Callable[[], None]] = []  # what a signal has to do away with
 
 
-def listen() -> None:
-    """End by these signals as told above, but for those that whoever started the process wants ignored (nohup, &)."""
+def install_handlers() -> None:
+    """Let these signals end the process as described above, except those its parent process ignores (nohup, &)."""
     for name in LINES:
         number = getattr(_signal, name, None)  # there is no SIGHUP on Windows
         if number is not None and _signal.getsignal(number) not in (_signal.SIG_IGN, None):
-            _signal.signal(number, _leave)
+            _signal.signal(number, _handle_signal)
 
 
-def deafen() -> None:
-    """No signal interrupts what is left to do."""
+def ignore_signals() -> None:
+    """Ignore all further signals."""
     for name in (*LINES, "SIGALRM"):
         if hasattr(_signal, name):
             _signal.signal(getattr(_signal, name), _signal.SIG_IGN)
 
 
-class Undoing:
-    """While this is under way a signal that ends the process calls `undo`, which must bear it at any instant."""
+class CleanupOnSignal:
+    """Call `undo` if a signal ends the process inside the `with` block; `undo` must be safe at any instant."""
 
     def __init__(self, undo: Callable[[], None]) -> None:
         self.undo = undo
 
     def __enter__(self) -> None:
-        _undone.append(self.undo)
+        _cleanups.append(self.undo)
 
     def __exit__(self, *_: object) -> None:
-        _undone.remove(self.undo)
+        _cleanups.remove(self.undo)
 
 
-def undo_nothing() -> None:
-    """In a process that was forked: what its parent has under way is its parent's to undo."""
-    _undone.clear()
+def clear_cleanups() -> None:
+    """Forget the cleanups in a forked process: they belong to its parent."""
+    _cleanups.clear()
 
 
-class Stopping:
-    """While this is under way the first signal to end is only taken down; from `descriptor` something can be read then.
+class GracefulStop:
+    """Record the first signal inside the `with` block instead of ending; `descriptor` then becomes readable.
 
-    Whoever is at work ends it in good order, and leaves with 128 + `number`. A second signal ends the process at once.
+    The code in the block ends its work in good order and exits with 128 + `number`. A second signal ends the process at
+    once.
     """
 
     def __init__(self) -> None:
         self.number = 0
         self.heard: list[int] = []
 
-    def __enter__(self) -> Stopping:
+    def __enter__(self) -> GracefulStop:
         self.descriptor, self.written = os.pipe()
         for name in ("SIGINT", "SIGTERM"):
             number = getattr(_signal, name)
-            if _signal.getsignal(number) is _leave:
+            if _signal.getsignal(number) is _handle_signal:
                 self.heard.append(number)
                 _signal.signal(number, self._stop)
         return self
 
     def __exit__(self, *_: object) -> None:
         for number in self.heard:
-            _signal.signal(number, _leave)
+            _signal.signal(number, _handle_signal)
         os.close(self.descriptor)
         os.close(self.written)
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
         if self.number:
-            _leave(number, frame)
+            _handle_signal(number, frame)
         self.number = number
         os.write(self.written, b".")
 
     @property
-    def word(self) -> str:
-        """How it ended, as the line says it that a signal leaves."""
+    def reason(self) -> str:
+        """How the process ended, in the words printed for the signal."""
         return next(LINES[name] for name in LINES if getattr(_signal, name, None) == self.number).decode().strip()
 
 
-def end(code: int) -> None:
-    """End the process at once where nothing waits for that; else return, and Python ends it.
+def exit_quickly(code: int) -> None:
+    """End the process at once if no exit handlers wait; otherwise return and let Python end it.
 
-    Python would clear away all modules and what they hold first, 10 ms and more; all of it goes with the process.
+    Python would first clear all modules and what they hold, 10 ms and more; the system frees all of it with the
+    process.
     """
     import atexit
 
@@ -104,21 +107,21 @@ def end(code: int) -> None:
                 stream.flush()
     except (OSError, ValueError):
         return
-    if not atexit._ncallbacks() and not _watched():
+    if not atexit._ncallbacks() and not _is_monitored():
         os._exit(code)
 
 
-def _watched() -> bool:
-    """Whether somebody profiles or traces the process, who is yet to tell what was seen."""
+def _is_monitored() -> bool:
+    """Whether a profiler or tracer watches the process and has yet to report."""
     monitoring: Any = getattr(sys, "monitoring", None)  # from Python 3.12 on
     tools = [monitoring.get_tool(number) for number in range(6)] if monitoring is not None else []
-    return any(who is not None for who in (sys.getprofile(), sys.gettrace(), *tools))
+    return any(tool is not None for tool in (sys.getprofile(), sys.gettrace(), *tools))
 
 
-def leave(code: int, line: bytes) -> None:
-    """End the process at once: nothing half written is left behind, and standard error gets the line."""
+def exit_after_cleanup(code: int, line: bytes) -> None:
+    """End the process at once: run the cleanups and write a line to standard error."""
     try:
-        for undo in reversed(_undone):
+        for undo in reversed(_cleanups):
             undo()
         if line and sys.stderr is not None:  # else its number may have become that of another file
             os.write(2, line)
@@ -126,6 +129,6 @@ def leave(code: int, line: bytes) -> None:
         os._exit(code)
 
 
-def _leave(number: int, frame: FrameType | None) -> None:
-    deafen()
-    leave(128 + number, next(LINES[name] for name in LINES if getattr(_signal, name, None) == number))
+def _handle_signal(number: int, frame: FrameType | None) -> None:
+    ignore_signals()
+    exit_after_cleanup(128 + number, next(LINES[name] for name in LINES if getattr(_signal, name, None) == number))

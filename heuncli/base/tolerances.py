@@ -1,10 +1,11 @@
-"""Every threshold at which a verdict can change, by concept; each with the reason for its size.
+"""Every threshold at which a decision can change, by concept, each with the reason for its size.
 
 EPS is the rounding of one operation, 2.2e-16. A sum of some dozen terms of alternating sign keeps 13 to 14 digits of
-the largest of them: what lies below that is rounding. A singular value, or an angle found from a pose, keeps about
-nine digits, for poses are closed to 1e-10 of the scene's size (OPEN_GAP). What is typed by hand has a few digits only.
-Sizes are relative (to the scene's size, to the largest load, to the run's length) unless a unit stands there. Plain
-numbers, and no imports: reading a spec needs some of them.
+the largest of them: anything below is rounding. A singular value, or an angle computed from a pose, keeps about nine
+digits, for poses are closed to 1e-10 of the scene's size (OPEN_GAP). Numbers typed by hand have a few digits only.
+Sizes are relative (to the scene's size, to the largest load, to the run's length) unless a unit is given. Plain
+numbers, and
+no imports: reading a spec needs some of them.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ SUSPECT_PIVOT = 0.05  # a step of an ordinary loop stays above; below, a singula
 SINGULAR_MET = 4.0  # times the width left of the search over its first: the value falls to zero at most so steeply
 NEAR_PIVOT = 1e-2  # relative singular value 0.1, a tenth of it in another measure: rounding over its 4th power, 2e-8
 UNSEEN_GAP = 16.0 * EPS  # of the size: what the sums of a closure may not see, and more than settling leaves
-TOLD_BESIDE = 1e-6  # of the largest of its kind: six digits, a table's; what rounding reaches farther is not known
+TOLD_BESIDE = 1e-6  # of the largest of its kind: six digits, as in a table; beyond it a value is unknown
 UNMET = 10.0  # times what has to be left of a row: rows left out are met to less, and all others to rounding
 SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a singular pose it falls to nothing
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
@@ -220,7 +221,7 @@ GIMBAL = 1e-3  # rad from a lock of Euler angles: the condition of their matrix 
 FASTER_THAN_TIME = 4.0  # over the second half of a run: what grows with the square of the time grows fourfold
 
 # -- pictures
-THROUGHOUT = 1e-9  # of its size: what varies by less is told once; typed with ten digits it would not vary
+THROUGHOUT = 1e-9  # of its size: a value that varies by less is shown once; typed with ten digits it would be constant
 IN_ONE_PLANE = 1e-9  # of the largest vector of a run: components across a plane that turned axes and steps leave
 TOLD_ACROSS = 1e-6  # of the largest vector in the plane: what else stands across it is told: six digits, a table's
 COMES_ROUND = 2e-3  # of the largest vector: a pixel of a picture; turns that differ by less are drawn as one
@@ -231,7 +232,7 @@ NOTHING_ACTS = 100.0 * EPS  # of what forces are summed from: rounding of the su
 REST_FIRST = 0.01  # rad, or of the size: the first step, short against any lever
 REST_DOUBT = 0.05  # rad, or of the size: what is off by as much, grown, may be on the other side of a ridge
 REST_SAME = 1e-6  # rad, or of the size: Newton's steps bring two searches that near, other poses are farther apart
-REST_WAY = 1e-4  # the same of what nothing holds: found so far by two searches, no finer one is made
+REST_WAY = 1e-4  # the same along indifferent directions: if two searches agree so far, no finer one is made
 REST_BESIDE = 0.1  # the same: farther apart two searches have not gone one way
 REST_FARTHEST = 0.5  # the same: a longer step may pass over what bends within half a turn
 REST_BENT = 0.05  # of a step: what the linear law may leave out; a fifth of it is then missed at third order

@@ -1,7 +1,7 @@
-"""Units: what "12 mm" and "7850 kg/m^3" are in SI, and of what dimension.
+"""Units: the size in SI and the dimension of "12 mm" and "7850 kg/m^3".
 
 A dimension is the exponents of (kg, m, s). Angles are numbers: rad = 1, so that N m/rad is N m and rpm an angular
-velocity. Hz is left out on purpose: as a rate it would be taken for rad/s by half of its readers.
+velocity. Hz is left out on purpose: as a rate half of the readers would take it for rad/s.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from functools import lru_cache
 from math import pi
 
 from heuncli.base.errors import Finding
-from heuncli.base.nearest import nearest
+from heuncli.base.nearest import find_similar
 
 Dimension = tuple[int, int, int]
 
@@ -139,40 +139,44 @@ SUPERSCRIPTS = {"²": 2, "³": 3, "⁴": 4}
 
 
 def describe(dimension: Dimension) -> str:
-    """A dimension in words: 'a length', or its SI unit where no word is known."""
+    """Describe a dimension in words, such as 'a length', or by its SI unit where no word is known."""
     if dimension in NAMES:
         return NAMES[dimension][0]
     return f"a quantity in {si_unit(dimension)}"
 
 
 def si_unit(dimension: Dimension) -> str:
-    """The SI unit of a dimension, as it may be written in a spec."""
+    """Return the SI unit of a dimension, as it may be written in a spec."""
     if dimension in NAMES:
         return NAMES[dimension][1]
     powers = [(base, power) for base, power in zip(("kg", "m", "s"), dimension, strict=True) if power]
     return "*".join(base if power == 1 else f"{base}^{power}" for base, power in powers)
 
 
-def spelling_of(symbol: str) -> str:
-    """A unit's symbol by its first spelling: deg for degrees; what is no other spelling as it is."""
+def canonical_symbol(symbol: str) -> str:
+    """Return the canonical symbol of a unit: deg for degrees; unknown spellings are returned unchanged."""
     return SPELLINGS.get(symbol, symbol)
 
 
-def in_si(figure: str, symbol: str, rest: str = "") -> str | None:
-    """What to write for '40 mm' inside an expression: a hint; None where the word is no unit. figure may be a name."""
+def si_expression_hint(figure: str, symbol: str, rest: str = "") -> str | None:
+    """Return the hint what to write for '40 mm' inside an expression; None if the word is no unit. figure may be a
+    name.
+    """
     symbol = SPELLINGS.get(symbol, symbol)
     if symbol not in UNITS:
         return None
-    size, named = UNITS[symbol][0], "the quantity"
+    size, subject = UNITS[symbol][0], "the quantity"
     try:
-        written, named = f"{float(figure) * size:.15g}", f"{figure} {symbol}"
+        written, subject = f"{float(figure) * size:.15g}", f"{figure} {symbol}"
     except ValueError:
         written = f"{figure}*{size!r}" if figure else repr(size)
-    return f"units do not stand inside expressions: write {written}{rest} in SI, or name {named} under parameters"
+    return f"units do not stand inside expressions: write {written}{rest} in SI, or name {subject} under parameters"
 
 
-def spelled(unit: str) -> str | None:
-    """A unit as it is written here, for kgm2, kg*m2, g/cm3, kgm^2; None where it is no other than it was."""
+def correct_unit(unit: str) -> str | None:
+    """Return a unit such as kgm2, kg*m2, g/cm3 or kgm^2 in the accepted spelling; None if there is none, or it is
+    unchanged.
+    """
     powers = re.sub(r"(?<=[^\W\d])([2-4])(?!\w)", r"^\1", re.sub(r"\bkgm(?=\b|\d)", "kg*m", unit))
     try:
         parse_unit(powers)
@@ -183,10 +187,10 @@ def spelled(unit: str) -> str | None:
 
 @lru_cache(maxsize=1000)
 def parse_unit(text: str) -> tuple[float, Dimension]:
-    """Size in SI and dimension of a unit such as 'kg/m^3', 'N m', 'N/(m/s)'. Raises Finding."""
-    reader = _Reader(text)
+    """Return the size in SI and the dimension of a unit such as 'kg/m^3', 'N m', 'N/(m/s)'. Raises Finding."""
+    reader = _UnitReader(text)
     try:
-        size, dimension = reader.product()
+        size, dimension = reader.read_product()
     except ArithmeticError:  # powers of powers: larger or smaller than any double
         hint = "a power is a small whole number, as in m^2"
         raise Finding("unknown-unit", f"'{text}' is not a unit: its size is beyond all numbers", hint) from None
@@ -198,42 +202,42 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
 FORM = "units are joined by *, / or a space, with whole powers: kg/m^3, N*m, N/(m/s)"
 
 
-class _Reader:
-    """A unit, read from left to right: factors with whole powers, joined by *, / or a space."""
+class _UnitReader:
+    """Reads a unit from left to right: factors with whole powers, joined by *, / or a space."""
 
     def __init__(self, text: str) -> None:
         self.text = text
-        self.tokens = self.split(text)
+        self.tokens = self.iter_tokens(text)
         self.depth = 0
         self.advance()
 
-    def split(self, text: str) -> Iterator[str]:
-        at, text = 0, text.rstrip()
-        while at < len(text):
-            found = TOKEN.match(text, at)
-            if found is None:
-                message = f"'{text}' is not a unit: '{text[at:].strip()[0]}' is not expected"
+    def iter_tokens(self, text: str) -> Iterator[str]:
+        position, text = 0, text.rstrip()
+        while position < len(text):
+            match = TOKEN.match(text, position)
+            if match is None:
+                message = f"'{text}' is not a unit: '{text[position:].strip()[0]}' is not expected"
                 raise Finding("unknown-unit", message, FORM)
-            at = found.end()
-            yield found[0].strip()
+            position = match.end()
+            yield match[0].strip()
 
     def advance(self) -> None:
         self.token = next(self.tokens, None)
 
-    def product(self) -> tuple[float, Dimension]:
-        size, dimension = self.power()
+    def read_product(self) -> tuple[float, Dimension]:
+        size, dimension = self.read_power()
         while self.token is not None and self.token != ")":
             sign = 1
             if self.token in ("*", "·", "⋅", "×", "/"):
                 sign = -1 if self.token == "/" else 1
                 self.advance()
-            factor, other = self.power()
+            factor, other = self.read_power()
             size = size * factor if sign == 1 else size / factor
             dimension = (dimension[0] + sign * other[0], dimension[1] + sign * other[1], dimension[2] + sign * other[2])
         return size, dimension
 
-    def power(self) -> tuple[float, Dimension]:
-        size, dimension = self.factor()
+    def read_power(self) -> tuple[float, Dimension]:
+        size, dimension = self.read_factor()
         exponent = 1
         if self.token in ("^", "**"):
             self.advance()
@@ -251,12 +255,12 @@ class _Reader:
             )
         return size**exponent, (dimension[0] * exponent, dimension[1] * exponent, dimension[2] * exponent)
 
-    def factor(self) -> tuple[float, Dimension]:
+    def read_factor(self) -> tuple[float, Dimension]:
         token = self.token
         self.advance()
         if token == "(" and self.depth < 8:
             self.depth += 1
-            size, dimension = self.product()
+            size, dimension = self.read_product()
             if self.token != ")":
                 raise Finding("unknown-unit", f"'{self.text}' is not a unit: a parenthesis is not closed", FORM)
             self.advance()
@@ -271,12 +275,12 @@ class _Reader:
             raise Finding("unknown-unit", f"'{self.text}' is not a unit: it ends too early", FORM)
         if not token[0].isalpha():
             raise Finding("unknown-unit", f"'{self.text}' is not a unit: '{token}' is not expected", FORM)
-        raise Finding("unknown-unit", f"'{token}' is not a unit", HINTS.get(token) or nearest_unit(token))
+        raise Finding("unknown-unit", f"'{token}' is not a unit", HINTS.get(token) or suggest_unit(token))
 
 
-def nearest_unit(symbol: str) -> str:
-    """A hint that names the unit meant, or the common ones."""
-    meant = nearest(symbol, UNITS)
-    if meant is not None:
-        return f"did you mean {meant}?"
+def suggest_unit(symbol: str) -> str:
+    """Return a hint that names the most similar unit, or the common ones."""
+    similar = find_similar(symbol, UNITS)
+    if similar is not None:
+        return f"did you mean {similar}?"
     return "units are kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"

@@ -1,26 +1,28 @@
-"""Sentences in lines of a width."""
+"""Wrap sentences to a width."""
 
 from __future__ import annotations
 
-MORE = 4  # by which the lines that a long heading, title or note goes on in stand further in
+CONTINUATION_INDENT = 4  # additional indent of the continuation lines of a long heading, title or note
 
 
-def wrapped(text: str, width: int | None, more: int = MORE) -> list[str]:
-    """A text in lines no wider than that; `textwrap` would have to be imported for it, and knows no clauses."""
+def wrap_text(text: str, width: int | None, extra_indent: int = CONTINUATION_INDENT) -> list[str]:
+    """Wrap a text to lines of at most `width`; `textwrap` would have to be imported, and ignores clauses."""
     lines = [text]
     while width is not None and len(lines[-1]) > width:
         line, start = lines[-1], len(lines[-1]) - len(lines[-1].lstrip())
-        cut = _end_of_line(line, start, width)
+        cut = _find_break(line, start, width)
         if cut < 0:
             break  # one long word
-        lead = " " * (start if len(lines) > 1 else start + more)
+        lead = " " * (start if len(lines) > 1 else start + extra_indent)
         lines[-1:] = [line[:cut].rstrip(), lead + line[cut:].lstrip()]
     return lines
 
 
-def _end_of_line(line: str, start: int, width: int) -> int:
-    """The blank at which a line is parted: behind a clause where one ends in its last third, not within brackets."""
+def _find_break(line: str, start: int, width: int) -> int:
+    """Return the blank at which to break a line: after a clause that ends in its last third and not within brackets, or
+    else the last.
+    """
     blanks = [i for i in range(start + 1, min(width + 1, len(line))) if line[i] == " "]
-    late = [i for i in blanks if line[i - 1] in ",;" and 3 * i > 2 * width]
-    ends = [i for i in late if line.count("(", 0, i) == line.count(")", 0, i)]
-    return max(ends or blanks, default=line.find(" ", max(width, start + 1)))
+    late_clauses = [i for i in blanks if line[i - 1] in ",;" and 3 * i > 2 * width]
+    clause_ends = [i for i in late_clauses if line.count("(", 0, i) == line.count(")", 0, i)]
+    return max(clause_ends or blanks, default=line.find(" ", max(width, start + 1)))

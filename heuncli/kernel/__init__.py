@@ -1,5 +1,5 @@
 """The compiled core: expressions, the sweep over the tree, closures, steps, events, derivatives; plain Python files.
 
-Neighbours import `choose` and nothing else of it: the compiled module where there is one, else the same files as
-they are. `form` says which of the two runs. The page on developing describes how it is built.
+Other packages import `choose` and nothing else from it: the compiled module if there is one, else the same files as
+they are. `form` chooses which of the two runs. The manual page on developing describes how it is built.
 """

@@ -1,6 +1,7 @@
-"""Vectors and matrices of three dimensions as values: what is made is never changed, operations give new ones.
+"""Three-dimensional vectors and matrices as values: operations return new values and change nothing.
 
-Compiled, these are structs and inlined functions: they cost no calls. World axes unless a matrix turns them.
+Compiled, these are structs and inlined functions, which cost no calls. Components are in world axes unless a matrix has
+rotated them.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ class Vec3(Value):
 
 
 class Mat3(Value):
-    """A 3x3 matrix; the first letter is the row."""
+    """A 3x3 matrix; the first letter of a component is the row, the second the column."""
 
     xx: float
     xy: float
@@ -44,7 +45,7 @@ class Sym3(Value):
 
 
 class Ldl3(Value):
-    """Factors A = L D L' of a symmetric matrix: L below its unit diagonal, D inverted."""
+    """Factors A = L D L' of a symmetric matrix: L below its unit diagonal, and the inverse of D."""
 
     yx: float
     zx: float
@@ -55,7 +56,7 @@ class Ldl3(Value):
 
 
 class Quaternion(Value):
-    """An attitude; its length is free."""
+    """An attitude as a quaternion, which need not have unit length."""
 
     w: float
     x: float
@@ -76,7 +77,7 @@ def sub(a: Vec3, b: Vec3) -> Vec3:
     return Vec3(a.x - b.x, a.y - b.y, a.z - b.z)
 
 
-def scaled(s: float, a: Vec3) -> Vec3:
+def scale_vector(s: float, a: Vec3) -> Vec3:
     """s a."""
     return Vec3(s * a.x, s * a.y, s * a.z)
 
@@ -130,7 +131,7 @@ def rotate(M: Mat3, a: Vec3) -> Vec3:
 
 
 def rotate_back(M: Mat3, a: Vec3) -> Vec3:
-    """M' a: with an attitude, the components of a in the body's axes."""
+    """M' a: if M is an attitude, the components of a in the body's axes."""
     return Vec3(
         M.xx * a.x + M.yx * a.y + M.zx * a.z,
         M.xy * a.x + M.yy * a.y + M.zy * a.z,
@@ -184,7 +185,7 @@ def sub_dyad(A: Mat3, a: Vec3, b: Vec3) -> Mat3:
 
 
 def unit_matrix() -> Mat3:
-    """1."""
+    """Return the unit matrix."""
     return Mat3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
@@ -194,7 +195,7 @@ def skew(a: Vec3) -> Mat3:
 
 
 def rotation(n: Vec3, angle: float) -> Mat3:
-    """The turn about the unit vector n."""
+    """Return the rotation matrix of an angle [rad] about the unit vector n."""
     s: float = sin(angle)
     c: float = cos(angle)
     m: float = 1.0 - c
@@ -233,12 +234,12 @@ def add_transformed(b: Vec3, S: Sym3, a: Vec3) -> Vec3:
 
 
 def trace(S: Sym3) -> float:
-    """Sum of the diagonal."""
+    """Return the sum of the diagonal."""
     return S.xx + S.yy + S.zz
 
 
-def multiple_of_unit(m: float) -> Sym3:
-    """m 1."""
+def scaled_unit_matrix(m: float) -> Sym3:
+    """m times the unit matrix."""
     return Sym3(m, 0.0, 0.0, m, 0.0, m)
 
 
@@ -247,7 +248,7 @@ def add_symmetric(A: Sym3, B: Sym3) -> Sym3:
     return Sym3(A.xx + B.xx, A.xy + B.xy, A.xz + B.xz, A.yy + B.yy, A.yz + B.yz, A.zz + B.zz)
 
 
-def add_both(A: Sym3, X: Mat3) -> Sym3:
+def add_symmetric_part(A: Sym3, X: Mat3) -> Sym3:
     """A + X + X'."""
     return Sym3(
         A.xx + 2.0 * X.xx,
@@ -267,7 +268,7 @@ def sub_square(S: Sym3, a: Vec3, b: Vec3) -> Sym3:
 
 
 def sub_product(S: Sym3, C: Mat3, G: Mat3) -> Sym3:
-    """S - C' G for a product that is symmetric."""
+    """S - C' G, where C' G is symmetric."""
     return Sym3(
         S.xx - (C.xx * G.xx + C.yx * G.yx + C.zx * G.zx),
         S.xy - (C.xx * G.xy + C.yx * G.yy + C.zx * G.zy),
@@ -278,8 +279,8 @@ def sub_product(S: Sym3, C: Mat3, G: Mat3) -> Sym3:
     )
 
 
-def turned(R: Mat3, J: Sym3) -> Sym3:
-    """R J R'."""
+def rotate_tensor(R: Mat3, J: Sym3) -> Sym3:
+    """R J R': a tensor's components after the rotation R."""
     xx: float = R.xx * J.xx + R.xy * J.xy + R.xz * J.xz
     xy: float = R.xx * J.xy + R.xy * J.yy + R.xz * J.yz
     xz: float = R.xx * J.xz + R.xy * J.yz + R.xz * J.zz
@@ -303,7 +304,7 @@ def turned(R: Mat3, J: Sym3) -> Sym3:
 
 
 def lever_rows(l: Vec3, M: Mat3) -> Mat3:
-    """M hat(l)': each row of M crossed by l, l x row."""
+    """M hat(l)': each row of M becomes l x row."""
     return Mat3(
         l.y * M.xz - l.z * M.xy,
         l.z * M.xx - l.x * M.xz,
@@ -318,7 +319,7 @@ def lever_rows(l: Vec3, M: Mat3) -> Mat3:
 
 
 def lever(l: Vec3, K: Sym3) -> Mat3:
-    """hat(l) K: the moments of the forces K a at the lever l."""
+    """hat(l) K: the moments of the forces K a that act at the lever l."""
     return Mat3(
         l.y * K.xz - l.z * K.xy,
         l.y * K.yz - l.z * K.yy,
@@ -347,21 +348,21 @@ def both_levers(l: Vec3, lK: Mat3) -> Sym3:
 # --- factors of a symmetric matrix
 
 
-def factor(A: Sym3, least: float) -> Ldl3:
-    """A = L D L'; D is given inverted, all of it zero where a pivot does not exceed `least`.
+def factor(A: Sym3, min_pivot: float) -> Ldl3:
+    """Factor A = L D L' and return L with the inverse of D, which is all zero if a pivot does not exceed `min_pivot`.
 
-    No inverse: that of a nearly thin rod's inertia loses digits in all directions.
+    A is not inverted: the inverse of a nearly thin rod's inertia loses digits in all directions.
     """
     d1: float = A.xx
-    u1: float = 1.0 / d1 if d1 > least else 0.0
+    u1: float = 1.0 / d1 if d1 > min_pivot else 0.0
     l21: float = A.xy * u1
     l31: float = A.xz * u1
     d2: float = A.yy - A.xy * l21
-    u2: float = 1.0 / d2 if d2 > least else 0.0
+    u2: float = 1.0 / d2 if d2 > min_pivot else 0.0
     w: float = A.yz - A.xz * l21
     l32: float = w * u2
     d3: float = A.zz - (A.xz * l31 + w * l32)
-    if u1 > 0.0 and u2 > 0.0 and d3 > least:
+    if u1 > 0.0 and u2 > 0.0 and d3 > min_pivot:
         return Ldl3(l21, l31, l32, u1, u2, 1.0 / d3)
     return Ldl3(l21, l31, l32, 0.0, 0.0, 0.0)
 
@@ -389,19 +390,19 @@ def inverse_form(F: Ldl3, b: Vec3) -> float:
     return b.x * b.x * F.xx + y * y * F.yy + z * z * F.zz
 
 
-def roots(F: Ldl3) -> Vec3:
+def inverse_diagonal_roots(F: Ldl3) -> Vec3:
     """D^(-1/2)."""
     return Vec3(sqrt(F.xx), sqrt(F.yy), sqrt(F.zz))
 
 
 def half_solve(F: Ldl3, r: Vec3, b: Vec3) -> Vec3:
-    """D^(-1/2) L^-1 b, r = D^(-1/2): its square is b' A^-1 b."""
+    """D^(-1/2) L^-1 b with r = D^(-1/2); the square of the result is b' A^-1 b."""
     y: float = b.y - F.yx * b.x
     return Vec3(r.x * b.x, r.y * y, r.z * (b.z - F.zx * b.x - F.zy * y))
 
 
-def from_half(F: Ldl3, r: Vec3, x: Vec3) -> Vec3:
-    """L D^(1/2) x: back from half_solve."""
+def undo_half_solve(F: Ldl3, r: Vec3, x: Vec3) -> Vec3:
+    """L D^(1/2) x: the inverse of half_solve."""
     a: float = x.x / r.x
     b: float = x.y / r.y
     return Vec3(a, F.yx * a + b, F.zx * a + F.zy * b + x.z / r.z)
@@ -410,8 +411,8 @@ def from_half(F: Ldl3, r: Vec3, x: Vec3) -> Vec3:
 # --- attitudes as quaternions
 
 
-def attitude(q: Quaternion) -> Mat3:
-    """The rotation matrix of a quaternion of any length but zero, body to world."""
+def rotation_matrix(q: Quaternion) -> Mat3:
+    """Return the rotation matrix, body to world, of a quaternion of any length but zero."""
     g: float = 2.0 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)
     return Mat3(
         1.0 - g * (q.y * q.y + q.z * q.z),
@@ -439,11 +440,11 @@ def quaternion_rate(q: Quaternion, omega: Vec3) -> Quaternion:
     )
 
 
-def slightly_turned(q: Quaternion, turn: Vec3) -> Quaternion:
-    """q + (0, turn) q / 2: q after a small turn, up to its square."""
-    u: float = 0.5 * turn.x
-    v: float = 0.5 * turn.y
-    w: float = 0.5 * turn.z
+def apply_small_rotation(q: Quaternion, rotation_vector: Vec3) -> Quaternion:
+    """q + (0, rotation_vector) q / 2: q after a small rotation, exact to first order."""
+    u: float = 0.5 * rotation_vector.x
+    v: float = 0.5 * rotation_vector.y
+    w: float = 0.5 * rotation_vector.z
     return Quaternion(
         q.w - u * q.x - v * q.y - w * q.z,
         q.x + u * q.w + v * q.z - w * q.y,

@@ -1,4 +1,4 @@
-"""What the sweep knows at a state, as flat numbers, whose parts multibody/tree/tables.py names."""
+"""Write what the solver knows at a state as flat numbers; multibody/tree/tables.py names their columns."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, scaled
-    from heuncli.kernel.chosen import choose_afresh
-    from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
-    from heuncli.kernel.columns import answer_causes, measure_answers, put, unmet
-    from heuncli.kernel.loads import potential_of
-    from heuncli.kernel.orthogonal import doubt_multipliers
+    from heuncli.kernel.algebra import Mat3, Vec3, scale_vector
+    from heuncli.kernel.chosen import choose_rows_again
+    from heuncli.kernel.closures import apply_multipliers, measure_rows, row_acceleration, size_of_row_acceleration
+    from heuncli.kernel.columns import largest_relative_residual, measure_row_responses, solve_causes, write_vector
+    from heuncli.kernel.loads import load_potential
+    from heuncli.kernel.orthogonal import estimate_multiplier_doubt
     from heuncli.kernel.programs import FREE, HELD
-    from heuncli.kernel.response import evaluate, must_choose_anew, settle
+    from heuncli.kernel.response import evaluate, must_choose_rows, project_state
     from heuncli.kernel.scene import (
         APART,
         CARRIES,
@@ -30,157 +30,166 @@ if not cython.compiled:
         Load,
         Scene,
     )
-    from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
+    from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import balance
+    from heuncli.kernel.tree import balance_joints
     from heuncli.kernel.values import Instants
 
 
-def put_matrix(out: cython.p_double, at: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:
-    """Write a matrix by rows."""
-    at = put(out, at, Vec3(R.xx, R.xy, R.xz))
-    at = put(out, at, Vec3(R.yx, R.yy, R.yz))
-    return put(out, at, Vec3(R.zx, R.zy, R.zz))
+def write_matrix(buffer: cython.p_double, offset: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:
+    """Write a matrix row by row and return the offset behind it."""
+    offset = write_vector(buffer, offset, Vec3(R.xx, R.xy, R.xz))
+    offset = write_vector(buffer, offset, Vec3(R.yx, R.yy, R.yz))
+    return write_vector(buffer, offset, Vec3(R.zx, R.zy, R.zz))
 
 
-def put_body(out: cython.p_double, at: cython.Py_ssize_t, body: cython.pointer[Body]) -> cython.Py_ssize_t:
-    """A body's motion and joint load, as tables.BODY_ANSWER."""
-    at = put_matrix(out, at, body.R)
-    at = put(out, at, body.r)
-    at = put(out, at, body.omega)
-    at = put(out, at, body.v)
-    at = put(out, at, body.alpha)
-    at = put(out, at, body.a)
-    at = put(out, at, body.M_joint)
-    return put(out, at, body.f_joint)
+def write_body(buffer: cython.p_double, offset: cython.Py_ssize_t, body: cython.pointer[Body]) -> cython.Py_ssize_t:
+    """Write a body's motion and joint load in the order of tables.BODY_ANSWER; return the offset behind them."""
+    offset = write_matrix(buffer, offset, body.R)
+    offset = write_vector(buffer, offset, body.r)
+    offset = write_vector(buffer, offset, body.omega)
+    offset = write_vector(buffer, offset, body.v)
+    offset = write_vector(buffer, offset, body.alpha)
+    offset = write_vector(buffer, offset, body.a)
+    offset = write_vector(buffer, offset, body.M_joint)
+    return write_vector(buffer, offset, body.f_joint)
 
 
-def put_load(
-    scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[Load]
+def write_load(
+    scene: cython.pointer[Scene], buffer: cython.p_double, offset: cython.Py_ssize_t, load: cython.pointer[Load]
 ) -> cython.Py_ssize_t:
-    """An applied load, as tables.LOAD_ANSWER."""
-    at = put(out, at, load.force)
-    at = put(out, at, load.moment)
-    at = put(out, at, load.at)
-    at = put(out, at, load.from_at)
-    at = put(out, at, load.strain)
-    out[at] = load.value
-    out[at + 1] = load.span
-    out[at + 2] = load.rate
-    out[at + 3] = load.power
-    out[at + 4] = potential_of(scene, load)
-    return at + 5
+    """Write an applied load in the order of tables.LOAD_ANSWER; return the offset behind it."""
+    offset = write_vector(buffer, offset, load.force)
+    offset = write_vector(buffer, offset, load.moment)
+    offset = write_vector(buffer, offset, load.at)
+    offset = write_vector(buffer, offset, load.from_at)
+    offset = write_vector(buffer, offset, load.strain)
+    buffer[offset] = load.value
+    buffer[offset + 1] = load.span
+    buffer[offset + 2] = load.rate
+    buffer[offset + 3] = load.power
+    buffer[offset + 4] = load_potential(scene, load)
+    return offset + 5
 
 
-def put_row(
-    scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t, row: cython.pointer[Closure]
+def write_row(
+    scene: cython.pointer[Scene], buffer: cython.p_double, offset: cython.Py_ssize_t, row: cython.pointer[Closure]
 ) -> cython.Py_ssize_t:
-    """A closure row's unit load, multiplier and motion, as tables.CLOSURE_ANSWER."""
-    at = put(out, at, row.f)
-    at = put(out, at, row.m)
-    out[at] = row.multiplier
-    out[at + 1] = row.doubt
-    out[at + 2] = row.gap
-    out[at + 3] = row.rank >= 0
-    out[at + 4] = row.mode != APART
-    out[at + 5] = row.rate
-    out[at + 6] = acceleration_of(scene, row)
-    out[at + 7] = size_of_answer(scene, row)
-    return at + 8
+    """Write a closure row's unit load, multiplier and motion in the order of tables.CLOSURE_ANSWER; return the offset
+    behind.
+    """
+    offset = write_vector(buffer, offset, row.f)
+    offset = write_vector(buffer, offset, row.m)
+    buffer[offset] = row.multiplier
+    buffer[offset + 1] = row.doubt
+    buffer[offset + 2] = row.gap
+    buffer[offset + 3] = row.rank >= 0
+    buffer[offset + 4] = row.mode != APART
+    buffer[offset + 5] = row.rate
+    buffer[offset + 6] = row_acceleration(scene, row)
+    buffer[offset + 7] = size_of_row_acceleration(scene, row)
+    return offset + 8
 
 
-def put_answers(
-    scene: cython.pointer[Scene], to: cython.pointer[Instants], j: cython.Py_ssize_t, idle: cython.int
+def write_instant(
+    scene: cython.pointer[Scene], instants: cython.pointer[Instants], instant: cython.Py_ssize_t, idle: cython.int
 ) -> cython.void:
-    """All bodies, freedoms, loads and closure rows at a state, each kind in its own place, and the state itself."""
+    """Write all bodies, freedoms, loads, closure rows and the totals of one instant, each kind into its own table.
+
+    idle: what `evaluate` returned at this instant.
+    """
     i: cython.Py_ssize_t
-    at: cython.Py_ssize_t = j * to.body_width
+    offset: cython.Py_ssize_t = instant * instants.body_width
     for i in range(scene.body_count):
-        at = put_body(to.bodies, at, cython.address(scene.bodies[i]))
-    at = j * to.freedom_width
+        offset = write_body(instants.bodies, offset, cython.address(scene.bodies[i]))
+    offset = instant * instants.freedom_width
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        to.freedoms[at] = freedom.q
-        to.freedoms[at + 1] = freedom.u
-        to.freedoms[at + 2] = freedom.udot
-        to.freedoms[at + 3] = freedom.drive
-        at += 4
-    at = j * to.load_width
+        instants.freedoms[offset] = freedom.q
+        instants.freedoms[offset + 1] = freedom.u
+        instants.freedoms[offset + 2] = freedom.udot
+        instants.freedoms[offset + 3] = freedom.drive
+        offset += 4
+    offset = instant * instants.load_width
     for i in range(scene.load_count):
-        at = put_load(scene, to.loads, at, cython.address(scene.loads[i]))
-    at = j * to.row_width
+        offset = write_load(scene, instants.loads, offset, cython.address(scene.loads[i]))
+    offset = instant * instants.row_width
     for i in range(scene.closure_count):
-        at = put_row(scene, to.rows, at, cython.address(scene.closures[i]))
-    at = j * to.part_width
+        offset = write_row(scene, instants.rows, offset, cython.address(scene.closures[i]))
+    offset = instant * instants.part_width
     for i in range(scene.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
-        at = put(to.parts, at, scaled(part.factor, part.f))
-        at = put(to.parts, at, scaled(part.factor, part.m))
-        at = put(to.parts, at, part.Q)
-        at = put(to.parts, at, part.on_a)
-        at = put(to.parts, at, part.on_b)
-        to.parts[at] = part.gap
-        at += 1
-    at = j * to.whole_width
-    to.whole[at] = scene.gap
-    to.whole[at + 1] = idle
-    to.whole[at + 2] = scene.pivot_recovered
-    to.whole[at + 3] = scene.residual
+        offset = write_vector(instants.parts, offset, scale_vector(part.factor, part.f))
+        offset = write_vector(instants.parts, offset, scale_vector(part.factor, part.m))
+        offset = write_vector(instants.parts, offset, part.Q)
+        offset = write_vector(instants.parts, offset, part.on_a)
+        offset = write_vector(instants.parts, offset, part.on_b)
+        instants.parts[offset] = part.gap
+        offset += 1
+    offset = instant * instants.whole_width
+    instants.whole[offset] = scene.gap
+    instants.whole[offset + 1] = idle
+    instants.whole[offset + 2] = scene.pivot_recovered
+    instants.whole[offset + 3] = scene.residual
 
 
 def recover_state(
-    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double, afresh: cython.bint
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double, choose_rows: cython.bint
 ) -> cython.int:
-    """Settle y on the closures and find accelerations, multipliers and joint loads there; as `evaluate` gives.
+    """Project y onto the closures and find accelerations, multipliers and joint loads there. Returns what `evaluate`
+    returns.
 
-    Leaves the gap over all rows in scene.gap; what `judge_closures` finds.
+    choose_rows: choose the independent closure rows again first. Stores the largest gap of all rows in scene.gap, and
+    what `assess_closures` finds.
     """
     scene.gap = 0.0
     scene.pivot_recovered = 1.0
     if scene.closure_count:
-        if afresh:
-            choose_afresh(scene, t, y)
-        scene.gap = settle(scene, t, y)
-        if must_choose_anew(scene, scene.gap):
+        if choose_rows:
+            choose_rows_again(scene, t, y)
+        scene.gap = project_state(scene, t, y)
+        if must_choose_rows(scene, scene.gap):
             select_independent_rows(scene, t, y, False)
-            scene.gap = settle(scene, t, y)
-    idle: cython.int = evaluate(scene, t, y, dy)
+            scene.gap = project_state(scene, t, y)
+    trouble: cython.int = evaluate(scene, t, y, dy)
     if not scene.driven:
-        push_closures(scene)
-        balance(scene, True)
-    judge_closures(scene, t)
-    return idle
+        apply_multipliers(scene)
+        balance_joints(scene, True)
+    assess_closures(scene, t)
+    return trouble
 
 
-def put_measured(
+def write_measured_state(
     scene: cython.pointer[Scene], bodies: cython.p_double, gaps: cython.p_double, rates: cython.p_double
 ) -> cython.void:
-    """All bodies, as `put_body`, and gap and rate of each closure row, as they stand: nothing is settled."""
+    """Write all bodies, as `write_body` does, and gap and rate of each closure row, without projecting the state."""
     i: cython.Py_ssize_t
-    at: cython.Py_ssize_t = 0
+    offset: cython.Py_ssize_t = 0
     for i in range(scene.body_count):
-        at = put_body(bodies, at, cython.address(scene.bodies[i]))
+        offset = write_body(bodies, offset, cython.address(scene.bodies[i]))
     for i in range(scene.closure_count):
         gaps[i] = scene.closures[i].gap
         rates[i] = scene.closures[i].rate
 
 
-def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
+def assess_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
+    """Measure how well the solution meets all rows, omitted ones too, how independent the selected rows are, and their
+    doubt.
+    """
     measure_rows(scene, t)
     if scene.selected_count:
-        doubt_multipliers(scene)
+        estimate_multiplier_doubt(scene)
         scene.pivot_recovered = order_all(scene, 0.0)
         scene.pivot_recovered *= scene.pivot_recovered
-    measure_answers(scene)
-    scene.residual = unmet(scene, scene.load_size)
+    measure_row_responses(scene)
+    scene.residual = largest_relative_residual(scene, scene.load_size)
 
 
-def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:
-    """Open and close the contacts by the numbers from `at`; whether that is a change.
+def set_contact_modes(scene: cython.pointer[Scene], modes: cython.p_double, offset: cython.Py_ssize_t) -> cython.bint:
+    """Open and close the contacts as `modes` says from `offset` on. Returns whether anything changed.
 
-    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it, -1 where it is open, but a latch
-    holds it at its limit, so that it is not looked at. Behind them, of each latch, the length at which it holds.
+    One number a contact: 0 open, 1 closed, 2 kept closed by other contacts, -1 open but held at its limit by a latch,
+    so that it is not watched. After them, for each latch, the length at which it holds.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -189,28 +198,28 @@ def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cyt
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.opens:
-            k = at + contact.opens - 1
-            mode = APART if holding[k] == 0.0 else LEANS
-            if holding[k] > 0.0 and holding[k] < 1.5:
+            k = offset + contact.opens - 1
+            mode = APART if modes[k] == 0.0 else LEANS
+            if modes[k] > 0.0 and modes[k] < 1.5:
                 mode = CARRIES
             changed = changed or scene.closures[contact.row].mode != mode
             scene.closures[contact.row].mode = mode
             if contact.held_at:
-                k = at + contact.held_at - 1
-                changed = changed or scene.closures[contact.row].length != holding[k]
-                scene.closures[contact.row].length = holding[k]
-    if changed:  # multipliers are found for the rows that carry; of the others they are 0
+                k = offset + contact.held_at - 1
+                changed = changed or scene.closures[contact.row].length != modes[k]
+                scene.closures[contact.row].length = modes[k]
+    if changed:  # only rows that carry have multipliers; those of the others are 0
         for i in range(scene.closure_count):
             scene.closures[i].multiplier = 0.0
-        hold_still(scene)
+        mark_still_freedoms(scene)
     return changed
 
 
-def hold_still(scene: cython.pointer[Scene]) -> cython.void:
-    """Tell the freedoms which of them closed contacts hold.
+def mark_still_freedoms(scene: cython.pointer[Scene]) -> cython.void:
+    """Mark the freedoms that closed contacts hold at rest.
 
-    What loads, events and conditions see of such a rate is 0: its rounding would turn branches at 0, as of abs(rate),
-    to and fro, and leave a table that begins there.
+    Loads, events and conditions see 0 for such a rate. Its rounding error would switch branches at 0, as of abs(rate),
+    back and forth, and leave a table that begins there.
     """
     i: cython.Py_ssize_t
     for i in range(scene.freedom_count):
@@ -219,73 +228,81 @@ def hold_still(scene: cython.pointer[Scene]) -> cython.void:
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.freedom >= 0 and scene.closures[contact.row].mode != APART:
             scene.freedoms[contact.freedom].still = 1
-    while pass_on(scene):
+    while mark_coupled_freedom(scene):
         pass
 
 
-def pass_on(scene: cython.pointer[Scene]) -> cython.bint:
-    """A coupling of coordinates that all stand still but one holds that one; whether one is found."""
+def mark_coupled_freedom(scene: cython.pointer[Scene]) -> cython.bint:
+    """Mark the last moving freedom of a coupling whose other coordinates are still. Returns whether one was found."""
     i: cython.Py_ssize_t
-    last: cython.int
+    freedom: cython.int
     for i in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[i])
         if row.kind == SUM and row.mode == CARRIES and row.program.count == 0:
-            last = moving_alone(scene, row)
-            if last >= 0 and not scene.freedoms[last].driven:
-                scene.freedoms[last].still = 1
+            freedom = find_only_moving_freedom(scene, row)
+            if freedom >= 0 and not scene.freedoms[freedom].driven:
+                scene.freedoms[freedom].still = 1
                 return True
     return False
 
 
-def moving_alone(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.int:
-    """The one freedom of a row that does not stand still; -1: none, several, or it is of more than coordinates."""
+def find_only_moving_freedom(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.int:
+    """Return the only freedom of a row that is not still; -1 if there is none, several, or the row is not of
+    coordinates only.
+    """
     i: cython.Py_ssize_t
     k: cython.int
-    of: cython.int
-    last: cython.int = -1
+    freedom: cython.int
+    moving: cython.int = -1
     for i in range(row.part, row.part + row.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
         if part.kind != TURN and part.kind != MESH:
             return -1
         for k in range(1 if part.kind == TURN or part.ratio_b == 0.0 else 2):
-            of = part.freedom if k == 0 else part.freedom_b
-            if scene.freedoms[of].still or of == last:
+            freedom = part.freedom if k == 0 else part.freedom_b
+            if scene.freedoms[freedom].still or freedom == moving:
                 continue
-            if last >= 0:
+            if moving >= 0:
                 return -1
-            last = of
-    return last
+            moving = freedom
+    return moving
 
 
 def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:
-    """Recover one state after the other, each by itself; unless afresh, the rows chosen at one are the next one's."""
+    """Recover the states one by one. Unless `instants.afresh` is set, an instant uses the rows chosen at the one
+    before.
+    """
     j: cython.Py_ssize_t
     i: cython.Py_ssize_t
-    idle: cython.int
+    trouble: cython.int
     n: cython.Py_ssize_t = instants.n
-    opened: cython.bint = False
+    has_changed: cython.bint = False
     for j in range(instants.count):
         if instants.opening:
-            opened = take_holding(scene, instants.holding, j * instants.opening)
+            has_changed = set_contact_modes(scene, instants.holding, j * instants.opening)
         for i in range(n):
             instants.y[i] = instants.states[j * n + i]
         if instants.held:
             scene.programs.holding = HELD
             for i in range(scene.held_count):
                 scene.programs.held[i] = instants.branches[j * scene.held_count + i]
-        idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh or opened)
+        trouble = recover_state(
+            scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh or has_changed
+        )
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]
-        put_answers(scene, instants, j, idle)
+        write_instant(scene, instants, j, trouble)
         if instants.causes:
-            answer_causes(scene, instants.times[j], instants.y, instants.columns, j * instants.column_width)
+            solve_causes(scene, instants.times[j], instants.y, instants.columns, j * instants.column_width)
     scene.programs.holding = FREE
 
 
-def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cython.p_double) -> cython.void:
-    """Joint loads (moment about the joint point, force; a body each) that hold closure multipliers at rest."""
+def find_joint_loads(
+    scene: cython.pointer[Scene], multipliers: cython.p_double, buffer: cython.p_double
+) -> cython.void:
+    """Find the joint loads (moment about the joint point, force; per body) that balance closure multipliers at rest."""
     i: cython.Py_ssize_t
-    at: cython.Py_ssize_t = 0
+    offset: cython.Py_ssize_t = 0
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for i in range(scene.body_count):
         scene.bodies[i].M_applied = zero
@@ -294,23 +311,24 @@ def carry(scene: cython.pointer[Scene], multipliers: cython.p_double, out: cytho
         scene.bodies[i].a = zero
     for i in range(scene.closure_count):
         scene.closures[i].multiplier = multipliers[i]
-    push_closures(scene)
-    balance(scene, False)
+    apply_multipliers(scene)
+    balance_joints(scene, False)
     for i in range(scene.body_count):
-        at = put(out, at, scene.bodies[i].M_joint)
-        at = put(out, at, scene.bodies[i].f_joint)
+        offset = write_vector(buffer, offset, scene.bodies[i].M_joint)
+        offset = write_vector(buffer, offset, scene.bodies[i].f_joint)
     for i in range(scene.closure_count):
-        scene.closures[i].multiplier = 0.0  # where no row is independent none is solved for, and they stay as they are
+        # if no row is independent none is solved for, and they would stay as they are
+        scene.closures[i].multiplier = 0.0
 
 
-def put_jacobian(scene: cython.pointer[Scene], out: cython.p_double) -> cython.void:
-    """J of all rows, each on the freedoms of its path, one after the other."""
+def write_jacobian(scene: cython.pointer[Scene], buffer: cython.p_double) -> cython.void:
+    """Write J of all rows, each over the freedoms of its path, one row after the other."""
     r: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    at: cython.Py_ssize_t = 0
+    offset: cython.Py_ssize_t = 0
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        jacobian_row(scene, row)
+        spread_jacobian_row(scene, row)
         for k in range(row.answer_count):
-            out[at] = scene.spread[scene.indices[row.answers + k]]
-            at += 1
+            buffer[offset] = scene.spread[scene.indices[row.answers + k]]
+            offset += 1

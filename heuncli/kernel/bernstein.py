@@ -15,31 +15,33 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
 
 
-def raise_by_x(b: cython.p_double, n: cython.int) -> cython.void:
-    """x times the polynomial of degree n, of degree n + 1."""
+def multiply_by_x(b: cython.p_double, n: cython.int) -> cython.void:
+    """Multiply a polynomial of degree n by x; the result has degree n + 1."""
     k: cython.int
     for k in range(n + 1, 0, -1):
         b[k] = b[k - 1] * k / (n + 1)
     b[0] = 0.0
 
 
-def raise_by_rest(b: cython.p_double, n: cython.int) -> cython.void:
-    """1 - x times the polynomial of degree n, of degree n + 1."""
+def multiply_by_one_minus_x(b: cython.p_double, n: cython.int) -> cython.void:
+    """Multiply a polynomial of degree n by 1 - x; the result has degree n + 1."""
     k: cython.int
     for k in range(n + 1):
         b[k] = b[k] * (n + 1 - k) / (n + 1)
     b[n + 1] = 0.0
 
 
-def differentiate(value: cython.p_double, rate: cython.p_double, n: cython.int, length: cython.double) -> cython.void:
-    """The rate of a polynomial of degree n over a stretch of time of some length."""
+def differentiate(value: cython.p_double, rate: cython.p_double, n: cython.int, duration: cython.double) -> cython.void:
+    """Find the time derivative of a polynomial of degree n over an interval of some duration [s]."""
     k: cython.int
     for k in range(n):
-        rate[k] = n * (value[k + 1] - value[k]) / length
+        rate[k] = n * (value[k + 1] - value[k]) / duration
 
 
-def range_of(b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double) -> Bounds:
-    """Bounds of a polynomial of degree n between x0 and x1: its coefficients over that part (de Casteljau)."""
+def bound_polynomial(
+    b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.double, work: cython.p_double
+) -> Bounds:
+    """Bound a polynomial of degree n between x0 and x1 by its coefficients over that part (de Casteljau)."""
     i: cython.int
     k: cython.int
     x: cython.double
@@ -64,21 +66,23 @@ def range_of(b: cython.p_double, n: cython.int, x0: cython.double, x1: cython.do
     return bounds
 
 
-def of_rows(
-    y: cython.double, dense: cython.pp_double, rows: cython.int, c: cython.Py_ssize_t, b: cython.p_double
+def convert_rows(
+    y: cython.double, dense: cython.pp_double, rows: cython.int, column: cython.Py_ssize_t, b: cython.p_double
 ) -> cython.void:
-    """Column c of an interpolating polynomial's rows, in Bernstein's form: y + x (F0 + (1 - x) (F1 + x (F2 + ...)))."""
+    """Convert one column of an interpolating polynomial's rows, y + x (F0 + (1 - x) (F1 + x (F2 + ...))), to Bernstein
+    form.
+    """
     k: cython.int
     i: cython.int
     n: cython.int = 0
     b[0] = 0.0
     for k in range(rows - 1, -1, -1):
         for i in range(n + 1):
-            b[i] = b[i] + dense[k][c]
+            b[i] = b[i] + dense[k][column]
         if k % 2 == 0:
-            raise_by_x(b, n)
+            multiply_by_x(b, n)
         else:
-            raise_by_rest(b, n)
+            multiply_by_one_minus_x(b, n)
         n += 1
     for i in range(n + 1):
         b[i] = y + b[i]

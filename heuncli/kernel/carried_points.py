@@ -1,4 +1,4 @@
-"""Points that bodies carry: where they are, and how they move."""
+"""Points fixed in bodies: their places and their motion."""
 
 from __future__ import annotations
 
@@ -11,21 +11,23 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, centripetal, rotate, sub
     from heuncli.kernel.scene import Body, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import Carried
+    from heuncli.kernel.values import PointKinematics
 
 
-def carried(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Carried:
-    """How the body's point at the world place x moves; the ground's does not."""
+def point_motion(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> PointKinematics:
+    """Return how a body's point at the world place x moves; a ground point does not."""
     if body < 0:
         zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-        return Carried(zero, zero, zero)
-    on: cython.pointer[Body] = cython.address(scene.bodies[body])
-    arm: Vec3 = sub(x, on.r)
-    return Carried(add_cross(on.v, on.omega, arm), centripetal(on.omega, arm), on.omega)
+        return PointKinematics(zero, zero, zero)
+    carrier: cython.pointer[Body] = cython.address(scene.bodies[body])
+    arm: Vec3 = sub(x, carrier.r)
+    return PointKinematics(add_cross(carrier.v, carrier.omega, arm), centripetal(carrier.omega, arm), carrier.omega)
 
 
-def place_of(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> Vec3:
-    """World place of a body's point, given from its joint point in its axes; a ground point as it is."""
+def world_place(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> Vec3:
+    """Return the world place of a body's point, given from its joint point in the body's axes; a ground point is
+    returned as it is.
+    """
     if body < 0:
         return q
     return add(rotate(scene.bodies[body].R, q), scene.bodies[body].r)

@@ -1,7 +1,8 @@
-"""The one door to the kernel from outside: its modules, in the form chosen for this process (form.py).
+"""The only entrance to the kernel from outside: its modules in the form chosen for this process (form.py).
 
-Import them from here (`from heuncli.kernel.choose import steps`), never directly: the choice has to stand before the
-first of them is loaded. Compiled they are one module, under each of these names; what only declares is plain anyway.
+Import them from here (`from heuncli.kernel.choose import steps`), never directly: the form must be chosen before the
+first of them is loaded. Compiled, they are one module under each of these names; modules that only declare are always
+plain Python.
 """
 
 from __future__ import annotations

@@ -1,8 +1,10 @@
-"""Closed chains on top of the sweep: the rows that the closures ask of the motion, and their unit loads.
+"""Loop closures on top of the tree: the conditions that closure rows put on the motion, and their unit loads.
 
     J Vdot + gamma = 0
-Row r puts the force f at the point Q and the couple m on body b for lambda = 1, and the opposite at the same place on
-a; its column e_r, what the freedoms answer to that, comes from one upward pass along the two paths to the ground.
+
+Row r applies the force f at the point Q and the couple m to body b for lambda = 1, and the opposite at the same place
+to a. Its column e_r, the response of the freedoms to that, comes from one upward pass along the two paths to the
+ground.
 """
 
 from __future__ import annotations
@@ -23,31 +25,32 @@ if not cython.compiled:
         dot,
         norm,
         rotate_back,
-        scaled,
+        scale_vector,
         sub,
     )
-    from heuncli.kernel.conditions import condition, condition_count, enter, measure_condition
-    from heuncli.kernel.directions import direction_of
+    from heuncli.kernel.conditions import condition, condition_count, measure_condition, set_load_places
+    from heuncli.kernel.directions import world_direction
     from heuncli.kernel.jets import jet
-    from heuncli.kernel.plane_rows import demanded_in_plane
+    from heuncli.kernel.plane_rows import zero_acceleration_in_plane
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tracks import pace_of
-    from heuncli.kernel.tree import answered, push
+    from heuncli.kernel.tracks import track_speed
+    from heuncli.kernel.tree import eliminate_load, push_load
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """Unit load, gap, rate and gamma of every row at the present kinematics."""
+    """Find unit load, gap, rate and gamma of every row at the present kinematics."""
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
         measure_row(scene, cython.address(scene.closures[r]), t)
 
 
 def measure_moving_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """Unit load, gap, rate and gamma of the rows that the freedoms can change; all others were measured before.
+    """Find unit load, gap, rate and gamma of the rows that the freedoms can change; the others were measured before.
 
-    Those are, in a flat scene, the rows that hold what stands across it: their gaps stay, their rates are zero.
+    In a planar scene those others are the rows that constrain motion out of the plane: their gaps are constant, their
+    rates zero.
     """
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
@@ -58,23 +61,23 @@ def measure_moving_rows(scene: cython.pointer[Scene], t: cython.double) -> cytho
 
 
 def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: cython.double) -> cython.void:
-    """Unit load (f, m at Q), gap, rate and gamma of one row, less what is prescribed of its length."""
+    """Find unit load (f, m at Q), gap, rate and gamma of one row, minus the prescribed motion of its length."""
     if row.kind == SUM:
         measure_sum(scene, row)
     else:
         measure_condition(scene, row)
     row.prescribed_rate, row.prescribed_second = 0.0, 0.0  # a blow has left its jumps there
     if row.program.count:
-        given: Jet = jet(scene.programs, row.program, t)
-        row.gap -= given.value
-        row.rate -= given.rate
-        row.gamma -= given.second
-        row.prescribed_rate = given.rate
-        row.prescribed_second = given.second
+        length: Jet = jet(scene.programs, row.program, t)
+        row.gap -= length.value
+        row.rate -= length.rate
+        row.gamma -= length.second
+        row.prescribed_rate = length.rate
+        row.prescribed_second = length.second
 
 
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """A row that is a sum of conditions: their gaps, rates and gammas, and the sums of their unit loads."""
+    """Measure a row that is a sum of conditions: sum their gaps, rates, gammas and unit loads."""
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     row.f, row.m = zero, zero
@@ -82,7 +85,7 @@ def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     for i in range(condition_count(row)):
         part: cython.pointer[Closure] = condition(scene, row, i)
         measure_condition(scene, part)
-        enter(scene, part)
+        set_load_places(scene, part)
         row.gap += part.factor * part.gap
         row.rate += part.factor * part.rate
         row.gamma += part.factor * part.gamma
@@ -91,106 +94,112 @@ def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     row.Q = scene.parts[row.part].Q
 
 
-def demanded(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """gamma + J Vdot of a row if no freedom accelerated: what the freedoms have to answer."""
+def required_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return gamma + J Vdot of a row if no freedom accelerated: what the freedoms must compensate."""
     i: cython.Py_ssize_t
-    found: cython.double = row.gamma
+    total: cython.double = row.gamma
     for i in range(condition_count(row)):
         part: cython.pointer[Closure] = condition(scene, row, i)
-        found += part.factor * zero_acceleration(scene, part)
-    return found
+        total += part.factor * zero_acceleration(scene, part)
+    return total
 
 
 def zero_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """J Vdot of a condition of two bodies if no freedom accelerated."""
+    """Return J Vdot of a condition between two bodies if no freedom accelerated."""
     if scene.flat:
-        return demanded_in_plane(scene, row)
-    found: cython.double = 0.0
+        return zero_acceleration_in_plane(scene, row)
+    total: cython.double = 0.0
     if row.b >= 0:
-        found += along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a_zero, scene.bodies[row.b].alpha_zero)
+        total += project_on_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a_zero, scene.bodies[row.b].alpha_zero)
     if row.a >= 0:
-        found -= along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a_zero, scene.bodies[row.a].alpha_zero)
-    return found
+        total -= project_on_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a_zero, scene.bodies[row.a].alpha_zero)
+    return total
 
 
-def along_row(row: cython.pointer[Closure], r: Vec3, a: Vec3, alpha: Vec3) -> cython.double:
+def project_on_row(row: cython.pointer[Closure], r: Vec3, a: Vec3, alpha: Vec3) -> cython.double:
     """f . (a + alpha x (Q - r)) + m . alpha."""
     return dot(row.f, add_cross(a, alpha, sub(row.Q, r))) + dot(row.m, alpha)
 
 
-def residual_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """|J Vdot + gamma| of a row at the accelerations found."""
-    return fabs(acceleration_of(scene, row))
+def row_residual(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return |J Vdot + gamma| of a row at the accelerations found."""
+    return fabs(row_acceleration(scene, row))
 
 
-def acceleration_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """J Vdot + gamma of a row at the accelerations found, which are less that of gravity, the ground's too."""
-    return row.gamma + moved_by(scene, row, -1.0)
+def row_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return J Vdot + gamma of a row at the accelerations found, which exclude gravity; so does the ground's."""
+    return row.gamma + row_motion(scene, row, -1.0)
 
 
-def moved_by(scene: cython.pointer[Scene], row: cython.pointer[Closure], ground: cython.double) -> cython.double:
-    """J Vdot of a row at what stands in alpha and a; ground: how many times gravity the ground's is."""
+def row_motion(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], gravity_factor: cython.double
+) -> cython.double:
+    """Return J Vdot of a row for the values in alpha and a; gravity_factor: the ground's acceleration in units of
+    gravity.
+    """
     i: cython.Py_ssize_t
-    found: cython.double = 0.0
+    total: cython.double = 0.0
     for i in range(condition_count(row)):
         part: cython.pointer[Closure] = condition(scene, row, i)
-        found += part.factor * moved_apart(scene, part, ground)
-    return found
+        total += part.factor * condition_motion(scene, part, gravity_factor)
+    return total
 
 
-def moved_apart(scene: cython.pointer[Scene], row: cython.pointer[Closure], ground: cython.double) -> cython.double:
-    """The same of a condition of two bodies."""
-    b: cython.double = ground * dot(row.f, scene.gravity)
+def condition_motion(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], gravity_factor: cython.double
+) -> cython.double:
+    """Return J Vdot of a condition between two bodies."""
+    b: cython.double = gravity_factor * dot(row.f, scene.gravity)
     a: cython.double = b
     if row.b >= 0:
-        b = along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a, scene.bodies[row.b].alpha)
+        b = project_on_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a, scene.bodies[row.b].alpha)
     if row.a >= 0:
-        a = along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a, scene.bodies[row.a].alpha)
+        a = project_on_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a, scene.bodies[row.a].alpha)
     return b - a
 
 
-def size_of_demand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """Size of the terms of `demanded`."""
+def size_of_required_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the size of the terms of `required_acceleration`."""
     i: cython.Py_ssize_t
-    found: cython.double = fabs(row.gamma)
+    total: cython.double = fabs(row.gamma)
     for i in range(condition_count(row)):
         part: cython.pointer[Closure] = condition(scene, row, i)
-        found += fabs(part.factor) * size_if_zero(scene, part)
-    return found
+        total += fabs(part.factor) * size_of_zero_acceleration(scene, part)
+    return total
 
 
-def size_if_zero(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """Size of the terms of `zero_acceleration`."""
-    found: cython.double = 0.0
+def size_of_zero_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the size of the terms of `zero_acceleration`."""
+    total: cython.double = 0.0
     if row.b >= 0:
         b: cython.pointer[Body] = cython.address(scene.bodies[row.b])
-        found += size_of_terms(b, row, b.a_zero, b.alpha_zero)
+        total += size_of_terms(b, row, b.a_zero, b.alpha_zero)
     if row.a >= 0:
         a: cython.pointer[Body] = cython.address(scene.bodies[row.a])
-        found += size_of_terms(a, row, a.a_zero, a.alpha_zero)
-    return found
+        total += size_of_terms(a, row, a.a_zero, a.alpha_zero)
+    return total
 
 
-def size_of_answer(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """Size of the terms of `residual_of`."""
+def size_of_row_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the size of the terms of `row_acceleration`."""
     i: cython.Py_ssize_t
-    found: cython.double = fabs(row.gamma)
+    total: cython.double = fabs(row.gamma)
     for i in range(condition_count(row)):
         part: cython.pointer[Closure] = condition(scene, row, i)
-        found += fabs(part.factor) * size_moved(scene, part)
-    return found
+        total += fabs(part.factor) * size_of_condition_motion(scene, part)
+    return total
 
 
-def size_moved(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """Size of the terms of `moved_apart`."""
-    found: cython.double = 0.0
+def size_of_condition_motion(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the size of the terms of `condition_motion`."""
+    total: cython.double = 0.0
     if row.b >= 0:
         b: cython.pointer[Body] = cython.address(scene.bodies[row.b])
-        found += size_of_terms(b, row, b.a, b.alpha)
+        total += size_of_terms(b, row, b.a, b.alpha)
     if row.a >= 0:
         a: cython.pointer[Body] = cython.address(scene.bodies[row.a])
-        found += size_of_terms(a, row, a.a, a.alpha)
-    return found
+        total += size_of_terms(a, row, a.a, a.alpha)
+    return total
 
 
 def size_of_terms(body: cython.pointer[Body], row: cython.pointer[Closure], a: Vec3, alpha: Vec3) -> cython.double:
@@ -199,27 +208,27 @@ def size_of_terms(body: cython.pointer[Body], row: cython.pointer[Closure], a: V
     return norm(row.f) * (norm(a) + turn * norm(sub(row.Q, body.r))) + norm(row.m) * turn
 
 
-def put_unit_load(
+def add_unit_load(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int, sign: cython.double
 ) -> cython.void:
-    """The row's load for lambda = sign on one of its bodies, as M_branch and f_branch about the joint point."""
+    """Add the row's load for lambda = sign on one of its bodies to M_branch and f_branch, about the joint point."""
     if body >= 0:
-        on: cython.pointer[Body] = cython.address(scene.bodies[body])
-        on.M_branch = add_scaled(on.M_branch, -sign, add_cross(row.m, sub(row.Q, on.r), row.f))
-        on.f_branch = add_scaled(on.f_branch, -sign, row.f)
+        target: cython.pointer[Body] = cython.address(scene.bodies[body])
+        target.M_branch = add_scaled(target.M_branch, -sign, add_cross(row.m, sub(row.Q, target.r), row.f))
+        target.f_branch = add_scaled(target.f_branch, -sign, row.f)
 
 
-def put_unit_loads(scene: cython.pointer[Scene], row: cython.pointer[Closure], sign: cython.double) -> cython.void:
-    """The row's load for lambda = sign on all its bodies."""
+def add_unit_loads(scene: cython.pointer[Scene], row: cython.pointer[Closure], sign: cython.double) -> cython.void:
+    """Add the row's load for lambda = sign on all its bodies."""
     i: cython.Py_ssize_t
     for i in range(condition_count(row)):
         part: cython.pointer[Closure] = condition(scene, row, i)
-        put_unit_load(scene, part, part.b, sign * part.factor)
-        put_unit_load(scene, part, part.a, -sign * part.factor)
+        add_unit_load(scene, part, part.b, sign * part.factor)
+        add_unit_load(scene, part, part.a, -sign * part.factor)
 
 
 def clear_path(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """No unit load on the row's path."""
+    """Set the unit loads on the row's path to zero."""
     n: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for n in range(row.path, row.path + row.path_count):
@@ -229,63 +238,65 @@ def clear_path(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cy
 
 
 def build_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """e_r: what the freedoms of the row's paths answer to its unit load, by the factored inertias."""
+    """Compute e_r: the response of the freedoms of the row's paths to its unit load, from the factored inertias."""
     clear_path(scene, row)
-    put_unit_loads(scene, row, 1.0)
+    add_unit_loads(scene, row, 1.0)
     sweep_column(scene, row)
 
 
 def sweep_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """One upward pass of what stands in M_branch and f_branch along the row's paths, tips first."""
+    """Pass the loads in M_branch and f_branch up along the row's paths, tips first, and write the column."""
     n: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    at: cython.Py_ssize_t = row.column
+    offset: cython.Py_ssize_t = row.column
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         if body.ball:
-            scene.columns[at] = -body.M_branch.x
-            scene.columns[at + 1] = -body.M_branch.y
-            scene.columns[at + 2] = -body.M_branch.z
-            at += 3
+            scene.columns[offset] = -body.M_branch.x
+            scene.columns[offset + 1] = -body.M_branch.y
+            scene.columns[offset + 2] = -body.M_branch.z
+            offset += 3
             body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
             body.M_branch = Vec3(0.0, 0.0, 0.0)
         for k in range(body.first_freedom, body.end_freedom):
-            scene.columns[at] = answered(body, cython.address(scene.freedoms[k]))
-            at += 1
+            scene.columns[offset] = eliminate_load(body, cython.address(scene.freedoms[k]))
+            offset += 1
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
             parent.M_branch = add(parent.M_branch, add_cross(body.M_branch, body.arm, body.f_branch))
             parent.f_branch = add(parent.f_branch, body.f_branch)
 
 
-def push_closures(scene: cython.pointer[Scene]) -> cython.void:
-    """Put the multipliers' forces and couples on the bodies, beside the applied loads."""
+def apply_multipliers(scene: cython.pointer[Scene]) -> cython.void:
+    """Add the multipliers' forces and couples to the applied loads on the bodies."""
     r: cython.Py_ssize_t
     i: cython.Py_ssize_t
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
         for i in range(condition_count(row)):
             part: cython.pointer[Closure] = condition(scene, row, i)
-            push_condition(scene, part, row.multiplier * part.factor)
+            apply_condition_load(scene, part, row.multiplier * part.factor)
 
 
-def push_condition(
+def apply_condition_load(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], multiplier: cython.double
 ) -> cython.void:
-    """Put the load of a condition of two bodies on them."""
-    push(scene, row.b, row.Q, scaled(multiplier, row.f), scaled(multiplier, row.m))
-    push(scene, row.a, row.Q, scaled(-multiplier, row.f), scaled(-multiplier, row.m))
+    """Apply the load of a condition to its two bodies."""
+    push_load(scene, row.b, row.Q, scale_vector(multiplier, row.f), scale_vector(multiplier, row.m))
+    push_load(scene, row.a, row.Q, scale_vector(-multiplier, row.f), scale_vector(-multiplier, row.m))
 
 
-def count_turns(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.void:
-    """Rates of the angles that are counted beside the tree (pins that were cut): n . (omega_b - omega_a); of places."""
+def find_counter_rates(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.void:
+    """Find the rates of the counted angles outside the tree (pins that were cut), n . (omega_b - omega_a), and of
+    positions on tracks.
+    """
     i: cython.Py_ssize_t
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
         if counter.track:
-            dy[counter.at] = pace_of(scene, cython.address(scene.closures[counter.track - 1]))
+            dy[counter.at] = track_speed(scene, cython.address(scene.closures[counter.track - 1]))
             continue
-        n: Vec3 = counter.axis if scene.flat else direction_of(scene, counter.a, counter.axis)
+        n: Vec3 = counter.axis if scene.flat else world_direction(scene, counter.a, counter.axis)
         dy[counter.at] = 0.0
         if counter.b >= 0:
             dy[counter.at] += dot(n, scene.bodies[counter.b].omega)

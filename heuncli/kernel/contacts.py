@@ -1,8 +1,8 @@
-"""Contacts: where within a step tried an open one would close for the first time, or a closed one have to pull.
+"""Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
-The margin of a one-sided row, its gap while it is open and its multiplier while it is closed (times its sense), is
+The margin of a unilateral row, its gap while it is open and its multiplier while it is closed (times its sense), is
 followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
-The step is done again up to there, until both agree. What happens then is decided outside
+The step is repeated up to there until both agree. What happens then is decided outside
 (motion/integration/contacts/restitution.py).
 """
 
@@ -19,36 +19,36 @@ if not cython.compiled:
     from heuncli.kernel.algebra import norm
     from heuncli.kernel.closures import measure_row
     from heuncli.kernel.dense import (
-        AGAIN_TO,
-        MOST_LANDINGS,
-        STANDS,
-        TURNS_OVER,
-        clipped,
+        CONTACT_EVENT,
+        MAX_LANDINGS,
+        NO_EVENT,
+        REPEAT_TO,
+        clip_time,
+        ensure_interpolant,
         interpolate,
-        need_interpolant,
     )
-    from heuncli.kernel.response import evaluate, settle
+    from heuncli.kernel.response import evaluate, project_state
     from heuncli.kernel.scene import APART, CARRIES, LEANS, Closure, Contact, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Method, Run
-    from heuncli.kernel.tree import kinematics
+    from heuncli.kernel.tree import update_kinematics
 
-    # Halvings of a step, down to the rounding of its instants; into how many a part is divided to be looked at; parts
-    # looked at, before rounding alone is what is in doubt.
-    HALVINGS, POINTS, MOST_MARGIN_LOOKS = 46, 8, 400
+    # Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
+    # checked before only rounding can be in doubt.
+    HALVINGS, POINTS, MAX_MARGIN_PARTS = 46, 8, 400
 
 
 # Margins
 
 
-def margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
-    """What must not become positive: the gap of an open contact, the multiplier of a closed one."""
+def contact_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+    """Return what must not become positive: the gap of an open contact, the multiplier of a closed one."""
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     return contact.sense * (row.gap if row.mode == APART else row.multiplier)
 
 
-def measure_open(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """Gaps and rates of the contacts that are open, at the present kinematics."""
+def measure_open_contacts(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
+    """Find gaps and rates of the open contacts at the present kinematics."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.contacts[i].row])
@@ -57,17 +57,17 @@ def measure_open(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
 
 
 def start_contacts(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """The margins, as evaluated last, are those at the start of a step."""
+    """Store the margins evaluated last as those at the start of a step."""
     i: cython.Py_ssize_t
-    measure_open(scene, t)
+    measure_open_contacts(scene, t)
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        contact.start = margin(scene, contact)
+        contact.start = contact_margin(scene, contact)
         contact.start_rate = contact.sense * scene.closures[contact.row].rate
 
 
-def see_start(scene: cython.pointer[Scene]) -> cython.void:
-    """The start of a step is the first that is seen of it."""
+def begin_margin_extremes(scene: cython.pointer[Scene]) -> cython.void:
+    """Start the extremes of the margins with those at the start of a step."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
@@ -75,22 +75,22 @@ def see_start(scene: cython.pointer[Scene]) -> cython.void:
         contact.least = contact.start
 
 
-def see_contacts(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """What was evaluated last is seen."""
+def update_margin_extremes(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
+    """Include the margins evaluated last in the extremes."""
     i: cython.Py_ssize_t
     x: cython.double
-    measure_open(scene, t)
+    measure_open_contacts(scene, t)
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        x = margin(scene, contact)
+        x = contact_margin(scene, contact)
         if x > contact.most:
             contact.most = x
         if x < contact.least:
             contact.least = x
 
 
-def pushed_at_once(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Whether a rope that ends the run would push where a piece begins."""
+def find_pushing_rope(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Return whether a rope that ends the run would have to push at the start of a piece; run.contact names it."""
     i: cython.Py_ssize_t
     most: cython.double = 0.0
     for i in range(scene.contact_count):
@@ -101,8 +101,8 @@ def pushed_at_once(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
     return most > 0.0
 
 
-def opened_by_others(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Whether a contact that others kept closed is not closed any more."""
+def find_reopened_contact(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Return whether a contact that other contacts kept closed has opened; run.contact names it."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.contacts[i].row])
@@ -112,8 +112,10 @@ def opened_by_others(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> 
     return False
 
 
-def turned_over(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """What the contact found does: 1 an open one closes, 2 a closed one opens, 3 a rope that must not would push."""
+def classify_contact_event(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """Return what the contact found does: 1 an open one closes, 2 a closed one opens, 3 a rope that must not would
+    push.
+    """
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         if scene.contacts[i].row + 1 == run.contact:
@@ -126,17 +128,19 @@ def turned_over(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cytho
 # A step tried
 
 
-def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """Above what margins contacts close or open, by their rounding; 0: none is in doubt, 1: open ones, 2: closed ones.
+def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """Set the margins above which contacts close or open, from their rounding. Returns 0: none is in doubt, 1: open
+    ones, 2: closed ones.
 
     A gap that is open, or leaves with a rate, closes where it is zero again, to the rounding of its sum; one that
-    touches at rest is known to what settling leaves. Late, to show what rounding makes of it, a gap that comes to that
-    closes there already: so a run that grazes a limit, or does not, is compared with one that does.
+    touches at rest is known to the accuracy of the projection. If run.late is set, a gap that comes within that closes
+    there already. It shows the effect of rounding: a run that just grazes a limit, or misses it, is compared with one
+    that touches it.
     """
     i: cython.Py_ssize_t
-    found: cython.int = 0
+    doubt: cython.int = 0
     size: cython.double
-    reach: cython.double
+    threshold: cython.double
     likely: cython.double
     early: cython.bint
     least: cython.double = 0.0
@@ -150,81 +154,85 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
         if row.mode == LEANS or contact.sense == 0:
             continue
         size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
-        reach = scene.limits.touching * size
-        early = row.mode == APART and run.late and closes_early(contact, reach)
+        threshold = scene.limits.touching * size
+        early = row.mode == APART and run.late and closes_early(contact, threshold)
         likely = contact.most + 0.5 * (contact.most - contact.least)
-        if likely < (-reach if early else 0.0) and not run.landing.contact_attempts:
+        if likely < (-threshold if early else 0.0) and not run.landing.contact_attempts:
             continue
         if row.mode == CARRIES:
             contact.level = scene.limits.rounding * fabs(least)
-            found = 2
+            doubt = 2
         elif early:
-            contact.level = -reach
+            contact.level = -threshold
         else:
-            contact.level = reach
+            contact.level = threshold
             if contact.start < -contact.level or contact.start_rate * run.h < -contact.level:
                 contact.level = scene.limits.rounding * size
-            if contact.start > 0.0 and contact.start_rate <= 0.0:  # what leaves is not met again where it was left
+            # a contact that opens does not close again where it opened
+            if contact.start > 0.0 and contact.start_rate <= 0.0:
                 contact.level += contact.start
-        if row.mode == APART and found == 0:
-            found = 1
-    return found
+        if row.mode == APART and doubt == 0:
+            doubt = 1
+    return doubt
 
 
-def closes_early(contact: cython.pointer[Contact], reach: cython.double) -> cython.bint:
-    """Whether a gap is open beyond its rounding, or comes back to it."""
-    return contact.start < -reach or (contact.start_rate > 0.0 and contact.start < -0.5 * reach)
+def closes_early(contact: cython.pointer[Contact], threshold: cython.double) -> cython.bint:
+    """Return whether a gap is open by more than its rounding, or comes back to it."""
+    return contact.start < -threshold or (contact.start_rate > 0.0 and contact.start < -0.5 * threshold)
 
 
-def stand_within(
+def evaluate_within_step(
     scene: cython.pointer[Scene],
     method: cython.pointer[Method],
     run: cython.pointer[Run],
     x: cython.double,
     doubt: cython.int,
 ) -> cython.void:
-    """The scene at x of the step tried, by its dense output; where closed contacts are in doubt with their loads."""
-    t: cython.double = clipped(run, run.t + x * run.h)
+    """Evaluate the scene at x of the trial step from its dense output; with loads if closed contacts are in doubt."""
+    t: cython.double = clip_time(run, run.t + x * run.h)
     interpolate(scene, method, run, x, run.stage)
-    settle(scene, t, run.stage)
+    project_state(scene, t, run.stage)
     if doubt == 2:
         evaluate(scene, t, run.stage, run.fine)
         run.evaluations += 1
     else:
-        kinematics(scene, t, run.stage)
-    measure_open(scene, t)
+        update_kinematics(scene, t, run.stage)
+    measure_open_contacts(scene, t)
 
 
-def meet_contacts(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """Where within a step tried a contact would close, or open, for the first time: the step ends there."""
+def find_contact_event(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.int:
+    """Find where within a trial step a contact first closes or opens, and let the step end there."""
     x: cython.double
-    at: cython.double
-    near: cython.double = scene.limits.least_step * fabs(run.end)
-    doubt: cython.int = set_levels(scene, run)
+    event_time: cython.double
+    least_distance: cython.double = scene.limits.least_step * fabs(run.end)
+    doubt: cython.int = set_contact_thresholds(scene, run)
     if doubt == 0:
-        return STANDS
-    need_interpolant(scene, method, run)
-    x = first_contact(scene, method, run, doubt)
+        return NO_EVENT
+    ensure_interpolant(scene, method, run)
+    x = find_first_contact(scene, method, run, doubt)
     if x > 1.0:
         run.landing.contact_attempts = 0
-        return STANDS
-    at = run.t + where_closed(scene, method, run, x) * run.h
-    if at - run.t <= near:
+        return NO_EVENT
+    event_time = run.t + locate_closing(scene, method, run, x) * run.h
+    if event_time - run.t <= least_distance:
         run.stop = run.t
-        return TURNS_OVER
-    if run.stop - at <= near or run.landing.contact_attempts >= MOST_LANDINGS:
-        return TURNS_OVER
+        return CONTACT_EVENT
+    if run.stop - event_time <= least_distance or run.landing.contact_attempts >= MAX_LANDINGS:
+        return CONTACT_EVENT
     run.landing.contact_attempts += 1
-    run.landing.cut = at
-    return AGAIN_TO
+    run.landing.cut = event_time
+    return REPEAT_TO
 
 
-def where_closed(
+def locate_closing(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], x: cython.double
 ) -> cython.double:
-    """Where the gap of the contact found is zero, just before x, where it is no more than its level; x of others.
+    """Return where the gap of the contact found is zero, just before x, where it has not passed its threshold; x for
+    other contacts.
 
-    Late, there where it is at that level: so the rounding of a gap is seen.
+    If run.late is set, return where it is at the threshold: so the effect of a gap's rounding is seen.
     """
     i: cython.Py_ssize_t
     rate: cython.double
@@ -232,10 +240,11 @@ def where_closed(
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.row + 1 == run.contact and scene.closures[contact.row].mode == APART and not run.late:
-            stand_within(scene, method, run, x, 1)
+            evaluate_within_step(scene, method, run, x, 1)
             rate = contact.sense * scene.closures[contact.row].rate * run.h
-            back = margin(scene, contact)
-            if contact.start > 0.0 and contact.start_rate < 0.0:  # begun beyond it, a flight ends where it began
+            back = contact_margin(scene, contact)
+            # a flight that begins with a positive gap ends at that gap
+            if contact.start > 0.0 and contact.start_rate < 0.0:
                 back -= contact.start
             if rate > 0.0 and back > 0.0:
                 back /= rate
@@ -243,10 +252,12 @@ def where_closed(
     return x
 
 
-def first_contact(
+def find_first_contact(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], doubt: cython.int
 ) -> cython.double:
-    """x just before the first instant of the step tried at which a margin is above its level; 2 where none is."""
+    """Return x just before the first instant of the trial step at which a margin is above its threshold; 2 if there is
+    none.
+    """
     x: cython.double = 0.0
     middle: cython.double
     top: cython.int = 0
@@ -256,13 +267,13 @@ def first_contact(
     while top >= 0:
         looks += 1
         middle = 0.5 * (x + ends[top])
-        if top == HALVINGS or looks > MOST_MARGIN_LOOKS or middle <= x or middle >= ends[top]:
-            stand_within(scene, method, run, ends[top], doubt)
-            if is_above(scene, run):
+        if top == HALVINGS or looks > MAX_MARGIN_PARTS or middle <= x or middle >= ends[top]:
+            evaluate_within_step(scene, method, run, ends[top], doubt)
+            if find_exceeded_margin(scene, run):
                 return x
             x = ends[top]
             top -= 1
-        elif is_clear(scene, method, run, x, ends[top], doubt):
+        elif stays_below_thresholds(scene, method, run, x, ends[top], doubt):
             x = ends[top]
             top -= 1
         else:
@@ -271,19 +282,19 @@ def first_contact(
     return 2.0
 
 
-def is_above(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Whether a margin is above its level; run.contact: the last of them."""
+def find_exceeded_margin(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Return whether a margin is above its threshold; run.contact names the last of them."""
     i: cython.Py_ssize_t
     found: cython.bint = False
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        if not margin(scene, contact) <= contact.level:
+        if not contact_margin(scene, contact) <= contact.level:
             run.contact = contact.row + 1
             found = True
     return found
 
 
-def is_clear(
+def stays_below_thresholds(
     scene: cython.pointer[Scene],
     method: cython.pointer[Method],
     run: cython.pointer[Run],
@@ -291,19 +302,19 @@ def is_clear(
     x1: cython.double,
     doubt: cython.int,
 ) -> cython.bint:
-    """Whether no margin rises above its level between x0 and x1.
+    """Return whether no margin rises above its threshold between x0 and x1.
 
-    Between equidistant points a function rises above the larger of two neighbours by no more than an eighth of its
-    second differences; twice that is allowed for, as they vary. A gap whose rate is nowhere positive does not rise.
+    Between equidistant points a function exceeds the larger of two neighbours by at most an eighth of its second
+    differences; twice that is allowed for, as they vary. A gap whose rate is nowhere positive does not rise.
     """
     i: cython.int
     k: cython.Py_ssize_t
     for i in range(POINTS + 1):
-        stand_within(scene, method, run, x0 + (x1 - x0) * i / POINTS, doubt)
-        if is_above(scene, run):
+        evaluate_within_step(scene, method, run, x0 + (x1 - x0) * i / POINTS, doubt)
+        if find_exceeded_margin(scene, run):
             return False
         for k in range(scene.contact_count):
-            note_margin(scene, cython.address(scene.contacts[k]), i)
+            record_margin(scene, cython.address(scene.contacts[k]), i)
     for k in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[k])
         if contact.highest + 0.25 * contact.bent <= contact.level:
@@ -314,9 +325,9 @@ def is_clear(
     return True
 
 
-def note_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact], i: cython.int) -> cython.void:
-    """The i-th of equidistant points is seen: the largest margin and rate, and their largest second differences."""
-    x: cython.double = margin(scene, contact)
+def record_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact], i: cython.int) -> cython.void:
+    """Include the i-th of equidistant points: the largest margin and rate, and their largest second differences."""
+    x: cython.double = contact_margin(scene, contact)
     rate: cython.double = contact.sense * scene.closures[contact.row].rate
     bend: cython.double
     if i == 0:

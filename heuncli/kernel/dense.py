@@ -1,4 +1,4 @@
-"""A step's stages combined, and its dense output: what happens between its ends.
+"""Combine the stages of a step, and evaluate its dense output: the state between its ends.
 
 A method is data (integration/methods): rows of (stage, coefficient).
 """
@@ -11,47 +11,48 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.attitudes import chart_slopes, leave_chart, nearing
-    from heuncli.kernel.response import evaluate, settle
+    from heuncli.kernel.attitudes import chart_slopes, half_turn_rate, leave_chart
+    from heuncli.kernel.response import evaluate, project_state
     from heuncli.kernel.scene import Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Method, Run
 
     # What a step tried comes to.
-    STANDS, AGAIN_TO, TURNS_OVER, CHATTERS = range(4)
-    MOST_LANDINGS = 6  # on one event: each finds its place to the square of the error of the one before
+    NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
+    MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
 
 
-def combine(
-    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, out: cython.p_double
+def combine_stages(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, n: cython.int, result: cython.p_double
 ) -> cython.void:
-    """out = sum over stages of the row's coefficients times K, as many components at a time as stay in registers.
+    """Sum the stages times the row's coefficients: result = sum over stages of coefficient times K.
 
-    Where the last are fewer, earlier ones are made again beside them.
+    As many components at a time as fit into registers; if the last ones are fewer, some earlier ones are computed again
+    with them.
     """
     i: cython.Py_ssize_t = 0
     j: cython.Py_ssize_t
     while i < n:
         if n >= 8:
             i = i if i + 8 <= n else n - 8
-            combine_eight(method, row, K, i, out)
+            combine_eight_components(method, row, K, i, result)
             i += 8
         elif n >= 4:
             i = i if i + 4 <= n else n - 4
-            combine_four(method, row, K, i, out)
+            combine_four_components(method, row, K, i, result)
             i += 4
         else:
             a: cython.double = 0.0
             for j in range(method.begin[row], method.begin[row + 1]):
                 a += method.coefficient[j] * K[method.stage[j]][i]
-            out[i] = a
+            result[i] = a
             i += 1
 
 
-def combine_four(
-    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, i: cython.Py_ssize_t, out: cython.p_double
+def combine_four_components(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, i: cython.Py_ssize_t, result: cython.p_double
 ) -> cython.void:
-    """Four components from i on."""
+    """Combine four components from i on."""
     j: cython.Py_ssize_t
     a: cython.double = 0.0
     b: cython.double = 0.0
@@ -64,16 +65,16 @@ def combine_four(
         b += factor * k[i + 1]
         c += factor * k[i + 2]
         d += factor * k[i + 3]
-    out[i] = a
-    out[i + 1] = b
-    out[i + 2] = c
-    out[i + 3] = d
+    result[i] = a
+    result[i + 1] = b
+    result[i + 2] = c
+    result[i + 3] = d
 
 
-def combine_eight(
-    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, i: cython.Py_ssize_t, out: cython.p_double
+def combine_eight_components(
+    method: cython.pointer[Method], row: cython.int, K: cython.pp_double, i: cython.Py_ssize_t, result: cython.p_double
 ) -> cython.void:
-    """Eight components from i on."""
+    """Combine eight components from i on."""
     j: cython.Py_ssize_t
     a: cython.double = 0.0
     b: cython.double = 0.0
@@ -94,18 +95,18 @@ def combine_eight(
         f += factor * k[i + 5]
         g += factor * k[i + 6]
         h += factor * k[i + 7]
-    out[i] = a
-    out[i + 1] = b
-    out[i + 2] = c
-    out[i + 3] = d
-    out[i + 4] = e
-    out[i + 5] = f
-    out[i + 6] = g
-    out[i + 7] = h
+    result[i] = a
+    result[i + 1] = b
+    result[i + 2] = c
+    result[i + 3] = d
+    result[i + 4] = e
+    result[i + 5] = f
+    result[i + 6] = g
+    result[i + 7] = h
 
 
-def clipped(run: cython.pointer[Run], t: cython.double) -> cython.double:
-    """An instant of the piece: beyond its end other branches of the expressions hold."""
+def clip_time(run: cython.pointer[Run], t: cython.double) -> cython.double:
+    """Limit an instant to the piece: after its end other branches of the expressions hold."""
     return run.before_end if t > run.before_end else t
 
 
@@ -114,44 +115,44 @@ def evaluate_stage(
     method: cython.pointer[Method],
     run: cython.pointer[Run],
     s: cython.int,
-    near: cython.bint,
+    is_near_singular: cython.bint,
 ) -> cython.int:
-    """The derivative at stage s, in `run.stage`, which is settled first where the step comes near to a singular pose.
+    """Find the derivative at stage s, in `run.stage`, which is projected first if the step comes near a singular pose.
 
-    Answers what `evaluate` says. What was taken in a chart of attitudes is made a state for it.
+    Returns what `evaluate` returns. A stage in a chart of attitudes is converted to a state first.
     """
     rate: cython.double
-    t: cython.double = clipped(run, run.t + method.node[s] * run.h)
+    t: cython.double = clip_time(run, run.t + method.node[s] * run.h)
     if method.attitude:
         leave_chart(scene, method.attitude, run.y, run.stage)
-    if near:
-        settle(scene, t, run.stage)
+    if is_near_singular:
+        project_state(scene, t, run.stage)
     trouble: cython.int = evaluate(scene, t, run.stage, run.K[s])
     if method.attitude:
-        enter_slopes(scene, method, run, run.stage, s)
+        store_chart_slopes(scene, method, run, run.stage, s)
         if not run.following:
-            rate = nearing(scene, run.stage, run.chart.ways)
+            rate = half_turn_rate(scene, run.stage, run.chart.ways)
             if rate > run.chart.nearing:
                 run.chart.nearing = rate
     return trouble
 
 
-def enter_slopes(
+def store_chart_slopes(
     scene: cython.pointer[Scene],
     method: cython.pointer[Method],
     run: cython.pointer[Run],
     state: cython.p_double,
     s: cython.int,
 ) -> cython.void:
-    """The derivative at a state, of stage s, in the chart of attitudes."""
+    """Store the derivative at a state, of stage s, in the chart of attitudes."""
     i: cython.Py_ssize_t
     for i in range(run.n):
         run.chart.K[s][i] = run.K[s][i]
     chart_slopes(scene, method.attitude, run.y, state, run.K[s], run.chart.K[s])
 
 
-def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The first rows of the interpolating polynomial: the cubic with the values and derivatives at both ends."""
+def build_hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """Build the first rows of the interpolating polynomial: the cubic with the values and derivatives at both ends."""
     i: cython.Py_ssize_t
     change: cython.double
     last: cython.p_double = run.chart.K[method.stages]
@@ -165,15 +166,18 @@ def hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.
         run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
 
 
-def quintic(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The polynomial with the accelerations at both ends too, where they are known; beside the cubic two more rows.
+def build_quintic(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
+    """Build the polynomial that also has the accelerations at both ends, where they are known: two more rows than the
+    cubic.
 
     The cubic's second derivatives are 2 (F2 - F1) and -2 (F1 + 2 F2); x^2 (1-x)^2 has 2 at both ends, x^3 (1-x)^2 0, 2.
     """
     i: cython.Py_ssize_t
     q: cython.Py_ssize_t
     square: cython.double = run.h * run.h
-    hermite(method, run)
+    build_hermite(method, run)
     for i in range(run.n):
         run.dense[3][i] = run.dense[4][i] = 0.0
     for i in range(scene.freedom_count):
@@ -186,45 +190,51 @@ def quintic(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
             run.dense[4][q] = 0.5 * square * last + run.dense[1][q] + 2.0 * run.dense[2][q] - run.dense[3][q]
 
 
-def interpolant(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The interpolating polynomial over the step y -> z, in nested form: its rows of coefficients."""
+def build_explicit_interpolant(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
+    """Build the interpolating polynomial over the step y -> z of an explicit method, in nested form: its rows of
+    coefficients.
+    """
     s: cython.int
     i: cython.Py_ssize_t
     y: cython.p_double = run.chart.y
     for s in range(method.stages + 1, method.stages + 1 + method.extra):
-        combine(method, s, run.chart.K, run.n, run.stage)
+        combine_stages(method, s, run.chart.K, run.n, run.stage)
         for i in range(run.n):
             run.stage[i] = y[i] + run.h * run.stage[i]
-        near: cython.bint = scene.closure_count > 0 and scene.pivot_of_step < scene.limits.near_singular
-        evaluate_stage(scene, method, run, s, near)
+        is_near_singular: cython.bint = scene.closure_count > 0 and scene.pivot_of_step < scene.limits.near_singular
+        evaluate_stage(scene, method, run, s, is_near_singular)
     run.evaluations += method.extra
-    hermite(method, run)
+    build_hermite(method, run)
     for s in range(method.dense_rows):
-        combine(method, method.stages + 1 + method.extra + method.estimates + s, run.chart.K, run.n, run.dense[3 + s])
+        combine_stages(
+            method, method.stages + 1 + method.extra + method.estimates + s, run.chart.K, run.n, run.dense[3 + s]
+        )
         for i in range(run.n):
             run.dense[3 + s][i] *= run.h
 
 
-def through_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The polynomial through the stages that were solved for, with the derivatives at both ends of the step."""
+def build_collocation_interpolant(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """Build the polynomial through the stages that were solved for, with the derivatives at both ends of the step."""
     s: cython.int
-    hermite(method, run)
+    build_hermite(method, run)
     for s in range(method.dense_rows):
         row: cython.int = method.stages + 1 + method.extra + method.estimates + s
-        combine(method, row, run.newton.known, run.n, run.dense[3 + s])
+        combine_stages(method, row, run.newton.known, run.n, run.dense[3 + s])
 
 
-def need_interpolant(
+def ensure_interpolant(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.void:
-    """The interpolating polynomial of the step tried, made once."""
+    """Build the interpolating polynomial of the trial step unless it exists."""
     if not run.has_interpolant:
         if run.determined:
-            quintic(scene, method, run)
+            build_quintic(scene, method, run)
         elif method.implicit:
-            through_stages(method, run)
+            build_collocation_interpolant(method, run)
         else:
-            interpolant(scene, method, run)
+            build_explicit_interpolant(scene, method, run)
         run.has_interpolant = 1
 
 
@@ -233,26 +243,27 @@ def interpolate(
     method: cython.pointer[Method],
     run: cython.pointer[Run],
     x: cython.double,
-    out: cython.p_double,
+    result: cython.p_double,
 ) -> cython.void:
-    """State at the fraction x of the step."""
-    polynomial(run.dense, 0, 3 + method.dense_rows, run.chart.y, run.n, x, out)
+    """Find the state at the fraction x of the step."""
+    evaluate_polynomial(run.dense, 0, 3 + method.dense_rows, run.chart.y, run.n, x, result)
     if method.attitude:
-        leave_chart(scene, method.attitude, run.y, out)
+        leave_chart(scene, method.attitude, run.y, result)
 
 
-def polynomial(
+def evaluate_polynomial(
     rows: cython.pp_double,
     first: cython.Py_ssize_t,
     count: cython.int,
     y: cython.p_double,
     n: cython.Py_ssize_t,
     x: cython.double,
-    out: cython.p_double,
+    result: cython.p_double,
 ) -> cython.void:
-    """y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))), of so many rows F of n components from the first on.
+    """Evaluate y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))), with `count` rows F of n components from the
+    first on.
 
-    Four components at a time, as in `combine`.
+    Four components at a time, as in `combine_stages`.
     """
     i: cython.Py_ssize_t = 0
     k: cython.int
@@ -269,23 +280,24 @@ def polynomial(
             b = (b + row[i + 1]) * factor
             c = (c + row[i + 2]) * factor
             d = (d + row[i + 3]) * factor
-        out[i] = y[i] + a
-        out[i + 1] = y[i + 1] + b
-        out[i + 2] = y[i + 2] + c
-        out[i + 3] = y[i + 3] + d
+        result[i] = y[i] + a
+        result[i + 1] = y[i + 1] + b
+        result[i + 2] = y[i + 2] + c
+        result[i + 3] = y[i + 3] + d
         i += 4
     while i < n:
         a = 0.0
         for k in range(count - 1, -1, -1):
             a = (a + rows[first + k][i]) * (x if k % 2 == 0 else 1.0 - x)
-        out[i] = y[i] + a
+        result[i] = y[i] + a
         i += 1
 
 
-def put_course(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """The polynomial of the step, if it has made one, is put down: of instants that are asked later, too.
+def record_course(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """Record the polynomial of the step, if it has one, for instants that are requested later.
 
-    What holds in a chart of attitudes, or solves for its instants, is no state by its polynomial alone.
+    The polynomial alone is no state if the step was taken in a chart of attitudes, or if its instants must be solved
+    for.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t

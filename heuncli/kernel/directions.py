@@ -1,4 +1,4 @@
-"""Directions that bodies carry: how they stand in the world."""
+"""Directions fixed in bodies, in world axes."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from heuncli.kernel.scene import Scene
 from heuncli.kernel.structs import Pointer
 
 
-def direction_of(scene: Pointer[Scene], body: int, a: Vec3) -> Vec3:
-    """World components of a direction fixed in a body, or in the ground (-1)."""
+def world_direction(scene: Pointer[Scene], body: int, a: Vec3) -> Vec3:
+    """Return the world components of a direction fixed in a body, or in the ground (-1)."""
     if body < 0:
         return a
     return rotate(scene.bodies[body].R, a)

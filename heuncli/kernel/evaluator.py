@@ -1,40 +1,39 @@
 """The evaluator of expressions: a stack machine that runs programs in postfix order.
 
-An instruction takes its operands from the top of a stack and leaves its result there. What is not a number (the root of
--1, division by zero, a place outside a table) is NaN, and so is all that depends on it; nothing raises.
+An instruction takes its operands from the top of a stack and leaves its result there. A value that does not exist (the
+square root of -1, division by zero, an argument outside a table) is NaN, and so is all that depends on it; nothing
+raises.
 
-    CONST k, VAR k     put constants[k] or variables[k] on the stack; variable 0 is the time t, the others coordinates
+    CONST k, VAR k     push constants[k] or variables[k]; variable 0 is the time t, the others are coordinates
     ADD ... MAX        two operands, one result
     NEG ... SQRT       one operand; POWER n is the whole power n
     TABLE k, KNOT k    tables[k], its numbers (period, knots, coefficients), at the operand: its value, or the number of
-                       its piece. An instruction follows that is data: (pieces, outside).
-    JUMP k, UNLESS k   skip k instructions, UNLESS only where the number it takes off the stack is 0: only one of the
-                       two branches of a condition is run, so the other may be NaN
+                       its piece. The instruction that follows is data: (pieces, outside).
+    JUMP k, UNLESS k   skip k instructions, UNLESS only if the number it pops is 0: only one of the two branches of a
+                       condition is run, so the other may be NaN
     LT ... NE          1 or 0; with the argument 1 the right operand stays above the result, for 0 < t < 1
-    HOLD k             the operation that follows has branches and hangs on coordinates: held[k] is its branch
+    HOLD k             the operation that follows has branches and depends on coordinates: held[k] is its branch
     INTEGRAL k         the integral over time, from 0, of the program that follows, which is in time alone; it is all of
-                       its program. An instruction that is data comes between: (pieces, length of what is integrated).
+                       its program. An instruction that is data comes between: (pieces, length of the integrand).
 
 A branch that changes within a step of the integrator would be a jump or kink in what should be smooth. So it can be
-held: `holding` says what HOLD means.
+held: `holding` says what HOLD does.
 
-    FREE     nothing: branches are as the operands say
-    HELD     the operation takes the branch held[k], whatever its operands say, and goes on smoothly beyond its end
-    TAKEN    branches are as the operands say, and are written into held
-
+    FREE     nothing: the operands decide the branches
+    HELD     the operation takes the branch held[k], whatever its operands are, and continues smoothly past its end
+    TAKEN    the operands decide the branches, which are written into held
     branch   LT ... NE: 1, 0;  SIGN: -1, 0, 1;  STEP: 1, 0;  ABS: 1, -1;  MIN, MAX: 1 for the second operand, else 0;
-             ATAN2: 1 for y >= 0, 0 for y < 0 and -0.0;  TABLE: the number of the piece, as KNOT has it
+             ATAN2: 1 for y >= 0, 0 for y < 0 and -0.0;  TABLE: the number of the piece, as for KNOT
 
-An operand that is no number gives none, held or not. Where a held program has no value, as sqrt(x) if x > 0 else 0
-beyond x = 0, it has that of the branches as they are.
+A NaN operand gives NaN, held or not. Where a held program has no value, as sqrt(x) if x > 0 else 0 for x < 0, it takes
+the value that its operands decide.
 
 A table is a piecewise cubic, c0 + c1 h + c2 h² + c3 h³ with h from the knot at which the piece begins.
 
-An integral has in the constants from k the nodes and the weights of a quadrature on [0, 1], the knots, and what the
-integral is at each of them: from the last knot before t it is summed up by the quadrature. Its derivative is the
-program itself.
+An integral has in the constants from k on the nodes and weights of a quadrature on [0, 1], the knots, and the integral
+at each of them: from the last knot before t it is summed up by the quadrature. Its derivative is the program itself.
 
-Derivatives of programs: jets.py; bounds of what they may be: enclosure.py.
+Derivatives of programs: jets.py; bounds of their values: enclosure.py.
 """
 
 from __future__ import annotations
@@ -106,51 +105,51 @@ if not cython.compiled:
 # Values
 
 
-def value(programs: cython.pointer[Programs], program: Program) -> cython.double:
-    """Value of a program at the variables; NaN when not computable."""
+def evaluate_program(programs: cython.pointer[Programs], program: Program) -> cython.double:
+    """Return the value of a program at the variables; NaN if it cannot be computed."""
     stack: cython.p_double = programs.stack  # what lies below x
     height: cython.Py_ssize_t = 0
     x: cython.double = NAN  # the topmost number
-    at: cython.Py_ssize_t = program.start
-    end: cython.Py_ssize_t = at + program.count
-    while at < end:
-        op: cython.int = programs.code[at].op
-        k: cython.int = programs.code[at].argument
-        at += 1
+    position: cython.Py_ssize_t = program.start
+    end: cython.Py_ssize_t = position + program.count
+    while position < end:
+        op: cython.int = programs.code[position].op
+        k: cython.int = programs.code[position].argument
+        position += 1
         if op <= VAR:
             stack[height] = x
             height += 1
             x = programs.constants[k] if op == CONST else programs.variables[k]
         elif op <= MAX:
             height -= 1
-            x = of_two(op, stack[height], x)
+            x = apply_binary(op, stack[height], x)
         elif op <= SQRT:
-            x = of_one(op, x, k)
+            x = apply_unary(op, x, k)
         elif op <= KNOT:
-            x = of_table(op, programs.tables[k], table_at(programs, at, k), x)
-            at += 1
+            x = evaluate_table(op, programs.tables[k], read_table(programs, position, k), x)
+            position += 1
         elif op == JUMP:
-            at += k
+            position += k
         elif op == UNLESS:
             if x == 0.0:
-                at += k
+                position += k
             elif x != x:
                 break
             height -= 1
             x = stack[height]
         elif op == INTEGRAL:
-            x = integral(programs, at, k, programs.variables[0])
-            at = end
+            x = evaluate_integral(programs, position, k, programs.variables[0])
+            position = end
         elif op == HOLD and programs.holding != HELD:
             if programs.holding == TAKEN:
-                take_branch(programs, k, at, stack[height - 1], x)
+                record_branch(programs, k, position, stack[height - 1], x)
         else:
             f: cython.double
             if op == HOLD:
-                f = on_branch(programs, at, programs.held[k], stack[height - 1], x)
-                op = programs.code[at].op
-                k = programs.code[at].argument
-                at += 2 if op == TABLE or op == KNOT else 1
+                f = evaluate_on_branch(programs, position, programs.held[k], stack[height - 1], x)
+                op = programs.code[position].op
+                k = programs.code[position].argument
+                position += 2 if op == TABLE or op == KNOT else 1
             else:
                 f = compare(op, stack[height - 1], x)
             if op >= LT and k == 1:
@@ -158,11 +157,11 @@ def value(programs: cython.pointer[Programs], program: Program) -> cython.double
             else:
                 height -= takes_two(op)
                 x = f
-    return x if x - x == 0.0 else without_branches(programs, program)
+    return x if x - x == 0.0 else evaluate_released(programs, program)
 
 
-def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
-    """An operation on two numbers."""
+def apply_binary(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
+    """Apply an operation to two numbers."""
     if op == ADD:
         return a + b
     elif op == SUB:
@@ -176,7 +175,7 @@ def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
     elif op == ATAN2:
         return atan2(a, b)
     elif op == HYPOT:
-        return length(a, b)
+        return hypotenuse(a, b)
     elif op == MIN:
         return b if b < a or b != b else a
     else:
@@ -184,7 +183,7 @@ def of_two(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
 
 
 def compare(op: cython.int, a: cython.double, b: cython.double) -> cython.double:
-    """1 or 0; NaN where an operand is."""
+    """Return 1 or 0; NaN if an operand is."""
     holds: cython.bint
     if a != a or b != b:
         return NAN
@@ -203,22 +202,22 @@ def compare(op: cython.int, a: cython.double, b: cython.double) -> cython.double
     return 1.0 if holds else 0.0
 
 
-def of_one(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
-    """An operation on one number; n: the exponent of a whole power."""
+def apply_unary(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
+    """Apply an operation to one number; n: the exponent of a whole power."""
     if op <= STEP:
-        return piecewise(op, a, n)
+        return apply_piecewise(op, a, n)
     elif op <= ATAN:
-        return trigonometric(op, a)
+        return apply_trigonometric(op, a)
     else:
-        return exponential(op, a)
+        return apply_exponential(op, a)
 
 
-def piecewise(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
-    """-a, the whole power n, |a|, and its jumps."""
+def apply_piecewise(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
+    """-a, the whole power n, |a|, and the functions with jumps."""
     if op == NEG:
         return -a
     elif op == POWER:
-        return power(a, n)
+        return whole_power(a, n)
     elif op == ABS:
         return fabs(a)
     elif op == SIGN:
@@ -227,8 +226,8 @@ def piecewise(op: cython.int, a: cython.double, n: cython.int) -> cython.double:
         return 1.0 if a >= 0.0 else 0.0 if a < 0.0 else NAN
 
 
-def trigonometric(op: cython.int, a: cython.double) -> cython.double:
-    """The functions of the circle and their inverses."""
+def apply_trigonometric(op: cython.int, a: cython.double) -> cython.double:
+    """Apply a trigonometric function or its inverse."""
     if op == SIN:
         return sin(a)
     elif op == COS:
@@ -243,8 +242,8 @@ def trigonometric(op: cython.int, a: cython.double) -> cython.double:
         return atan(a)
 
 
-def exponential(op: cython.int, a: cython.double) -> cython.double:
-    """The functions of the hyperbola, the exponential, and what undoes powers."""
+def apply_exponential(op: cython.int, a: cython.double) -> cython.double:
+    """Apply a hyperbolic function, the exponential, the logarithm or the square root."""
     if op == SINH:
         return sinh(a)
     elif op == COSH:
@@ -259,7 +258,7 @@ def exponential(op: cython.int, a: cython.double) -> cython.double:
         return sqrt(a) if a >= 0.0 else NAN
 
 
-def power(x: cython.double, n: cython.int) -> cython.double:
+def whole_power(x: cython.double, n: cython.int) -> cython.double:
     """x to the whole power n >= 0, by squaring."""
     product: cython.double = 1.0
     while n > 0:
@@ -271,13 +270,13 @@ def power(x: cython.double, n: cython.int) -> cython.double:
 
 
 def real_power(x: cython.double, y: cython.double) -> cython.double:
-    """x**y; NaN for a negative base with a broken exponent and for 0 to a negative power."""
+    """x**y; NaN for a negative base with a fractional exponent and for 0 to a negative power."""
     if (x == 0.0 and y < 0.0) or x != x or y != y:  # 1**y and x**0 are 1 for C, whatever x and y are
         return NAN
     return pow(x, y)
 
 
-def length(a: cython.double, b: cython.double) -> cython.double:
+def hypotenuse(a: cython.double, b: cython.double) -> cython.double:
     """sqrt(a² + b²) without overflow."""
     larger: cython.double = fabs(a)
     smaller: cython.double = fabs(b)
@@ -292,52 +291,60 @@ def length(a: cython.double, b: cython.double) -> cython.double:
 # Branches
 
 
-def without_branches(programs: cython.pointer[Programs], program: Program) -> cython.double:
-    """What a program is that has no value as it was run: where branches were held, its value without that."""
+def evaluate_released(programs: cython.pointer[Programs], program: Program) -> cython.double:
+    """Return the value of a program whose held branches have none: its value with free branches, or NaN."""
     f: cython.double = NAN
     if programs.holding == HELD:
         programs.holding = FREE
-        f = value(programs, program)
+        f = evaluate_program(programs, program)
         programs.holding = HELD
     return f
 
 
 def takes_two(op: cython.int) -> cython.int:
-    """1 for an operation on two numbers, else 0."""
+    """Return 1 for an operation on two numbers, else 0."""
     return 1 if op <= MAX or op >= LT else 0
 
 
-def take_branch(
-    programs: cython.pointer[Programs], k: cython.int, at: cython.Py_ssize_t, a: cython.double, b: cython.double
+def record_branch(
+    programs: cython.pointer[Programs], k: cython.int, position: cython.Py_ssize_t, a: cython.double, b: cython.double
 ) -> cython.void:
-    """The branch on which the operation at `at` finds its operands (b alone, if it takes one) becomes held[k]."""
-    op: cython.int = programs.code[at].op
-    met: cython.double
+    """Write the branch that the operands select for the operation at `position` (b alone, if it takes one) into
+    held[k].
+    """
+    op: cython.int = programs.code[position].op
+    branch: cython.double
     if b != b or (takes_two(op) and a != a):
         return
     if op >= LT:
-        met = compare(op, a, b)
+        branch = compare(op, a, b)
     elif op == MIN:
-        met = 1.0 if b < a else 0.0
+        branch = 1.0 if b < a else 0.0
     elif op == MAX:
-        met = 1.0 if b > a else 0.0
+        branch = 1.0 if b > a else 0.0
     elif op == ATAN2:
-        met = side_of_cut(a)
+        branch = side_of_cut(a)
     elif op == ABS:
-        met = 1.0 if b >= 0.0 else -1.0
+        branch = 1.0 if b >= 0.0 else -1.0
     elif op == TABLE or op == KNOT:
-        number: cython.int = programs.code[at].argument
-        met = piece_counted(programs.tables[number], table_at(programs, at + 1, number), b)
+        number: cython.int = programs.code[position].argument
+        branch = find_unwrapped_piece(programs.tables[number], read_table(programs, position + 1, number), b)
     else:
-        met = piecewise(op, b, 0)
-    programs.held[k] = met
+        branch = apply_piecewise(op, b, 0)
+    programs.held[k] = branch
 
 
-def on_branch(
-    programs: cython.pointer[Programs], at: cython.Py_ssize_t, branch: cython.double, a: cython.double, b: cython.double
+def evaluate_on_branch(
+    programs: cython.pointer[Programs],
+    position: cython.Py_ssize_t,
+    branch: cython.double,
+    a: cython.double,
+    b: cython.double,
 ) -> cython.double:
-    """The operation at `at` on a branch, whether its operands (b alone, if it takes one) are there or beyond."""
-    op: cython.int = programs.code[at].op
+    """Evaluate the operation at `position` on a branch, even where its operands (b alone, if it takes one) are outside
+    it.
+    """
+    op: cython.int = programs.code[position].op
     if b != b or (takes_two(op) and a != a):
         return NAN
     if op == ABS:
@@ -345,15 +352,15 @@ def on_branch(
     elif op == MIN or op == MAX:
         return b if branch == 1.0 else a
     elif op == ATAN2:
-        return angle_on(branch, a, b)
+        return angle_on_branch(branch, a, b)
     elif op == TABLE:
-        k: cython.int = programs.code[at].argument
-        return of_piece(programs.tables[k], table_at(programs, at + 1, k), branch, b)
+        k: cython.int = programs.code[position].argument
+        return evaluate_piece(programs.tables[k], read_table(programs, position + 1, k), branch, b)
     return branch
 
 
-def angle_on(branch: cython.double, y: cython.double, x: cython.double) -> cython.double:
-    """atan2(y, x), by a turn more or less where the negative x axis was crossed from the side of the branch."""
+def angle_on_branch(branch: cython.double, y: cython.double, x: cython.double) -> cython.double:
+    """atan2(y, x), plus or minus one turn where the negative x axis was crossed from the branch's side."""
     turn: cython.double = 6.283185307179586
     f: cython.double = atan2(y, x)
     side: cython.double = side_of_cut(y)
@@ -363,34 +370,34 @@ def angle_on(branch: cython.double, y: cython.double, x: cython.double) -> cytho
 
 
 def side_of_cut(y: cython.double) -> cython.double:
-    """1 above the negative x axis and on it, 0 below; -0.0 is below."""
+    """Return 1 above the negative x axis and on it, 0 below; -0.0 is below."""
     return 1.0 if atan2(y, -1.0) > 0.0 else 0.0
 
 
 # Tables
 
 
-def table_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
-    """Where the parts of table k stand in its numbers; its data are the instruction at `at`."""
-    data: Instruction = programs.code[at]
+def read_table(programs: cython.pointer[Programs], position: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
+    """Return where the parts of table k are among its numbers; its data are the instruction at `position`."""
+    data: Instruction = programs.code[position]
     return Table(data.op, data.argument, programs.tables[k][0], 1, 2 + data.op)
 
 
-def of_table(op: cython.int, c: cython.p_double, table: Table, x: cython.double) -> cython.double:
-    """The table's value at x, or the number of its piece there."""
+def evaluate_table(op: cython.int, c: cython.p_double, table: Table, x: cython.double) -> cython.double:
+    """Return the table's value at x, or the number of its piece there."""
     if op == KNOT:
-        return piece_counted(c, table, x)
-    inside: cython.double = in_range(c, table, x)
+        return find_unwrapped_piece(c, table, x)
+    inside: cython.double = map_into_table(c, table, x)
     if inside != inside:
         return NAN
-    number: cython.int = piece(c, table, inside)
+    number: cython.int = find_piece(c, table, inside)
     h: cython.double = inside - c[table.knots + number]
     i: cython.Py_ssize_t = table.coefficients + 4 * number
     return ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
 
 
-def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
-    """The point of the table's own range that stands for x; NaN where there is none."""
+def map_into_table(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
+    """Return the point of the table's own range that corresponds to x; NaN if there is none."""
     first: cython.double = c[table.knots]
     last: cython.double = c[table.knots + table.pieces]
     if x != x:
@@ -409,8 +416,8 @@ def in_range(c: cython.p_double, table: Table, x: cython.double) -> cython.doubl
     return x
 
 
-def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
-    """Number of the piece that holds x, by bisection; a knot belongs to the piece that begins there."""
+def find_piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
+    """Return the number of the piece that contains x, by bisection; a knot belongs to the piece that begins there."""
     low: cython.int = 0
     high: cython.int = table.pieces
     middle: cython.int
@@ -424,35 +431,39 @@ def piece(c: cython.p_double, table: Table, x: cython.double) -> cython.int:
     return low
 
 
-def piece_counted(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
-    """Number of the piece that holds x, counted on over the periods; -1 before a table that ends, n beyond it."""
+def find_unwrapped_piece(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
+    """Return the number of the piece that contains x, counted on over the periods; -1 before a table that ends, n after
+    it.
+    """
     n: cython.int = table.pieces
     first: cython.double = c[table.knots]
     if x != x:
         return NAN
     if table.outside == PERIODIC:
         turns: cython.double = floor((x - first) / table.period)
-        if x - table.period * turns >= c[table.knots + n]:  # by rounding: it is the first point of the next turn
+        if x - table.period * turns >= c[table.knots + n]:  # by rounding x is the first point of the next period
             turns = turns + 1.0
-        return piece(c, table, in_range(c, table, x)) + n * turns
+        return find_piece(c, table, map_into_table(c, table, x)) + n * turns
     if x < first:
         return -1.0
     if x > c[table.knots + n]:
         return float(n)
-    return float(piece(c, table, x))
+    return float(find_piece(c, table, x))
 
 
-def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython.double) -> cython.double:
-    """The cubic of a piece, by its counted number, at any x; beyond the ends the value there, or none."""
+def evaluate_piece(
+    c: cython.p_double, table: Table, unwrapped_number: cython.double, x: cython.double
+) -> cython.double:
+    """Evaluate the cubic of a piece, by its unwrapped number, at any x; outside the table its end value, or NaN."""
     n: cython.int = table.pieces
-    turns: cython.double = floor(counted / n) if table.outside == PERIODIC else 0.0
-    number: cython.double = counted - n * turns
+    turns: cython.double = floor(unwrapped_number / n) if table.outside == PERIODIC else 0.0
+    number: cython.double = unwrapped_number - n * turns
     if not (-1.0 <= number and number <= n):
         return NAN
     if number < 0.0:
-        return of_table(TABLE, c, table, c[table.knots]) if table.outside == EXTENDED else NAN
+        return evaluate_table(TABLE, c, table, c[table.knots]) if table.outside == EXTENDED else NAN
     if number >= n:
-        return of_table(TABLE, c, table, c[table.knots + n]) if table.outside == EXTENDED else NAN
+        return evaluate_table(TABLE, c, table, c[table.knots + n]) if table.outside == EXTENDED else NAN
     k: cython.Py_ssize_t = int(number)
     h: cython.double = x - table.period * turns - c[table.knots + k]
     i: cython.Py_ssize_t = table.coefficients + 4 * k
@@ -460,64 +471,64 @@ def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython
 
 
 def area_under(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
-    """The integral of a table from 0 to x, of one that has its areas behind the coefficients
+    """Return the integral from 0 to x of a table that has its areas after the coefficients
     (scene/expressions/areas.py).
 
-    From x's own piece on it is summed up where its area from 0 is known, or from 0 itself, so that what is little
-    beside the piece is told as well: by two nodes of Gauss, which are exact for cubics.
+    Within x's own piece it is summed from where the area is known, or from 0 itself, so that an area much smaller than
+    the piece's keeps its digits. Two Gauss nodes are exact for cubics.
     """
     n: cython.int = table.pieces
-    k: cython.double = piece_counted(c, table, x)
-    home: cython.double = piece_counted(c, table, 0.0)
+    k: cython.double = find_unwrapped_piece(c, table, x)
+    zero_piece: cython.double = find_unwrapped_piece(c, table, 0.0)
     areas: cython.Py_ssize_t = table.coefficients + 4 * n
     begin: cython.double = 0.0
-    found: cython.double = 0.0
+    area: cython.double = 0.0
     if table.outside == PERIODIC:
         turns: cython.double = floor(k / n)
-        turned: cython.double = floor(home / n)
-        found = (turns - turned) * (c[areas + n] - c[areas])
+        home_turns: cython.double = floor(zero_piece / n)
+        area = (turns - home_turns) * (c[areas + n] - c[areas])
         k = k - n * turns
-        home = home - n * turned
+        zero_piece = zero_piece - n * home_turns
         x = x - table.period * turns
-        begin = -table.period * turned
+        begin = -table.period * home_turns
     if not (-1.0 <= k and k <= n):
         return NAN
     i: cython.Py_ssize_t
-    if k != home or k < 0.0 or k >= n:
+    if k != zero_piece or k < 0.0 or k >= n:
         i = int(k)
-        if k < home:
+        if k < zero_piece:
             i = i + 1
         elif k < 0.0:
             i = 0
         begin = c[table.knots + i]
-        found += c[areas + i]
+        area += c[areas + i]
     half: cython.double = 0.5 * (x - begin)
     node: cython.double = 0.5773502691896258 * half
     middle: cython.double = begin + half
-    return found + half * (of_piece(c, table, k, middle - node) + of_piece(c, table, k, middle + node))
+    return area + half * (evaluate_piece(c, table, k, middle - node) + evaluate_piece(c, table, k, middle + node))
 
 
 # Integrals
 
 
-def integrated(programs: cython.pointer[Programs], at: cython.Py_ssize_t) -> Program:
-    """The program under an integral whose data are the instruction at `at`."""
-    return Program(cython.cast(cython.int, at + 1), programs.code[at].argument)
+def find_integrand(programs: cython.pointer[Programs], position: cython.Py_ssize_t) -> Program:
+    """Return the program under an integral whose data are the instruction at `position`."""
+    return Program(cython.cast(cython.int, position + 1), programs.code[position].argument)
 
 
-def summed_at(programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
-    """Its knots and, as coefficients, what it is at each of them; they stand in the constants behind the quadrature."""
-    pieces: cython.int = programs.code[at].op
+def read_integral_table(programs: cython.pointer[Programs], position: cython.Py_ssize_t, k: cython.Py_ssize_t) -> Table:
+    """Return an integral's knots and, as coefficients, its values there; they follow the quadrature."""
+    pieces: cython.int = programs.code[position].op
     return Table(pieces, EXTENDED, 0.0, k + 2 * NODES, k + 2 * NODES + pieces + 1)
 
 
-def integral(
-    programs: cython.pointer[Programs], at: cython.Py_ssize_t, k: cython.Py_ssize_t, t: cython.double
+def evaluate_integral(
+    programs: cython.pointer[Programs], position: cython.Py_ssize_t, k: cython.Py_ssize_t, t: cython.double
 ) -> cython.double:
-    """The integral from 0 to t; its table stands in the constants from k, its data are the instruction at `at`."""
+    """Integrate from 0 to t; the table begins at k in the constants, its data are the instruction at `position`."""
     c: cython.p_double = programs.constants
-    table: Table = summed_at(programs, at, k)
-    number: cython.int = piece(c, table, t)
+    table: Table = read_integral_table(programs, position, k)
+    number: cython.int = find_piece(c, table, t)
     knot: cython.double = c[table.knots + number]
     h: cython.double = t - knot
     mean: cython.double = 0.0
@@ -525,6 +536,6 @@ def integral(
     i: cython.Py_ssize_t
     for i in range(NODES):
         programs.variables[0] = knot + h * c[k + i]
-        mean += c[k + NODES + i] * value(programs, integrated(programs, at))
+        mean += c[k + NODES + i] * evaluate_program(programs, find_integrand(programs, position))
     programs.variables[0] = now
     return c[table.coefficients + number] + h * mean

@@ -1,10 +1,10 @@
-"""Which of the kernel's two forms runs, compiled or plain Python; nothing of it is loaded yet.
+"""Choose which form of the kernel runs, compiled or plain Python; no kernel module is loaded before.
 
 HEUN_KERNEL at run time:
 
-    unset                 compiled where that is there, else plain
-    pure                  the plain .py files, also where the compiled module lies beside them
-    compiled, require     compiled, or an error that says so
+    unset                 compiled if it exists, else plain
+    pure                  the plain .py files, even if the compiled module exists
+    compiled, require     compiled, or an error if it does not exist
 
 Impure: reads HEUN_KERNEL.
 """
@@ -16,7 +16,7 @@ from importlib.machinery import EXTENSION_SUFFIXES
 
 from heuncli.base.errors import HeunError, Problem
 from heuncli.kernel.modules import NAME
-from heuncli.kernel.sources import digest_code, digest_texts, newer_than
+from heuncli.kernel.sources import digest_code, digest_texts, find_newer_modules
 
 TYPE_CHECKING = False  # `heun --version` does without typing and pathlib
 if TYPE_CHECKING:
@@ -25,38 +25,38 @@ if TYPE_CHECKING:
 PACKAGE = __package__ or "heuncli.kernel"
 FOLDER = os.path.dirname(__file__)
 FILES = frozenset(os.listdir(FOLDER))
-MOST_NAMED = 5  # files in a message: a line's worth
+MAX_NAMES = 5  # files in a message: a line's worth
 
 
 class KernelError(HeunError):
-    """HEUN_KERNEL asks for what is not there, or what is there is out of date."""
+    """HEUN_KERNEL asks for a form that does not exist, or the compiled kernel is out of date."""
 
     exit_code = 2
 
 
 def find_compiled() -> str:
-    """The name of the compiled kernel's file, as Python would import it; empty where there is none."""
+    """Return the file name of the compiled kernel, as Python would import it; empty if there is none."""
     return next((f"{NAME}{suffix}" for suffix in EXTENSION_SUFFIXES if f"{NAME}{suffix}" in FILES), "")
 
 
 def refuse_leftovers() -> None:
-    """Raises KernelError for modules that an older heun compiled one by one: they would run in place of plain files."""
-    left = sorted(file for file in FILES if file.endswith((".so", ".pyd")) and file.partition(".")[0] != NAME)
-    if left:
-        message = f"compiled files of an older heun lie among the kernel's: {left[0]}, {len(left)} in all"
+    """Raises KernelError for modules that an older heun compiled one by one: they would hide the plain files."""
+    leftovers = sorted(file for file in FILES if file.endswith((".so", ".pyd")) and file.partition(".")[0] != NAME)
+    if leftovers:
+        message = f"compiled files of an older heun lie among the kernel's: {leftovers[0]}, {len(leftovers)} in all"
         raise KernelError(
             Problem("stale-kernel", message, hint="python -m heuncli.build removes them and compiles anew")
         )
 
 
-def edited_since_compiled(compiled: str) -> list[str]:
-    """Names of modules whose code was edited since the kernel was compiled; none where only their times look like it.
+def edited_since_compiled(compiled_file: str) -> list[str]:
+    """Return the modules whose code was edited since the kernel was compiled; a newer time alone does not count.
 
-    Only a checkout is looked at: what is installed is not edited, and the times of its files mean nothing.
+    Only a checkout is checked: installed files are not edited, and their times mean nothing.
     """
     if not os.path.exists(os.path.join(FOLDER, "..", "..", "pyproject.toml")):
         return []
-    newer = newer_than(FOLDER, compiled)
+    newer = find_newer_modules(FOLDER, compiled_file)
     if not newer:
         return []
     from heuncli.kernel import compiled as kernel  # type: ignore[attr-defined]
@@ -66,26 +66,26 @@ def edited_since_compiled(compiled: str) -> list[str]:
     return [name for name in newer if digest_code(FOLDER, [name]) != {name: kernel.CODE_DIGESTS.get(name)}]
 
 
-def choose(wish: str) -> Literal["compiled", "pure"]:
-    """Which form runs for a value of HEUN_KERNEL. Raises KernelError for one that is unknown or cannot be had."""
-    if wish not in ("", "pure", "compiled", "require"):
-        message = f"HEUN_KERNEL is '{wish}'; known: pure, compiled, require"
+def choose_form(setting: str) -> Literal["compiled", "pure"]:
+    """Return which form runs for a value of HEUN_KERNEL. Raises KernelError if it is unknown or not available."""
+    if setting not in ("", "pure", "compiled", "require"):
+        message = f"HEUN_KERNEL is '{setting}'; known: pure, compiled, require"
         raise KernelError(Problem("unknown-kernel", message, hint="unset it to let heun choose"))
     compiled = find_compiled()
     refuse_leftovers()
-    if wish in ("compiled", "require") and not compiled:
-        message = f"HEUN_KERNEL={wish}, but this heun has no compiled kernel"
+    if setting in ("compiled", "require") and not compiled:
+        message = f"HEUN_KERNEL={setting}, but this heun has no compiled kernel"
         hint = "install again where a C compiler is at hand, or unset HEUN_KERNEL to run the slower plain one"
         raise KernelError(Problem("kernel-not-compiled", message, hint=hint))
-    if not compiled or wish == "pure":
+    if not compiled or setting == "pure":
         return "pure"
     if edited := edited_since_compiled(compiled):
-        named = ", ".join(f"{name}.py" for name in edited[:MOST_NAMED])
-        more = f" and {len(edited) - MOST_NAMED} more" if len(edited) > MOST_NAMED else ""
+        named = ", ".join(f"{name}.py" for name in edited[:MAX_NAMES])
+        more = f" and {len(edited) - MAX_NAMES} more" if len(edited) > MAX_NAMES else ""
         message = f"the compiled kernel is older than its text: {named}{more} changed since"
         hint = "compile it again with: python -m heuncli.build; or run the slower plain one: HEUN_KERNEL=pure"
         raise KernelError(Problem("stale-kernel", message, hint=hint))
     return "compiled"
 
 
-KERNEL = choose(os.environ.get("HEUN_KERNEL", ""))
+KERNEL = choose_form(os.environ.get("HEUN_KERNEL", ""))

@@ -1,13 +1,14 @@
-"""What closed contacts hold of a step has no error to be judged by, but rounding.
+"""Remove the error that is mere rounding along closed contacts from the estimated error of a step.
 
     e <- e - M^-1 J' (J M^-1 J')^-1 J_c e,   of rates and of coordinates
-J of all closures at the step's end, J_c of the closed contacts: what is taken off is the least change, in the measure
-of M, that settling makes too (response.py). What a contact holds need not move: loads that cancel in it leave rounding,
-and there is no rate of its own to measure that by. What is more than rounding is judged: a drive that jerks a rope is
-seen by it.
 
-Accelerations are cleared likewise of J Vdot + gamma, which the rounding of those loads leaves: what presses would do
-work on the rates that it makes. What is left is the rounding of the terms of J Vdot + gamma.
+J is that of all closures at the step's end, J_c that of the closed contacts: the change removed is the smallest in the
+norm of M, as in the projection (response.py). What a contact holds need not move: loads that cancel there leave
+rounding, and there is no rate to compare it with. What exceeds rounding stays in the error: so a drive that jerks a
+rope is noticed.
+
+Accelerations are likewise cleared of J Vdot + gamma, the rounding error of those loads: otherwise contact forces would
+do work on the rates it produces. What is left is the rounding of the terms of J Vdot + gamma.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ if not cython.compiled:
     from math import fabs
 
     from heuncli.kernel.algebra import Quaternion, Vec3, add_cross, add_scaled, quaternion_rate
-    from heuncli.kernel.closures import acceleration_of, moved_by, size_of_answer
-    from heuncli.kernel.dense import clipped
-    from heuncli.kernel.response import move, refactor, take_back
+    from heuncli.kernel.closures import row_acceleration, row_motion, size_of_row_acceleration
+    from heuncli.kernel.dense import clip_time
+    from heuncli.kernel.response import add_motion, refactor_at, solve_demands_only
     from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Method, Run
 
-# By how much the weights of stages may add up: those of high order are some tens, of either sign.
-STAGES = 32.0
+# Bound of the sum of the stages' weights: for high order they are some tens, of either sign.
+MAX_STAGE_SUM = 32.0
 
 
-def is_held(scene: cython.pointer[Scene]) -> cython.bint:
-    """Whether a contact is closed."""
+def has_closed_contact(scene: cython.pointer[Scene]) -> cython.bint:
+    """Return whether a contact is closed."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         if scene.closures[scene.contacts[i].row].mode == CARRIES:
@@ -42,78 +43,79 @@ def is_held(scene: cython.pointer[Scene]) -> cython.bint:
 
 
 def clear_accelerations(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], dy: cython.p_double, begins: cython.bint
+    scene: cython.pointer[Scene], method: cython.pointer[Method], dy: cython.p_double, is_first: cython.bint
 ) -> cython.void:
-    """Clear what was evaluated last of rounding along the rows, where a contact is closed; the multipliers are lost.
+    """Clear the accelerations evaluated last of rounding along the rows, if a contact is closed; the multipliers are
+    lost.
 
-    begins: whether it is the first of a step, over which the size of the rows' terms is seen.
+    is_first: whether it is the first evaluation of a step, over which the size of the rows' terms is recorded
     """
     r: cython.Py_ssize_t
     size: cython.double
-    if method.attitude or not is_held(scene):
+    if method.attitude or not has_closed_contact(scene):
         return
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        size = size_of_answer(scene, row)
-        row.demand = acceleration_of(scene, row)
-        if begins or size > row.terms:
+        size = size_of_row_acceleration(scene, row)
+        row.demand = row_acceleration(scene, row)
+        if is_first or size > row.terms:
             row.terms = size
     if not method.implicit:
-        take_back(scene)
-        move(scene, dy, True)
+        solve_demands_only(scene)
+        add_motion(scene, dy, True)
 
 
-def take_off_held(
+def remove_contact_rounding(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.void:
-    """Take off the estimates of a step's error what contacts hold, if it may be rounding.
+    """Remove from the estimates of a step's error what contacts hold, if it may be rounding.
 
-    Errors in a chart of attitudes stay as they are: they are none of the state's numbers.
+    Errors in a chart of attitudes stay as they are: they are not in the state's numbers.
     """
-    if method.attitude or not is_held(scene):
+    if method.attitude or not has_closed_contact(scene):
         return
-    refactor(scene, clipped(run, run.stop), run.z)
+    refactor_at(scene, clip_time(run, run.stop), run.z)
     if not scene.pivot > 0.0:
         return
-    take_off(scene, run, run.fine)
+    remove_rounding(scene, run, run.fine)
     if method.estimates == 2:
-        take_off(scene, run, run.coarse)
+        remove_rounding(scene, run, run.coarse)
 
 
-def take_off(scene: cython.pointer[Scene], run: cython.pointer[Run], e: cython.p_double) -> cython.void:
-    """Take what is rounding along the closed contacts off an error by the step's length, of coordinates and of rates.
+def remove_rounding(scene: cython.pointer[Scene], run: cython.pointer[Run], e: cython.p_double) -> cython.void:
+    """Remove rounding along the closed contacts from an error per step length, of coordinates and of rates.
 
     Rates err by the rounding of accelerations over the step, coordinates by that of such rates.
     """
     rates: cython.int
-    rounding: cython.double = STAGES * STAGES * scene.limits.rounding * run.h
+    rounding: cython.double = MAX_STAGE_SUM * MAX_STAGE_SUM * scene.limits.rounding * run.h
     for rates in range(2):
-        carry_error(scene, run.z, e, rates == 1)
-        demand_back(scene, rounding)
-        take_back(scene)
-        add_answer(scene, run.z, e, rates == 1)
-        rounding = STAGES * scene.limits.rounding
+        propagate_error(scene, run.z, e, rates == 1)
+        set_contact_demands(scene, rounding)
+        solve_demands_only(scene)
+        add_response(scene, run.z, e, rates == 1)
+        rounding = MAX_STAGE_SUM * scene.limits.rounding
 
 
-def demand_back(scene: cython.pointer[Scene], rounding: cython.double) -> cython.void:
-    """Closed contacts demand that what the bodies are moved by along them is taken back, where that is rounding."""
+def set_contact_demands(scene: cython.pointer[Scene], rounding: cython.double) -> cython.void:
+    """Set the demand of each closed contact to the bodies' motion along it, if that is rounding; else to 0."""
     i: cython.Py_ssize_t
-    moved: cython.double
+    motion: cython.double
     for i in range(scene.closure_count):
         scene.closures[i].demand = 0.0
     for i in range(scene.contact_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.contacts[i].row])
         if row.mode != CARRIES:
             continue
-        moved = moved_by(scene, row, 0.0)
-        if fabs(moved) <= rounding * row.terms:
-            row.demand = moved
+        motion = row_motion(scene, row, 0.0)
+        if fabs(motion) <= rounding * row.terms:
+            row.demand = motion
 
 
-def carry_error(
+def propagate_error(
     scene: cython.pointer[Scene], z: cython.p_double, e: cython.p_double, rates: cython.bint
 ) -> cython.void:
-    """What small changes e of the coordinates, or of the rates, move the bodies by, roots to tips: alpha and a."""
+    """Find the bodies' motion alpha and a for small changes e of the coordinates, or of the rates, roots to tips."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     x: cython.double
@@ -135,13 +137,13 @@ def carry_error(
             else:
                 alpha = add_scaled(alpha, x, freedom.s)
         if body.ball:
-            alpha = turn_of(body, z, e, rates)
+            alpha = ball_rotation(body, z, e, rates)
         body.alpha = alpha
         body.a = a
 
 
-def turn_of(body: cython.pointer[Body], z: cython.p_double, e: cython.p_double, rates: cython.bint) -> Vec3:
-    """The small turn 2 e q^-1 that an error of a quaternion is; the error of an angular velocity as it is."""
+def ball_rotation(body: cython.pointer[Body], z: cython.p_double, e: cython.p_double, rates: cython.bint) -> Vec3:
+    """Return the small rotation 2 e q^-1 for an error of a quaternion; the error of an angular velocity as it is."""
     k: cython.Py_ssize_t = body.rate_at if rates else body.attitude_at
     if rates:
         return Vec3(e[k], e[k + 1], e[k + 2])
@@ -152,8 +154,10 @@ def turn_of(body: cython.pointer[Body], z: cython.p_double, e: cython.p_double, 
     )
 
 
-def add_answer(scene: cython.pointer[Scene], z: cython.p_double, e: cython.p_double, rates: cython.bint) -> cython.void:
-    """Add the answer found to an error of the coordinates, or of the rates."""
+def add_response(
+    scene: cython.pointer[Scene], z: cython.p_double, e: cython.p_double, rates: cython.bint
+) -> cython.void:
+    """Add the response to an error of the coordinates, or of the rates."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for i in range(scene.body_count):

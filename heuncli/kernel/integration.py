@@ -1,6 +1,6 @@
-"""The door to the stepping loop: one integration of a scene over asked instants, piece by piece.
+"""The interface to the stepping loop: one integration of a scene over requested instants, piece by piece.
 
-The loop itself is steps.py; here stand its state, its room and its output.
+The loop itself is in steps.py; this module holds its state, its memory and its output.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.chosen import chosen_width
-    from heuncli.kernel.dense import clipped, polynomial
-    from heuncli.kernel.events import PARTS, take_branches, watch_afresh
-    from heuncli.kernel.following import is_linear, stand_here
+    from heuncli.kernel.chosen import choice_width
+    from heuncli.kernel.dense import clip_time, evaluate_polynomial
+    from heuncli.kernel.events import MAX_PEAK_PARTS, hold_branches, reset_watches
+    from heuncli.kernel.following import is_linear, prepare_step
     from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.programs import FREE, HELD
@@ -24,17 +24,17 @@ if not cython.compiled:
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Collocation, Course, Method, Newton, Orbits, Run
-    from heuncli.kernel.steps import run_steps, take_record
+    from heuncli.kernel.steps import restore_record, run_steps
     from heuncli.kernel.workspace import Workspace
 
 
 def record_width(workspace: Workspace, n: cython.int) -> int:
-    """How many numbers a step of a state of n numbers starts from."""
-    return 2 * n + chosen_width(cython.address(workspace.scene))
+    """Return how many numbers a step of a state of n numbers starts from."""
+    return 2 * n + choice_width(cython.address(workspace.scene))
 
 
-def within(courses: dict[str, Any], n: cython.int, times: Any, steps: Any, out: Any) -> None:
-    """States of n numbers at instants within steps that left their polynomials, (instants, n).
+def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, steps: Any, states: Any) -> None:
+    """Find states of n numbers at instants within steps whose polynomials were recorded, (instants, n).
 
     courses: flat arrays `spans` and `courses` of some steps, as an integration writes them. All arrays are flat.
     """
@@ -43,28 +43,30 @@ def within(courses: dict[str, Any], n: cython.int, times: Any, steps: Any, out: 
     memory: Memory = Memory()
     count: cython.Py_ssize_t = len(courses["spans"]) // 3
     rows: cython.Py_ssize_t = len(courses["courses"]) // max(n * count, 1)
-    spans: cython.pp_double = memory.over(courses["spans"], count, 3)
-    course: cython.pp_double = memory.over(courses["courses"], rows * count, n)
+    spans: cython.pp_double = memory.view_rows(courses["spans"], count, 3)
+    course: cython.pp_double = memory.view_rows(courses["courses"], rows * count, n)
     t: cython.p_double = memory.doubles(times)
-    at: cython.p_int = memory.ints(steps)
-    to: cython.pp_double = memory.over(out, len(times), n)
+    step_numbers: cython.p_int = memory.ints(steps)
+    rows_out: cython.pp_double = memory.view_rows(states, len(times), n)
     for k in range(len(times)):
-        step = at[k]
+        step = step_numbers[k]
         x: cython.double = (t[k] - spans[step][1]) / spans[step][2]
-        polynomial(course, step * rows + 1, rows - 1, course[step * rows], n, x, to[k])
+        evaluate_polynomial(course, step * rows + 1, rows - 1, course[step * rows], n, x, rows_out[k])
     memory.fetch()
 
 
 class Integration:
-    """One integration of a scene over asked instants: the loop's state and its output."""
+    """One integration of a scene over requested instants: the loop's state and its output."""
 
     def __init__(
         self, workspace: Workspace, method: dict[str, Any], start: dict[str, Any], output: dict[str, Any]
     ) -> None:
-        """method: numbers and arrays by name (integration/methods); start: groups (a table), energy_group, weights,
-        state, tolerance, step, rate, following, late; output: times, samples, and of the steps ends, settled, pivots,
-        turned, branches, passed, and where polynomials are to be kept spans and courses, which are written into: flat
-        arrays. following: ends, settled and branches are given.
+        """Prepare the integration of a workspace's scene; all arrays are flat.
+
+        method: numbers and arrays by name (integration/methods)
+        start: groups (a table), energy_group, weights, state, tolerance, step, rate, following, late
+        output: times, samples, and of the steps ends, settled, pivots, turned, branches, passed, and, if polynomials
+        are recorded, spans and courses; all are written to. With `following`, ends, settled and branches are given.
         """
         if not cython.compiled:
             self.run: Run = Run.blank()
@@ -73,36 +75,36 @@ class Integration:
         self.output: dict[str, Any] = output
         self.memory: Memory = Memory()
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
-        self.take_method(method)
-        self.take_start(start)
+        self.set_method(method)
+        self.set_start(start)
         if scene.watch_count or scene.held_count or scene.contact_count:
-            self.make_room()
+            self.allocate_course()
         if self.run.determined:
-            self.make_branch()
+            self.allocate_branch()
         if method["implicit"]:
-            self.make_newton(method["collocation"])
-        self.take_output(output)
+            self.allocate_newton(method["collocation"])
+        self.set_output(output)
 
-    def take_method(self, method: dict[str, Any]) -> None:
-        """The method's rows."""
-        to: cython.pointer[Method] = cython.address(self.method)
-        to.stages = method["stages"]
-        to.extra = method["extra"]
-        to.dense_rows = method["dense_rows"]
-        to.estimates = method["estimates"]
-        to.fixed = method["fixed"]
-        to.by_step = method["by_step"]
-        to.implicit = method["implicit"]
-        to.attitude = method["attitude"]
-        to.exponent = method["exponent"]
+    def set_method(self, method: dict[str, Any]) -> None:
+        """Copy the method's rows."""
+        target: cython.pointer[Method] = cython.address(self.method)
+        target.stages = method["stages"]
+        target.extra = method["extra"]
+        target.dense_rows = method["dense_rows"]
+        target.estimates = method["estimates"]
+        target.fixed = method["fixed"]
+        target.by_step = method["by_step"]
+        target.implicit = method["implicit"]
+        target.attitude = method["attitude"]
+        target.exponent = method["exponent"]
         self.run.determined = method["determined"]
-        to.begin = self.memory.ints(method["begin"])
-        to.stage = self.memory.ints(method["stage"])
-        to.coefficient = self.memory.doubles(method["coefficient"])
-        to.node = self.memory.doubles(method["node"])
+        target.begin = self.memory.ints(method["begin"])
+        target.stage = self.memory.ints(method["stage"])
+        target.coefficient = self.memory.doubles(method["coefficient"])
+        target.node = self.memory.doubles(method["node"])
 
-    def take_start(self, start: dict[str, Any]) -> None:
-        """The loop's state before the first piece, and its room; what is not set here begins at 0."""
+    def set_start(self, start: dict[str, Any]) -> None:
+        """Set the loop's state before the first piece, and allocate its memory; what is not set here begins at 0."""
         run: cython.pointer[Run] = cython.address(self.run)
         n: cython.int = len(start["weights"])
         run.n = n
@@ -128,17 +130,17 @@ class Integration:
         if self.method.by_step:
             run.beside = self.memory.matrix(self.method.stages, n)
         run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
-        self.make_chart(n)
-        watch_afresh(cython.address(self.workspace.scene))
+        self.allocate_chart(n)
+        reset_watches(cython.address(self.workspace.scene))
         run.group_count = len(start["groups"])
         if cython.compiled:
-            groups: cython.p_void = self.memory.rows(start["groups"], cython.sizeof(Group))
+            groups: cython.p_void = self.memory.copy_structs(start["groups"], cython.sizeof(Group))
             run.groups = cython.cast(cython.pointer[Group], groups)
         else:
             run.groups = [Group(row) for row in start["groups"].tolist()]
 
-    def make_chart(self, n: cython.int) -> None:
-        """Room for the numbers that steps are taken in, where those are not the state's own."""
+    def allocate_chart(self, n: cython.int) -> None:
+        """Allocate the numbers that steps are taken in, if they are not the state's own."""
         run: cython.pointer[Run] = cython.address(self.run)
         run.chart.y, run.chart.z, run.chart.K = run.y, run.z, run.K
         if self.method.attitude:
@@ -147,8 +149,8 @@ class Integration:
             run.chart.z = self.memory.zeros(n)
             run.chart.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
 
-    def make_room(self) -> None:
-        """Room for the course of the coordinates that expressions and contacts hang on, where something is watched."""
+    def allocate_course(self) -> None:
+        """Allocate the course of the coordinates that expressions and contacts depend on, if something is watched."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         course: cython.pointer[Course] = cython.address(self.run.course)
         rows: cython.Py_ssize_t = 4 + self.method.dense_rows
@@ -157,16 +159,16 @@ class Integration:
         course.second = self.memory.matrix(scene.variable_count, rows)
         course.work = self.memory.zeros(rows)
         if scene.point_count:
-            self.make_orbits(rows)
-        course.begins = self.memory.zeros(PARTS)
-        course.ends = self.memory.zeros(PARTS)  # more than halvings
-        course.promise = self.memory.zeros(PARTS)
+            self.allocate_orbits(rows)
+        course.begins = self.memory.zeros(MAX_PEAK_PARTS)
+        course.ends = self.memory.zeros(MAX_PEAK_PARTS)  # more than halvings
+        course.promise = self.memory.zeros(MAX_PEAK_PARTS)
         course.before = self.memory.zeros(scene.held_count)
         course.turned = self.memory.zeros(scene.held_count)
         course.resting = self.memory.zeros(scene.held_count)
 
-    def make_orbits(self, rows: cython.Py_ssize_t) -> None:
-        """Room for what points that expressions use move on; rows: of a component of the state."""
+    def allocate_orbits(self, rows: cython.Py_ssize_t) -> None:
+        """Allocate the courses of the points that expressions use; rows: of a component of the state."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         points: cython.pointer[Orbits] = cython.address(self.run.course.points)
         variables: cython.Py_ssize_t = scene.variable_count
@@ -188,15 +190,15 @@ class Integration:
         points.reach = self.memory.zeros(bodies)
         points.speed = self.memory.zeros(bodies)
 
-    def make_branch(self) -> None:
-        """Room for what is known of a branch, with the drives of its loops and the length that shifts are measured by.
+    def allocate_branch(self) -> None:
+        """Allocate the data of a branch, and find the drives of its loops and the length that shifts are measured by.
 
-        Turns count in an island by its length (measure: 1 / length); the least of all islands' counts.
+        Rotations count in an island by its length (measure: 1 / length); the smallest of all islands is used.
         """
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t
-        most: cython.double = 0.0
+        largest_measure: cython.double = 0.0
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         branch: cython.pointer[Branch] = cython.address(self.run.branch)
         branch.travel = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
@@ -205,88 +207,90 @@ class Integration:
         branch.marks = self.memory.zeros(3 * scene.counter_count)
         for i in range(scene.body_count):
             body: cython.pointer[Body] = cython.address(scene.bodies[i])
-            if body.ball and scene.measure[body.answer_at] > most:
-                most = scene.measure[body.answer_at]
+            if body.ball and scene.measure[body.answer_at] > largest_measure:
+                largest_measure = scene.measure[body.answer_at]
             for k in range(body.first_freedom, body.end_freedom):
                 freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-                if freedom.kind != SHIFT and scene.measure[freedom.answer_at] > most:
-                    most = scene.measure[freedom.answer_at]
-        branch.length = 1.0 / most if most > 0.0 else scene.size
+                if freedom.kind != SHIFT and scene.measure[freedom.answer_at] > largest_measure:
+                    largest_measure = scene.measure[freedom.answer_at]
+        branch.length = 1.0 / largest_measure if largest_measure > 0.0 else scene.size
         for i in range(scene.closure_count):
             if scene.closures[i].program.count:
                 branch.travel[scene.freedom_count + i] = 0.0
             bends: cython.bint = not is_linear(scene, cython.address(scene.closures[i]))
             for n in range(scene.closures[i].path, scene.closures[i].path + scene.closures[i].path_count):
-                on: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
+                path_body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
                 if bends:
                     branch.bends[scene.freedom_count + scene.indices[n]] = 1
-                for k in range(on.first_freedom, on.end_freedom):
+                for k in range(path_body.first_freedom, path_body.end_freedom):
                     if scene.freedoms[k].driven:
                         branch.travel[k] = 0.0
                     if bends:
                         branch.bends[k] = 1
 
-    def make_newton(self, method: dict[str, Any]) -> None:
-        """The numbers of an implicit method, and room for the iteration for its stages."""
+    def allocate_newton(self, method: dict[str, Any]) -> None:
+        """Copy the numbers of an implicit method, and allocate the iteration for its stages."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.run.n
-        of: cython.pointer[Collocation] = cython.address(self.method.collocation)
+        formula: cython.pointer[Collocation] = cython.address(self.method.collocation)
         newton: cython.pointer[Newton] = cython.address(self.run.newton)
-        of.stages = len(method["end"])
-        of.pair_count = len(method["parts"]) // 2
-        of.real = method["real"]
-        of.parts = self.memory.doubles(method["parts"])
-        of.into = self.memory.doubles(method["into"])
-        of.back = self.memory.doubles(method["back"])
-        of.end = self.memory.doubles(method["end"])
-        of.error = self.memory.doubles(method["error"])
+        formula.stages = len(method["end"])
+        formula.pair_count = len(method["parts"]) // 2
+        formula.real = method["real"]
+        formula.parts = self.memory.doubles(method["parts"])
+        formula.into = self.memory.doubles(method["into"])
+        formula.back = self.memory.doubles(method["back"])
+        formula.end = self.memory.doubles(method["end"])
+        formula.error = self.memory.doubles(method["error"])
         newton.tangent.n = n
         newton.tangent.J = self.memory.zeros(n * n)
         newton.tangent.at = self.memory.zeros(n)
         newton.tangent.beside = self.memory.zeros(n)
         newton.real.A = self.memory.zeros(n * n)
         newton.real.pivots = self.memory.ints(bytes(4 * n))
-        for k in range(of.pair_count):
+        for k in range(formula.pair_count):
             newton.pairs[k].A = self.memory.zeros(n * n)
             newton.pairs[k].B = self.memory.zeros(n * n)
             newton.pairs[k].pivots = self.memory.ints(bytes(4 * n))
-        newton.Z = self.memory.matrix(of.stages, n)
-        newton.known = self.memory.matrix(of.stages + 4, n)
-        for k in range(of.stages):
+        newton.Z = self.memory.matrix(formula.stages, n)
+        newton.known = self.memory.matrix(formula.stages + 4, n)
+        for k in range(formula.stages):
             newton.known[k + 1] = newton.Z[k]
         for k in range(3):
-            newton.known[of.stages + 1 + k] = self.run.dense[k]
-        newton.W = self.memory.matrix(of.stages, n)
-        newton.step = self.memory.matrix(of.stages, n)
+            newton.known[formula.stages + 1 + k] = self.run.dense[k]
+        newton.W = self.memory.matrix(formula.stages, n)
+        newton.step = self.memory.matrix(formula.stages, n)
         newton.error = self.memory.zeros(n)
 
-    def take_output(self, output: dict[str, Any]) -> None:
-        """The asked instants, and where states at them and at the ends of the steps go."""
+    def set_output(self, output: dict[str, Any]) -> None:
+        """Set the requested instants, and where states at them and at the ends of the steps are written."""
         run: cython.pointer[Run] = cython.address(self.run)
         run.samples.count = len(output["times"])
         run.track.most = len(output["ends"])
         run.samples.times = self.memory.doubles(output["times"])
-        run.samples.states = self.memory.over(output["samples"], run.samples.count, run.n)
-        run.track.ends = self.memory.whole(output["ends"])
-        run.track.settled = self.memory.whole(output["settled"])
-        run.track.pivots = self.memory.whole(output["pivots"])
-        run.track.turned = self.memory.whole(output["turned"])
-        held: cython.int = self.workspace.scene.held_count
-        run.track.branches = self.memory.over(output["branches"], run.track.most if held else 0, held)
-        run.track.passed = self.memory.over(output["passed"], 0 if run.following else run.track.most, self.record_width)
+        run.samples.states = self.memory.view_rows(output["samples"], run.samples.count, run.n)
+        run.track.ends = self.memory.view_row(output["ends"])
+        run.track.settled = self.memory.view_row(output["settled"])
+        run.track.pivots = self.memory.view_row(output["pivots"])
+        run.track.turned = self.memory.view_row(output["turned"])
+        held_count: cython.int = self.workspace.scene.held_count
+        run.track.branches = self.memory.view_rows(output["branches"], run.track.most if held_count else 0, held_count)
+        run.track.passed = self.memory.view_rows(
+            output["passed"], 0 if run.following else run.track.most, self.record_width
+        )
         run.track.coursed = len(output["spans"]) > 0
         rows: cython.Py_ssize_t = self.course_rows
-        run.track.spans = self.memory.over(output["spans"], run.track.most if run.track.coursed else 0, 3)
-        run.track.courses = self.memory.over(
+        run.track.spans = self.memory.view_rows(output["spans"], run.track.most if run.track.coursed else 0, 3)
+        run.track.courses = self.memory.view_rows(
             output["courses"], rows * run.track.most if run.track.coursed else 0, run.n
         )
 
     def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
-        """A piece from t to its end, of which `before_end` is the last instant."""
+        """Begin a piece from t to its end, of which `before_end` is the last instant."""
         self.run.t, self.run.before_end, self.run.end, self.run.fresh = t, before_end, end, 1
 
     def jump(self, state: Any) -> None:
-        """Go on from another state than the one reached, which is told at the instant reached, too."""
+        """Continue from another state than the one reached; it replaces the sample at the instant reached too."""
         i: cython.Py_ssize_t
         run: cython.pointer[Run] = cython.address(self.run)
         k: cython.Py_ssize_t = run.samples.next - 1
@@ -298,43 +302,46 @@ class Integration:
                 run.samples.states[k][i] = run.y[i]
             k -= 1
 
-    def stand(self, record: Any) -> None:
-        """Take a record of `passed` for the state reached; `begin` starts a piece from it, `resume` a step."""
-        take_record(cython.address(self.workspace.scene), cython.address(self.run), self.memory.doubles(record))
+    def restore(self, record: Any) -> None:
+        """Restore the state from a record of `passed`; `begin` starts a piece from it, `resume` a step."""
+        restore_record(cython.address(self.workspace.scene), cython.address(self.run), self.memory.doubles(record))
 
     def resume(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
-        """Go on at t within a piece, with the bits of the run whose record this stands on."""
+        """Continue at t within a piece, bit by bit as the run whose record was restored."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         run.t, run.before_end, run.end, run.fresh = t, before_end, end, 0
         if scene.held_count:
-            take_branches(scene, run.track.branches[0])
+            hold_branches(scene, run.track.branches[0])
         scene.programs.holding = HELD
-        evaluate(scene, clipped(run, t), run.y, run.K[0])
+        evaluate(scene, clip_time(run, t), run.y, run.K[0])
         clear_accelerations(scene, cython.address(self.method), run.K[0], True)
         if run.determined:
-            stand_here(scene, run)
+            prepare_step(scene, run)
 
-    def follow(self, ends: Any, settled: Any, branches: Any) -> None:
-        """The ends of the steps to be done again, which of them settled their stages, and their branches, (n, held)."""
+    def set_followed_steps(self, ends: Any, projected_flags: Any, branches: Any) -> None:
+        """Set the ends of the steps to be repeated, which of them projected their stages, and their branches, (n,
+        held).
+        """
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         for i in range(len(ends)):
             self.run.track.ends[i] = float(ends[i])
-            self.run.track.settled[i] = float(settled[i])
+            self.run.track.settled[i] = float(projected_flags[i])
             for k in range(self.workspace.scene.held_count):
                 self.run.track.branches[i][k] = float(branches[i][k])
 
-    def advance(self, most: cython.int, watching: cython.bint, halting: cython.bint) -> int:
-        """Up to `most` steps; REACHED, MORE to do, or why not. watching: stop where a contact closes or opens.
+    def advance(self, max_steps: cython.int, watching: cython.bint, halting: cython.bint) -> int:
+        """Take up to `max_steps` steps. Returns REACHED, MORE to do, or why it stopped.
 
-        halting: stop where a piece begins, and where branches turn.
+        watching: stop where a contact closes or opens
+        halting: stop where a piece begins, and where branches change
         """
         code: cython.int
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         method: cython.pointer[Method] = cython.address(self.method)
-        run.track.most = most
+        run.track.most = max_steps
         run.watching = watching
         run.halting = halting
         scene.programs.holding = HELD
@@ -347,9 +354,9 @@ class Integration:
             width = self.record_width
             for k in range(run.track.done):
                 self.output["passed"][k * width : (k + 1) * width] = run.track.passed[k]
-            held = self.workspace.scene.held_count
-            for k in range(run.track.done if held else 0):
-                self.output["branches"][k * held : (k + 1) * held] = run.track.branches[k]
+            held_count = self.workspace.scene.held_count
+            for k in range(run.track.done if held_count else 0):
+                self.output["branches"][k * held_count : (k + 1) * held_count] = run.track.branches[k]
         if not cython.compiled and run.track.coursed:
             for k in range(run.track.done):
                 self.output["spans"][3 * k : 3 * k + 3] = run.track.spans[k]
@@ -357,77 +364,77 @@ class Integration:
                 self.output["courses"][k * run.n : (k + 1) * run.n] = run.track.courses[k]
         return code
 
-    def keep_no_more(self) -> None:
-        """Put down no polynomials any more."""
+    def stop_recording(self) -> None:
+        """Record no more polynomials."""
         self.run.track.coursed = 0
 
     def fetch(self) -> None:
-        """Bring the samples into `output` (compiled, they are written there)."""
+        """Copy the samples into `output` (compiled, they are written there directly)."""
         if not cython.compiled:
             n = self.run.n
             for k in range(self.run.samples.count):
                 self.output["samples"][k * n : (k + 1) * n] = self.run.samples.states[k]
 
     def state(self) -> list[float]:
-        """The state reached."""
+        """Return the state reached."""
         return [self.run.y[i] for i in range(self.run.n)]
 
     @property
     def record_width(self) -> int:
-        """Numbers of a record."""
+        """Return how many numbers a record has."""
         return record_width(self.workspace, self.run.n)
 
     @property
     def course_rows(self) -> int:
-        """Rows of what is put down of a step's polynomial: the state at its begin, and the coefficients."""
+        """Return the rows recorded of a step's polynomial: the state at its start, and the coefficients."""
         return 4 + self.method.dense_rows
 
     @property
     def t(self) -> float:
-        """The instant reached."""
+        """Return the instant reached."""
         return self.run.t
 
     @property
-    def done(self) -> int:
-        """Steps of the last call."""
+    def last_step_count(self) -> int:
+        """Return the number of steps of the last call."""
         return self.run.track.done
 
     @property
     def steps(self) -> int:
-        """Accepted steps."""
+        """Return the number of accepted steps."""
         return self.run.steps
 
     @property
     def evaluations(self) -> int:
-        """Evaluations of the derivative."""
+        """Return the number of evaluations of the derivative."""
         return self.run.evaluations
 
     @property
     def gap(self) -> float:
-        """The largest gap that closures were left with [m]."""
+        """Return the largest gap that closures were left with [m]."""
         return self.run.gap
 
     @property
     def contact(self) -> int:
-        """The closure row of the contact that closed or opened last; -1: none."""
+        """Return the closure row of the contact that closed or opened last; -1 if there was none."""
         return self.run.contact - 1
 
     @property
-    def turning(self) -> int:
-        """The branch that turned last."""
+    def changed_branch(self) -> int:
+        """Return the branch that changed last."""
         return self.run.course.slot
 
     @property
     def half_turn(self) -> int:
-        """The body, by its place in the tree, that came to a half turn of the global chart."""
+        """Return the body, by its index in the tree, that came to a half turn of the global chart."""
         return self.run.chart.half_turn - 1
 
     @property
-    def undecided(self) -> int:
-        """Of how many steps bounds could not decide what they hold."""
+    def undecided_count(self) -> int:
+        """Return the number of steps for which bounds could not decide what happens in them."""
         return self.run.undecided
 
     @property
-    def sampled(self) -> int:
-        """How many of the asked instants are done."""
+    def sampled_count(self) -> int:
+        """Return how many of the requested instants are done."""
         return self.run.samples.next

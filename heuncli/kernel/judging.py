@@ -1,6 +1,6 @@
-"""The judging of a step that was tried: accepted, tried again with another length, or beyond what can be solved.
+"""Accept or reject a step that was tried: accepted, tried again with another length, or not solvable.
 
-Of a given step nothing is judged but that it has an end. The error of another is measured body by body and the largest
+A step of given length is accepted if it has an end. The error of any other is measured body by body and the largest
 counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts), rates
 against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I
 (1993), II.4.
@@ -16,30 +16,31 @@ except ImportError:
 if not cython.compiled:
     from math import fabs, pow, sqrt
 
-    from heuncli.kernel.attitudes import weigh_in_chart
-    from heuncli.kernel.collocation import estimate, estimate_again
-    from heuncli.kernel.dense import combine
-    from heuncli.kernel.held import take_off_held
+    from heuncli.kernel.attitudes import scale_chart_errors
+    from heuncli.kernel.collocation import estimate_error, refine_error
+    from heuncli.kernel.dense import combine_stages
+    from heuncli.kernel.held import remove_contact_rounding
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Method, Run
 
-    # What `advance` answers (steps.py), and what a step is judged.
+    # What `run_steps` returns (steps.py), and the verdicts on a step.
     REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
     STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
 
-# Hairer, Norsett and Wanner, II.4: the length that would just be allowed is undershot a little, for a step rejected
-# costs a whole one, and no step changes the length by more than what an estimate far from its asymptotics is good for.
+# Hairer, Norsett and Wanner, II.4: take a little less than the length that would just be allowed, as a rejected step
+# costs a whole one, and limit the change of length, as the error estimate is valid for small changes only.
 SAFETY = 0.9
-LEAST_FACTOR = 0.2  # shorter after a rejection
-MOST_FACTOR = 6.0  # longer after what was accepted
-OUT_OF_REACH = 0.1  # shorter where a stage has no value at all
-COARSE_SHARE = 0.01  # of the square of the coarser of two estimates (II.10): what damps the finer one where it vanishes
+MIN_STEP_FACTOR = 0.2  # shorter after a rejection
+MAX_STEP_FACTOR = 6.0  # longer after what was accepted
+UNDEFINED_STEP_FACTOR = 0.1  # shorter where a stage has no value at all
+# of the square of the coarser of two estimates (II.10): it keeps the combined error from vanishing with the finer one
+COARSE_SHARE = 0.01
 UNSOLVED_ERROR = 1.8  # of stages not found, to the method's order: 0.9/1.8, half the step
 
 
-def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:
-    """Weighted norm of some components."""
+def weighted_norm(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:
+    """Return the weighted norm of some components."""
     i: cython.Py_ssize_t
     g: cython.double
     square: cython.double = 0.0
@@ -50,7 +51,7 @@ def norm_of(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end
 
 
 def step_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
-    """Largest error over the groups, 1 = just allowed; not a number where one is not."""
+    """Return the largest error over the groups, 1 = just allowed; NaN if one is."""
     b: cython.int
     error: cython.double
     worst: cython.double = 0.0
@@ -66,20 +67,20 @@ def step_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run
 def group_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int
 ) -> cython.double:
-    """Error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) of the two estimates, or h e of one."""
+    """Return the error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) from two estimates, or h e from one."""
     group: cython.pointer[Group] = cython.address(run.groups[b])
     i: cython.Py_ssize_t
     e: cython.double
     g: cython.double
     fine: cython.double = 0.0
     coarse: cython.double = 0.0
-    rate: cython.double = norm_of(run, run.z, group.rates, group.end)
+    rate: cython.double = weighted_norm(run, run.z, group.rates, group.end)
     if rate < group.rate:
         rate = group.rate
     group.trial = rate
     floor: cython.double = scene.limits.slow_rate * run.control.rate
     if b == run.energy_group:
-        # energy, against the largest work so far or a part of what the bodies may have of it
+        # energy, relative to the largest work so far or a fraction of the bodies' possible energy
         floor = scene.limits.slow_rate * run.control.energy_scale * run.control.rate * run.control.rate
     scale: cython.double = 1.0 / run.control.tolerance
     for i in range(group.coordinates, group.end):
@@ -96,8 +97,10 @@ def group_error(
     return fine  # 0, or not a number
 
 
-def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Whether a stage turned so fast that the step may have passed the end of the chart: a shorter one, then."""
+def exceeds_chart(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Return whether a stage turned so fast that the step may have passed the end of the chart; then propose a shorter
+    one.
+    """
     part: cython.double
     if not run.chart.nearing * run.h > scene.limits.chart_turn:
         return False
@@ -107,10 +110,10 @@ def turns_too_far(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
     return True
 
 
-def judge(
+def assess_step(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
 ) -> cython.int:
-    """ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
+    """Return ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
     error: cython.double
     noise: cython.double = 0.0
     run.control.error = 0.0
@@ -119,15 +122,15 @@ def judge(
     if run.determined:
         return AGAIN if trouble < 0 else ACCEPTED
     if method.fixed:
-        return judge_given(method, run, trouble)
+        return assess_given_step(method, run, trouble)
     error = implicit_error(scene, method, run) if method.implicit else explicit_error(scene, method, run)
     if run.near:
-        if dodge(scene, run, error, trouble):
+        if dodge_singularity(scene, run, error, trouble):
             return AGAIN
         noise = singular_noise(scene, run)
     if error != error or trouble < 0:
-        # outside what the scene can do: a much smaller step, or the end of it
-        run.control.proposed = OUT_OF_REACH * run.h
+        # outside the scene's range of motion: try a much smaller step, or stop
+        run.control.proposed = UNDEFINED_STEP_FACTOR * run.h
         run.control.rejected_before = 1
         if run.control.proposed < scene.limits.least_step * (run.end - run.t) or run.control.proposed <= 1e-15 * fabs(
             run.t
@@ -136,75 +139,78 @@ def judge(
         return AGAIN
     if error > 1.0 + noise:
         factor: cython.double = SAFETY * pow(error, -method.exponent)
-        run.control.proposed = run.h * (factor if factor > LEAST_FACTOR else LEAST_FACTOR)
+        run.control.proposed = run.h * (factor if factor > MIN_STEP_FACTOR else MIN_STEP_FACTOR)
         run.control.rejected_before = 1
         return AGAIN
-    if method.attitude and turns_too_far(scene, run):
+    if method.attitude and exceeds_chart(scene, run):
         return AGAIN
     run.control.error = error
     return ACCEPTED
 
 
-def judge_given(method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int) -> cython.int:
-    """ACCEPTED, or why a step whose length is given cannot be taken."""
+def assess_given_step(method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int) -> cython.int:
+    """Return ACCEPTED, or why a step whose length is given cannot be taken."""
     if method.implicit and not run.newton.solved:
         return UNSOLVED
-    if not takes_rates(run):
+    if not update_group_rates(run):
         return NOT_A_NUMBER
     return CLOSURES_LOST if trouble < 0 else ACCEPTED
 
 
-def takes_rates(run: cython.pointer[Run]) -> cython.bint:
-    """The rates of the groups at the end of a given step; whether all is finite there."""
+def update_group_rates(run: cython.pointer[Run]) -> cython.bint:
+    """Set the rates of the groups at the end of a given step. Returns whether all is finite there."""
     b: cython.int
     size: cython.double = 0.0
     for b in range(run.group_count):
         group: cython.pointer[Group] = cython.address(run.groups[b])
-        group.trial = norm_of(run, run.z, group.rates, group.end)
+        group.trial = weighted_norm(run, run.z, group.rates, group.end)
         if group.trial < group.rate:
             group.trial = group.rate
-        size += norm_of(run, run.z, group.coordinates, group.end)
+        size += weighted_norm(run, run.z, group.coordinates, group.end)
     return size < 1e300  # neither infinite nor not a number
 
 
 def explicit_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.double:
-    """Error of the step tried, 1 = just allowed."""
+    """Return the error of the trial step of an explicit method, 1 = just allowed."""
     row: cython.int = method.stages + 1 + method.extra
-    combine(method, row, run.chart.K, run.n, run.coarse)
-    combine(method, row + method.estimates - 1, run.chart.K, run.n, run.fine)
+    combine_stages(method, row, run.chart.K, run.n, run.coarse)
+    combine_stages(method, row + method.estimates - 1, run.chart.K, run.n, run.fine)
     if method.attitude:
-        weigh_in_chart(scene, method.attitude, run.chart.y, run.coarse)
-        weigh_in_chart(scene, method.attitude, run.chart.y, run.fine)
+        scale_chart_errors(scene, method.attitude, run.chart.y, run.coarse)
+        scale_chart_errors(scene, method.attitude, run.chart.y, run.fine)
     return free_error(scene, method, run)
 
 
 def free_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
-    """Error but for the rounding that contacts hold, 1 = just allowed; not a number where one is not."""
-    take_off_held(scene, method, run)
+    """Return the error without the rounding that contacts hold, 1 = just allowed; NaN if one is."""
+    remove_contact_rounding(scene, method, run)
     return step_error(scene, method, run)
 
 
 def implicit_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.double:
-    """Error of the step tried by an implicit method; where no stages were found, what halves the step."""
+    """Return the error of the trial step of an implicit method; without stages, a value that halves the step."""
     if not run.newton.solved:
         return pow(UNSOLVED_ERROR, 1.0 / method.exponent)
-    estimate(method, run, run.K[0])
+    estimate_error(method, run, run.K[0])
     error: cython.double = free_error(scene, method, run)
     if not error <= 1.0:
-        estimate_again(scene, method, run)
+        refine_error(scene, method, run)
         error = free_error(scene, method, run)
     return error
 
 
-def dodge(
+def dodge_singularity(
     scene: cython.pointer[Scene], run: cython.pointer[Run], error: cython.double, trouble: cython.int
 ) -> cython.int:
-    """Whether to try another length that may keep the stages off a singular pose; at last the best of those tried."""
-    noise: cython.double = 1e300  # what rounding makes of the closures at the worst of the stages, by the tolerance
+    """Return whether to try another length that may keep the stages off a singular pose; at last the best of those
+    tried.
+    """
+    # effect of rounding on the closures at the worst of the stages, relative to the tolerance
+    noise: cython.double = 1e300
     if scene.pivot_of_step > 0.0:
         noise = scene.limits.pivot_rounding * run.h * run.control.rate / (scene.pivot_of_step * run.control.tolerance)
     broken: cython.bint = error != error or trouble < 0
@@ -212,11 +218,11 @@ def dodge(
         return 0
     if not (noise > 0.1 or broken or (error > 1.0 and run.control.dodges > 0)):
         return 0
-    worse: cython.double = error if error > noise else noise
+    worst: cython.double = error if error > noise else noise
     if broken:
-        worse = 1e300
-    if run.control.dodges == 0 or worse < run.control.best:
-        run.control.best = worse
+        worst = 1e300
+    if run.control.dodges == 0 or worst < run.control.best:
+        run.control.best = worst
         run.control.best_h = run.h
     run.control.dodges += 1
     run.control.proposed = (
@@ -226,7 +232,9 @@ def dodge(
 
 
 def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
-    """What a step that found no better way may be off by, also by what its start makes of the rounding."""
+    """Return the error that rounding may cause near a singular pose, also at the start, in a step that could not avoid
+    it.
+    """
     pivot: cython.double = scene.pivot_of_step
     if run.control.pivot_at_start < pivot:
         pivot = run.control.pivot_at_start
@@ -235,15 +243,15 @@ def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
     return 0.0
 
 
-def growth(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
-    """By what factor the next step may be longer; none after a rejection."""
-    factor: cython.double = MOST_FACTOR
+def growth_factor(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+    """Return by what factor the next step may be longer; at most 1 after a rejection."""
+    factor: cython.double = MAX_STEP_FACTOR
     if run.control.error > 1.0:
         factor = 1.0
     elif run.control.error > 0.0:
         factor = SAFETY * pow(run.control.error, -method.exponent)
-        if factor > MOST_FACTOR:
-            factor = MOST_FACTOR
+        if factor > MAX_STEP_FACTOR:
+            factor = MAX_STEP_FACTOR
     if run.control.rejected_before and factor > 1.0:
         factor = 1.0
     return factor

@@ -1,9 +1,8 @@
-"""Steps that end on events: a step tried is looked through, and done again up to the first event within it.
+"""Steps that end on events: a trial step is checked, and repeated up to the first event within it.
 
-What an event asks for happens at the end of the step that lands there: branches turn, or a contact closes or opens
-(contacts.py).
-Where it lies is found on the dense output of the step that went over it, then on the end of the one that should have
-met it, until both agree.
+The event takes effect at the end of the step that lands there: branches change, or a contact closes or opens
+(contacts.py). Its place is found on the dense output of the step that went over it, then at the end of the one that
+should have met it, until both agree.
 """
 
 from __future__ import annotations
@@ -16,16 +15,21 @@ except ImportError:
 if not cython.compiled:
     from math import fabs
 
-    from heuncli.kernel.contacts import meet_contacts, see_contacts, see_start, start_contacts
-    from heuncli.kernel.course import instant, lay_course, lay_window
+    from heuncli.kernel.contacts import (
+        begin_margin_extremes,
+        find_contact_event,
+        start_contacts,
+        update_margin_extremes,
+    )
+    from heuncli.kernel.course import build_end_window, build_step_course, course_instant
     from heuncli.kernel.dense import (
-        AGAIN_TO,
-        CHATTERS,
-        MOST_LANDINGS,
-        STANDS,
-        clipped,
-        hermite,
-        need_interpolant,
+        EVENT_CHATTER,
+        MAX_LANDINGS,
+        NO_EVENT,
+        REPEAT_TO,
+        build_hermite,
+        clip_time,
+        ensure_interpolant,
     )
     from heuncli.kernel.events import (
         BRANCH_IN_DOUBT,
@@ -33,42 +37,42 @@ if not cython.compiled:
         NOTHING,
         TURNS,
         UNSEEN,
-        first_event,
-        forget,
-        jump_at,
-        quiet,
-        see,
-        take_branches,
+        check_coarsely,
+        find_first_event,
+        hold_branches,
+        record_extremes,
+        relative_jump,
+        reset_extremes,
     )
     from heuncli.kernel.held import clear_accelerations
-    from heuncli.kernel.points import look_at
+    from heuncli.kernel.points import evaluate_variables
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Run
 
-    FLURRY = 16  # events that gather at an instant
+    MAX_FLURRY_EVENTS = 16  # events that gather at an instant
 
 
 # What the steps see
 
 
-def begin_to_see(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
-    """The start of a step is the first that is seen of it."""
+def begin_step_extremes(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
+    """Start the extremes of watched numbers and contact margins with the start of a step."""
     if scene.watch_count:
-        forget(scene)
-        look_at(scene, clipped(run, run.t), run.y)
-        see(scene)
+        reset_extremes(scene)
+        evaluate_variables(scene, clip_time(run, run.t), run.y)
+        record_extremes(scene)
     if run.watching:
-        see_start(scene)
+        begin_margin_extremes(scene)
 
 
-def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.void:
-    """What was evaluated last, at t, is seen: lengths that a law tells are those of that instant."""
+def record_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.void:
+    """Include what was evaluated last, at t; lengths given by a law are those of that instant."""
     if scene.watch_count:
-        see(scene)
+        record_extremes(scene)
     if run.watching:
-        see_contacts(scene, t)
+        update_margin_extremes(scene, t)
 
 
 # A step tried
@@ -77,112 +81,118 @@ def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.
 def find_events_of_step(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.int:
-    """STANDS, with `turns` where branches turn at its end; AGAIN_TO `cut`; TURNS_OVER of a contact; CHATTERS."""
-    code: cython.int = STANDS
+    """Return NO_EVENT, with `turns` set if branches change at the end; REPEAT_TO `cut`; or another event."""
+    code: cython.int = NO_EVENT
     pivot: cython.double = scene.pivot
     least: cython.double = scene.pivot_of_step
     run.landing.turns = 0
     if scene.watch_count:
-        code = meet_branches(scene, method, run)
-        if code == STANDS:
+        code = find_branch_event(scene, method, run)
+        if code == NO_EVENT:
             run.landing.attempts = 0
-    if run.watching and code == STANDS:
-        code = meet_contacts(scene, method, run)
+    if run.watching and code == NO_EVENT:
+        code = find_contact_event(scene, method, run)
     scene.pivot = pivot
     scene.pivot_of_step = least
     return code
 
 
-def meet_branches(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """Turns of branches, and what no stage has seen, within a step tried."""
-    found: cython.int
+def find_branch_event(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.int:
+    """Find changes of branches, and what no stage has seen, within a trial step."""
+    doubt: cython.int
     course: cython.pointer[Course] = cython.address(run.course)
     if run.landing.attempts:
-        lay_window(scene, method, run)
-        if first_event(scene, course) == TURNS and course.event > 0.0:
-            return land_on(scene, method, run)
-    found = quiet(scene, run.t, clipped(run, run.stop))
-    if found == CLEAR:
-        return STANDS
-    if found != BRANCH_IN_DOUBT:
-        hermite(method, run)
-        lay_course(scene, run, 3)
-        if first_event(scene, course) == NOTHING and not course.undecided:
-            return STANDS
-    need_interpolant(scene, method, run)
-    lay_course(scene, run, 3 + method.dense_rows)
-    found = first_event(scene, course)
-    if found == NOTHING:
+        build_end_window(scene, method, run)
+        if find_first_event(scene, course) == TURNS and course.event > 0.0:
+            return land_on_event(scene, method, run)
+    doubt = check_coarsely(scene, run.t, clip_time(run, run.stop))
+    if doubt == CLEAR:
+        return NO_EVENT
+    if doubt != BRANCH_IN_DOUBT:
+        build_hermite(method, run)
+        build_step_course(scene, run, 3)
+        if find_first_event(scene, course) == NOTHING and not course.undecided:
+            return NO_EVENT
+    ensure_interpolant(scene, method, run)
+    build_step_course(scene, run, 3 + method.dense_rows)
+    doubt = find_first_event(scene, course)
+    if doubt == NOTHING:
         run.undecided += course.undecided
-        return STANDS
-    if found == TURNS:
-        return land_on(scene, method, run)
-    return shorten(scene, run, found)
+        return NO_EVENT
+    if doubt == TURNS:
+        return land_on_event(scene, method, run)
+    return shorten_step(scene, run, doubt)
 
 
-def shorten(scene: cython.pointer[Scene], run: cython.pointer[Run], found: cython.int) -> cython.int:
-    """A step up to what no stage has seen, or up to where bounds ceased to decide."""
-    to: cython.double = instant(cython.address(run.course), run.course.event)
-    if found == UNSEEN or to - run.t > 0.1 * run.h:
-        run.landing.cut = to
+def shorten_step(scene: cython.pointer[Scene], run: cython.pointer[Run], doubt: cython.int) -> cython.int:
+    """End the step at what no stage has seen, or where bounds cease to decide."""
+    event_time: cython.double = course_instant(cython.address(run.course), run.course.event)
+    if doubt == UNSEEN or event_time - run.t > 0.1 * run.h:
+        run.landing.cut = event_time
     elif run.h > scene.limits.locked_step * fabs(run.end):
         run.landing.cut = run.t + 0.1 * run.h
     else:
         run.undecided += 1
-        return STANDS
+        return NO_EVENT
     run.landing.attempts = 0
-    return AGAIN_TO
+    return REPEAT_TO
 
 
-def land_on(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """The branches turn here: at once, at the end of the step tried, or after another one that ends there."""
+def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+    """Change the branches at the event: at the start, at the end of the trial step, or after another one that ends
+    there.
+    """
     course: cython.pointer[Course] = cython.address(run.course)
-    near: cython.double = one_instant(scene, run)
-    at: cython.double = instant(course, course.event)
+    least_distance: cython.double = instant_tolerance(scene, run)
+    event_time: cython.double = course_instant(course, course.event)
     if run.late:
-        at = at + near
-    off: cython.double = fabs(at - run.stop)
-    if at - run.t <= 2.0 * near:
+        event_time = event_time + least_distance
+    distance: cython.double = fabs(event_time - run.stop)
+    if event_time - run.t <= 2.0 * least_distance:
         run.landing.at_once += 1
-        if run.landing.at_once > 4 + 2 * scene.held_count or gathered(scene, run, run.t):
-            return CHATTERS
-        take_branches(scene, course.turned)
-        evaluate(scene, clipped(run, run.t), run.y, run.K[0])
+        if run.landing.at_once > 4 + 2 * scene.held_count or count_flurry_event(scene, run, run.t):
+            return EVENT_CHATTER
+        hold_branches(scene, course.turned)
+        evaluate(scene, clip_time(run, run.t), run.y, run.K[0])
         start_contacts(scene, run.t)
         clear_accelerations(scene, method, run.K[0], True)
         run.evaluations += 1
         run.landing.attempts = 0
         run.landing.cut = run.t  # none
-        return AGAIN_TO
-    if scene.limits.near_kink * run.h > near and jump_at(scene, course) <= scene.limits.no_jump:
-        near = scene.limits.near_kink * run.h
-    if run.landing.attempts and (off <= near or run.landing.attempts >= MOST_LANDINGS):
+        return REPEAT_TO
+    if scene.limits.near_kink * run.h > least_distance and relative_jump(scene, course) <= scene.limits.no_jump:
+        least_distance = scene.limits.near_kink * run.h
+    if run.landing.attempts and (distance <= least_distance or run.landing.attempts >= MAX_LANDINGS):
         run.landing.turns = 1
-        return CHATTERS if gathered(scene, run, run.stop) else STANDS
-    if at >= run.end:
-        return STANDS  # beyond the piece
+        return EVENT_CHATTER if count_flurry_event(scene, run, run.stop) else NO_EVENT
+    if event_time >= run.end:
+        return NO_EVENT  # beyond the piece
     run.landing.attempts += 1
-    run.landing.cut = at
-    return AGAIN_TO
+    run.landing.cut = event_time
+    return REPEAT_TO
 
 
-def one_instant(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
-    """What is so near to the end of the step under way is there: its rounding, or a hundredth of the run's end's."""
+def instant_tolerance(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
+    """Return the distance within which instants count as equal: rounding at the end of this step, or a hundredth of
+    that at the run's end.
+    """
     t: cython.double = fabs(run.stop)
     if t < 0.01 * fabs(run.end):
         t = 0.01 * fabs(run.end)
     return scene.limits.one_instant * t
 
 
-def in_flurry(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Whether several events lie just behind."""
+def is_in_flurry(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Return whether several events lie just behind."""
     return run.landing.flurry > 2 and fabs(run.t - run.landing.flurry_begin) <= scene.limits.flurry * fabs(run.end)
 
 
-def gathered(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.bint:
-    """Whether events follow each other without end at t, one of which is counted."""
+def count_flurry_event(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.bint:
+    """Count an event at t. Returns whether events follow each other there without end."""
     if not fabs(t - run.landing.flurry_begin) <= scene.limits.flurry * fabs(run.end):
         run.landing.flurry_begin = t
         run.landing.flurry = 0
     run.landing.flurry += 1
-    return run.landing.flurry > FLURRY
+    return run.landing.flurry > MAX_FLURRY_EVENTS

@@ -1,4 +1,4 @@
-"""C's functions and numbers in plain Python: they answer everywhere where those of `math` raise."""
+"""C's functions and numbers in plain Python: they return a value where those of `math` raise."""
 
 from __future__ import annotations
 

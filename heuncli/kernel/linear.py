@@ -1,7 +1,7 @@
-"""Dense linear equations, real and complex: A = P' L U by rows, the largest entry of each column as its pivot.
+"""Dense linear equations, real and complex: A = P' L U by rows, with the largest entry of each column as its pivot.
 
-Matrices are flat by rows, n numbers each; of complex ones real and imaginary parts are two of them. Entries that are
-zero are passed over: coordinates answer to few others. Golub, Van Loan, Matrix Computations (2013), 3.4.
+Matrices are flat by rows, n numbers each; complex ones are two, for real and imaginary parts. Zero entries are skipped:
+coordinates depend on few others. Golub, Van Loan, Matrix Computations (2013), 3.4.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ if not cython.compiled:
 
 
 def factor_real(A: cython.p_double, n: cython.int, pivots: cython.p_int) -> cython.bint:
-    """L (its diagonal 1) and U in A's place, U's diagonal inverted, and which row each pivot came from.
+    """Factor A in place into L (its diagonal 1) and U, U's diagonal inverted, and store which row each pivot came from.
 
-    False where A is singular, or holds what is no number.
+    Returns False if A is singular or contains NaN.
     """
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     factor: cython.double
     for k in range(n):
-        i = largest_real(A, n, k)
+        i = find_real_pivot(A, n, k)
         pivots[k] = i
-        exchange(A, n, i, k)
+        exchange_rows(A, n, i, k)
         if not fabs(A[n * k + k]) > 0.0:
             return False
         A[n * k + k] = 1.0 / A[n * k + k]
@@ -46,25 +46,25 @@ def factor_real(A: cython.p_double, n: cython.int, pivots: cython.p_int) -> cyth
     return True
 
 
-def largest_real(A: cython.p_double, n: cython.int, k: cython.int) -> cython.int:
-    """The row from k on with the largest entry in column k."""
+def find_real_pivot(A: cython.p_double, n: cython.int, k: cython.int) -> cython.int:
+    """Return the row from k on with the largest entry in column k."""
     i: cython.int
-    found: cython.int = k
+    pivot_row: cython.int = k
     for i in range(k + 1, n):
-        if fabs(A[n * i + k]) > fabs(A[n * found + k]):
-            found = i
-    return found
+        if fabs(A[n * i + k]) > fabs(A[n * pivot_row + k]):
+            pivot_row = i
+    return pivot_row
 
 
-def exchange(A: cython.p_double, n: cython.int, i: cython.int, k: cython.int) -> cython.void:
-    """Rows i and k of A."""
+def exchange_rows(A: cython.p_double, n: cython.int, i: cython.int, k: cython.int) -> cython.void:
+    """Exchange rows i and k of A."""
     j: cython.Py_ssize_t
-    kept: cython.double
+    entry: cython.double
     if i != k:
         for j in range(n):
-            kept = A[n * k + j]
+            entry = A[n * k + j]
             A[n * k + j] = A[n * i + j]
-            A[n * i + j] = kept
+            A[n * i + j] = entry
 
 
 def solve_real(A: cython.p_double, n: cython.int, pivots: cython.p_int, x: cython.p_double) -> cython.void:
@@ -72,7 +72,7 @@ def solve_real(A: cython.p_double, n: cython.int, pivots: cython.p_int, x: cytho
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     u: cython.double
-    swap(x, pivots, n)
+    permute_vector(x, pivots, n)
     for i in range(1, n):
         u = x[i]
         for j in range(i):
@@ -85,21 +85,21 @@ def solve_real(A: cython.p_double, n: cython.int, pivots: cython.p_int, x: cytho
         x[i] = u * A[n * i + i]
 
 
-def swap(x: cython.p_double, pivots: cython.p_int, n: cython.int) -> cython.void:
-    """The numbers of a right-hand side as the rows were exchanged."""
+def permute_vector(x: cython.p_double, pivots: cython.p_int, n: cython.int) -> cython.void:
+    """Permute a right-hand side as the rows were exchanged."""
     k: cython.Py_ssize_t
-    kept: cython.double
+    entry: cython.double
     for k in range(n):
-        kept = x[k]
+        entry = x[k]
         x[k] = x[pivots[k]]
-        x[pivots[k]] = kept
+        x[pivots[k]] = entry
 
 
 # Complex
 
 
 def factor_complex(A: cython.p_double, B: cython.p_double, n: cython.int, pivots: cython.p_int) -> cython.bint:
-    """L and U in the place of A + i B, as `factor_real` gives them."""
+    """Factor A + i B in place into L and U, as `factor_real` does."""
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -109,10 +109,10 @@ def factor_complex(A: cython.p_double, B: cython.p_double, n: cython.int, pivots
     v: cython.double
     square: cython.double
     for k in range(n):
-        i = largest_complex(A, B, n, k)
+        i = find_complex_pivot(A, B, n, k)
         pivots[k] = i
-        exchange(A, n, i, k)
-        exchange(B, n, i, k)
+        exchange_rows(A, n, i, k)
+        exchange_rows(B, n, i, k)
         a = A[n * k + k]
         b = B[n * k + k]
         square = a * a + b * b
@@ -134,14 +134,14 @@ def factor_complex(A: cython.p_double, B: cython.p_double, n: cython.int, pivots
     return True
 
 
-def largest_complex(A: cython.p_double, B: cython.p_double, n: cython.int, k: cython.int) -> cython.int:
-    """The row from k on with the largest entry in column k, by the sum of its parts."""
+def find_complex_pivot(A: cython.p_double, B: cython.p_double, n: cython.int, k: cython.int) -> cython.int:
+    """Return the row from k on with the largest entry in column k, by the sum of its parts' magnitudes."""
     i: cython.int
-    found: cython.int = k
+    pivot_row: cython.int = k
     for i in range(k + 1, n):
-        if fabs(A[n * i + k]) + fabs(B[n * i + k]) > fabs(A[n * found + k]) + fabs(B[n * found + k]):
-            found = i
-    return found
+        if fabs(A[n * i + k]) + fabs(B[n * i + k]) > fabs(A[n * pivot_row + k]) + fabs(B[n * pivot_row + k]):
+            pivot_row = i
+    return pivot_row
 
 
 def solve_complex(
@@ -157,8 +157,8 @@ def solve_complex(
     j: cython.Py_ssize_t
     u: cython.double
     v: cython.double
-    swap(x, pivots, n)
-    swap(y, pivots, n)
+    permute_vector(x, pivots, n)
+    permute_vector(y, pivots, n)
     for i in range(1, n):
         u = x[i]
         v = y[i]

@@ -1,6 +1,6 @@
 """Applied loads: forces and couples from outside, between two points, and between the two bodies of a joint.
 
-Each is put on the bodies as force and moment; what it does there (value, rate, power) is kept for the results.
+Each is applied to the bodies as force and moment; its value, rate and power are stored for the results.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ except ImportError:
 if not cython.compiled:
     from math import atan2, tanh
 
-    from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
-    from heuncli.kernel.bushings import bushing_energy, bushing_load
-    from heuncli.kernel.closures import push_condition
-    from heuncli.kernel.directions import direction_of
-    from heuncli.kernel.evaluator import value
-    from heuncli.kernel.ropes import motion_of_rope, rope_energy, rope_power
+    from heuncli.kernel.algebra import Vec3, cross, dot, norm, scale_vector, sub
+    from heuncli.kernel.bushings import apply_bushing_load, bushing_energy
+    from heuncli.kernel.closures import apply_condition_load
+    from heuncli.kernel.directions import world_direction
+    from heuncli.kernel.evaluator import evaluate_program
+    from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
     from heuncli.kernel.scene import (
         ACTUATOR,
         BUSHING_SHIFT,
@@ -40,71 +40,72 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import find_span_vector
-    from heuncli.kernel.tree import point_of, push
+    from heuncli.kernel.tree import locate_point, push_load
     from heuncli.kernel.values import PointMotion, RopeMotion
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
-    """Put all applied loads on the bodies; power of those that have no potential [W]."""
+    """Apply all loads to the bodies. Returns the power of those that have no potential [W]."""
     i: cython.Py_ssize_t
     power: cython.double = 0.0
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for i in range(scene.load_count):
         load: cython.pointer[Load] = cython.address(scene.loads[i])
-        there: PointMotion = point_of(scene, load.b, load.q)
-        given: Vec3 = given_vector(scene, load)
-        load.at = there.x
+        point: PointMotion = locate_point(scene, load.b, load.q)
+        vector: Vec3 = evaluate_load_vector(scene, load)
+        load.at = point.x
         load.force = zero
         load.moment = zero
         if load.kind == FORCE or load.kind == COUPLE:
-            outer_load(scene, load, given, there.v)
+            apply_outer_load(scene, load, vector, point.v)
             power += load.power
         elif load.kind == SPRING or load.kind == ACTUATOR:
-            power += pair_load(scene, load, given, there.v)
+            power += apply_pair_load(scene, load, vector, point.v)
         elif load.kind == ROPE:
-            power += rope_load(scene, load, given)
+            power += apply_rope_load(scene, load, vector)
         elif load.kind >= BUSHING_SHIFT:
             shifts: cython.bint = load.kind == BUSHING_SHIFT
-            power += bushing_load(scene, load, given, motion_in(scene, load, there.v, shifts))
+            power += apply_bushing_load(scene, load, vector, relative_motion(scene, load, point.v, shifts))
         else:
-            power += joint_load(scene, load, given, there.v)
+            power += apply_joint_load(scene, load, vector, point.v)
     return power
 
 
-def given_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """The load's given components: numbers, or expressions at this instant."""
+def evaluate_load_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the load's components: numbers, or expressions at this instant."""
     return Vec3(
-        value(scene.programs, load.x) if load.x.count else load.vector.x,
-        value(scene.programs, load.y) if load.y.count else load.vector.y,
-        value(scene.programs, load.z) if load.z.count else load.vector.z,
+        evaluate_program(scene.programs, load.x) if load.x.count else load.vector.x,
+        evaluate_program(scene.programs, load.y) if load.y.count else load.vector.y,
+        evaluate_program(scene.programs, load.z) if load.z.count else load.vector.z,
     )
 
 
-def outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.void:
-    """A force on a point that moves with v, or a couple, from outside the system."""
-    turned: Vec3 = scaled(load.factor, direction_of(scene, load.b, given) if load.in_body else given)
-    load.value = norm(turned)
+def apply_outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3, v: Vec3) -> cython.void:
+    """Apply a force on a point that moves with v, or a couple, from outside the system."""
+    world_vector: Vec3 = scale_vector(load.factor, world_direction(scene, load.b, vector) if load.in_body else vector)
+    load.value = norm(world_vector)
     if load.kind == FORCE:
-        load.force = turned
-        load.power = dot(turned, v)
+        load.force = world_vector
+        load.power = dot(world_vector, v)
     else:
-        load.moment = turned
-        load.power = dot(turned, omega_of(scene, load.b))
-    push(scene, load.b, load.at, load.force, load.moment)
+        load.moment = world_vector
+        load.power = dot(world_vector, body_omega(scene, load.b))
+    push_load(scene, load.b, load.at, load.force, load.moment)
 
 
-def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.double:
-    """A spring F = -k (l - l0) - c ldot, or an actuator, along the line between two points; positive pushes apart.
+def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3, v: Vec3) -> cython.double:
+    """Apply a spring F = -k (l - l0) - c ldot, or an actuator, along the line between two points; positive pushes them
+    apart.
 
-    Within one body its length stays and its ends cancel: it moves nothing, but cuts between its points feel it. Gives
-    the power of what has no potential: the actuator's, or the spring's damping.
+    Within one body its length is constant and its forces cancel: it moves nothing, but sections between its points feel
+    it. Returns the power of what has no potential: the actuator's, or the spring's damping.
     """
     inside: cython.bint = load.a == load.b
-    here: PointMotion = point_of(scene, load.a, load.p)
-    span: Vec3 = sub(load.at, here.x)
-    load.from_at = here.x
+    start_point: PointMotion = locate_point(scene, load.a, load.p)
+    span: Vec3 = sub(load.at, start_point.x)
+    load.from_at = start_point.x
     load.span = norm(span)
-    load.rate = dot(span, sub(v, here.v))
+    load.rate = dot(span, sub(v, start_point.v))
     if load.span > 0.0:
         load.rate = load.rate / load.span
     if inside:
@@ -114,92 +115,97 @@ def pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: V
         load.value = -load.stiffness * (load.span - load.length) - load.coefficient * load.rate
         lost = -load.coefficient * load.rate * load.rate
     else:
-        load.value = given.x
+        load.value = vector.x
         lost = load.value * load.rate
     load.power = load.value * load.rate
     if load.span > 0.0:
         F: cython.double = load.value
         load.force = Vec3(F * span.x / load.span, F * span.y / load.span, F * span.z / load.span)
-    elif load.kind == SPRING and load.length == 0.0:  # no direction, nor force; but this is how the force begins
+    # no direction and no force; the formula gives the force to first order
+    elif load.kind == SPRING and load.length == 0.0:
         load.force = Vec3(0.0 - load.stiffness * span.x, 0.0 - load.stiffness * span.y, 0.0 - load.stiffness * span.z)
     if not inside:
-        push(scene, load.b, load.at, load.force, load.moment)
-        push(scene, load.a, load.from_at, scaled(-1.0, load.force), load.moment)
+        push_load(scene, load.b, load.at, load.force, load.moment)
+        push_load(scene, load.a, load.from_at, scale_vector(-1.0, load.force), load.moment)
     return lost
 
 
-def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, v: Vec3) -> cython.double:
-    """A torque, thrust or spring about or along the joint's axis, a damper or friction against its turning or sliding.
+def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3, v: Vec3) -> cython.double:
+    """Apply a torque, thrust or spring about or along the joint's axis, or a damper or friction against its motion.
 
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
-    against the direction of the motion; in a thread the force that goes with its moment is added. Gives the power of
-    what has no potential, less that of friction by what presses: that is found here as it is if 1 N does, and put on no
-    body (pressing.py).
+    against the direction of the motion; in a thread the force that goes with its moment is added. Returns the power of
+    what has no potential, without joint friction that depends on the joint's own load: that is found here for 1 N, and
+    not applied to any body (pressing.py).
     """
-    axis: Vec3 = direction_of(scene, load.a, load.axis)
+    axis: Vec3 = world_direction(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
-    motion: Vec3 = motion_in(scene, load, v, slides)
-    acts: Vec3
+    motion: Vec3 = relative_motion(scene, load, v, slides)
+    load_on_b: Vec3
     load.rate = dot(motion, axis)
     if load.kind <= TURN_SPRING:
-        load.value = given.x
+        load.value = vector.x
         if load.kind == TURN_SPRING:
-            load.span = turned_by(scene, load)
+            load.span = turn_spring_angle(scene, load)
             load.value = -load.stiffness * (load.span - load.length) - load.coefficient * load.rate
         load.power = load.value * load.rate
-        acts = scaled(load.value, axis)
+        load_on_b = scale_vector(load.value, axis)
     else:
         speed: cython.double = norm(motion)
         if not load.in_body:
-            load.rate = speed  # of motions about or along no one axis: how fast
-        against: cython.double = load.coefficient
+            load.rate = speed  # a motion without a single axis is measured by its speed
+        resistance_factor: cython.double = load.coefficient
         if load.kind >= TURN_FRICTION:
             if not load.presses:
-                load.pressed = given.x
-            against = load.coefficient * given.x / load.speed  # what it comes to at rest, as a slope
+                load.pressed = vector.x
+            resistance_factor = load.coefficient * vector.x / load.speed  # what it comes to at rest, as a slope
             if speed > 0.0:
-                against = load.coefficient * given.x * tanh(speed / load.speed) / speed
-        load.value = -against * load.rate
-        load.power = -against * speed * speed
-        acts = scaled(-against, motion)
+                resistance_factor = load.coefficient * vector.x * tanh(speed / load.speed) / speed
+        load.value = -resistance_factor * load.rate
+        load.power = -resistance_factor * speed * speed
+        load_on_b = scale_vector(-resistance_factor, motion)
     if slides:
-        load.force = acts
+        load.force = load_on_b
     else:
-        load.moment = acts
+        load.moment = load_on_b
     if load.kind == THREAD_FRICTION:
-        load.force = scaled(load.factor, acts)
-        load.power += dot(load.force, sliding_in(scene, load, v))
+        load.force = scale_vector(load.factor, load_on_b)
+        load.power += dot(load.force, sliding_velocity(scene, load, v))
     load.from_at = load.at
-    if load.presses:  # by a unit of it; what presses is found with the accelerations
-        load.unit = acts
+    if load.presses:  # for a normal force of 1 N; the normal force is found with the accelerations
+        load.unit = load_on_b
         return 0.0
-    push(scene, load.b, load.at, load.force, load.moment)
-    push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
+    push_load(scene, load.b, load.at, load.force, load.moment)
+    push_load(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
     return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power
 
 
-def rope_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3) -> cython.double:
-    """A rope that stretches, given its pull with the sign of a closure's multiplier; power of what has no potential."""
-    motion: RopeMotion = motion_of_rope(scene, load)
+def apply_rope_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3) -> cython.double:
+    """Apply an elastic rope with a given pull, signed like a closure's multiplier; return the power of what has no
+    potential.
+    """
+    motion: RopeMotion = measure_rope(scene, load)
     load.from_at = load.at
-    load.value = given.x
+    load.value = vector.x
     load.span = motion.S
     load.rate = motion.rate
     load.power = load.value * load.rate
-    pull_along(scene, load)
+    apply_rope_pull(scene, load)
     return rope_power(scene, load)
 
 
-def pull_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.void:
-    """Put what a rope pulls with on all bodies that it passes."""
+def apply_rope_pull(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.void:
+    """Apply a rope's pull to all bodies that it passes."""
     i: cython.Py_ssize_t
     for i in range(load.part, load.part + load.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
-        push_condition(scene, part, load.value * part.factor)
+        apply_condition_load(scene, part, load.value * part.factor)
 
 
-def potential_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """Of springs, ropes and bushings as the bodies stand, 0 where they are relaxed; none of other loads [J]."""
+def load_potential(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """Return the potential energy of a spring, rope or bushing at the present pose, 0 if relaxed; 0 for other loads
+    [J].
+    """
     stretch: cython.double = 0.0
     if load.kind == ROPE:
         return rope_energy(scene, load)
@@ -208,24 +214,25 @@ def potential_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cy
     elif load.kind == SPRING:
         stretch = norm(find_span_vector(scene, load)) - load.length
     elif load.kind == TURN_SPRING:
-        stretch = turned_by(scene, load) - load.length
+        stretch = turn_spring_angle(scene, load) - load.length
     return 0.5 * load.stiffness * stretch * stretch
 
 
-def turned_by(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """The angle of a turn spring, turns counted: a coordinate, or of a joint that was cut what the bodies' axes make.
+def turn_spring_angle(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """Return the angle of a turn spring, turns counted: a coordinate, or for a cut joint the angle between the bodies'
+    axes.
 
-    The latter in the revolution nearest to the angle that is counted along. What turns neither way keeps its angle.
+    The latter is taken in the revolution nearest to the counted angle. A joint that cannot turn keeps its angle.
     """
     if load.freedom >= 0:
         return scene.freedoms[load.freedom].q + load.offset
     if load.counter < 0:
         return load.offset
     counter: cython.pointer[Counter] = cython.address(scene.counters[load.counter])
-    n: Vec3 = direction_of(scene, load.a, load.axis)
-    before: Vec3 = direction_of(scene, load.a, load.across)
-    now: Vec3 = direction_of(scene, load.b, load.mark)
-    angle: cython.double = atan2(dot(n, cross(before, now)), dot(before, now))
+    n: Vec3 = world_direction(scene, load.a, load.axis)
+    reference: Vec3 = world_direction(scene, load.a, load.across)
+    marker: Vec3 = world_direction(scene, load.b, load.mark)
+    angle: cython.double = atan2(dot(n, cross(reference, marker)), dot(reference, marker))
     half: cython.double = 3.141592653589793
     while counter.counted - angle > half:
         angle += 2.0 * half
@@ -234,21 +241,21 @@ def turned_by(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cytho
     return angle
 
 
-def motion_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3, slides: cython.bint) -> Vec3:
-    """Velocity of b's point, which moves with v, or angular velocity of b, as seen from a."""
-    return sliding_in(scene, load, v) if slides else sub(omega_of(scene, load.b), omega_of(scene, load.a))
+def relative_motion(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3, slides: cython.bint) -> Vec3:
+    """Return the velocity of b's point, which moves with v, or the angular velocity of b, as seen from a."""
+    return sliding_velocity(scene, load, v) if slides else sub(body_omega(scene, load.b), body_omega(scene, load.a))
 
 
-def sliding_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> Vec3:
-    """Velocity of b's point, which moves with v, as seen from a."""
+def sliding_velocity(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> Vec3:
+    """Return the velocity of b's point, which moves with v, as seen from a."""
     if load.a < 0:
         return v
     a: cython.pointer[Body] = cython.address(scene.bodies[load.a])
     return sub(sub(v, cross(a.omega, sub(load.at, a.r))), a.v)
 
 
-def omega_of(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """Angular velocity of a body; none of the ground's."""
+def body_omega(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """Return the angular velocity of a body; zero for the ground."""
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return scene.bodies[body].omega

@@ -1,8 +1,9 @@
-"""A load fixed in a carrier, between two bodies that it carries: what teeth, threads and belts hold.
+"""A load fixed in a carrier, between two bodies that it carries: the condition of teeth, threads and belts.
 
     f . (v_b - v_a) + m . (omega_b - omega_a) = 0        f, m and the place Q fixed in the body c
-Bodies turn and slide in their joints on c alone, so that the sum of their coordinates, each times the work that the
-load does as it grows by one, stays as it is: that is the gap.
+
+The bodies turn and slide in their joints on c only. So the sum of their coordinates, each times the work of the load
+for a unit of it, is constant: that is the gap.
 """
 
 from __future__ import annotations
@@ -14,26 +15,27 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_scaled, cross, dot, sub
-    from heuncli.kernel.carried_points import carried, place_of
-    from heuncli.kernel.directions import direction_of
+    from heuncli.kernel.carried_points import point_motion, world_place
+    from heuncli.kernel.directions import world_direction
     from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import Carried
+    from heuncli.kernel.values import PointKinematics
 
 
-def mesh_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+def measure_mesh(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """gamma = f . (w_b - w_a) + (omega_c x f) . (v_b - v_a) + (omega_c x m) . (omega_b - omega_a).
 
-    w = omega x (omega x arm) + omega x (v_c - v): of a body's point that stays at Q, what velocities alone make.
+    w = omega x (omega x arm) + omega x (v_c - v): the velocity-dependent acceleration of a body's point that stays at
+    Q.
     """
-    row.Q = place_of(scene, row.c, row.p)
-    c: Carried = carried(scene, row.c, row.Q)
-    b: Carried = carried(scene, row.b, row.Q)
-    a: Carried = carried(scene, row.a, row.Q)
+    row.Q = world_place(scene, row.c, row.p)
+    c: PointKinematics = point_motion(scene, row.c, row.Q)
+    b: PointKinematics = point_motion(scene, row.b, row.Q)
+    a: PointKinematics = point_motion(scene, row.a, row.Q)
     v: Vec3 = sub(b.v, a.v)
     turn: Vec3 = sub(b.omega, a.omega)
-    row.f = direction_of(scene, row.c, row.e)
-    row.m = direction_of(scene, row.c, row.g)
+    row.f = world_direction(scene, row.c, row.e)
+    row.m = world_direction(scene, row.c, row.g)
     row.gap = row.ratio * scene.freedoms[row.freedom].q + row.ratio_b * scene.freedoms[row.freedom_b].q - row.length
     row.rate = dot(row.f, v) + dot(row.m, turn)
     w: Vec3 = sub(b.centripetal, a.centripetal)

@@ -1,4 +1,4 @@
-"""How fast points of bodies may be over a stretch of time, by the bounds of the bodies' motions (points.py)."""
+"""Bound speeds and accelerations of bodies' points over an interval of time, from the bodies' bounds (points.py)."""
 
 from __future__ import annotations
 
@@ -14,29 +14,30 @@ if not cython.compiled:
 
 
 def bound_acceleration(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """The largest acceleration of a body's point over the part."""
+    """Return the largest acceleration of a body's point over the part."""
     if body < 0:
         return 0.0
-    # the dense outputs of coordinates and of rates agree to the error of a step, far better than to an eighth
+    # 9/8: the dense outputs of coordinates and of rates agree to the error of a step, far better than to an
+    # eighth
     spin: cython.double = points.spin[body]
     return 1.125 * (points.pull[body] + (points.twist[body] + spin * spin) * norm(q))
 
 
 def bound_speed(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """The largest speed of a body's point over the part."""
+    """Return the largest speed of a body's point over the part."""
     return 1.125 * (points.speed[body] + points.spin[body] * norm(q)) if body >= 0 else 0.0
 
 
 def bound_reach(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """How far a body's point may be from the origin."""
+    """Return how far a body's point may be from the origin."""
     return norm(q) + (points.reach[body] if body >= 0 else 0.0)
 
 
 def bound_spin(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
-    """How fast a body may turn."""
+    """Return the largest angular velocity of a body."""
     return 1.125 * points.spin[body] if body >= 0 else 0.0
 
 
 def bound_twist(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
-    """How fast that may change."""
+    """Return the largest angular acceleration of a body."""
     return 1.125 * points.twist[body] if body >= 0 else 0.0

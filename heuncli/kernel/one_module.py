@@ -1,11 +1,11 @@
-"""The text of the kernel's one extension module, made of its Python files where it is compiled, and committed nowhere.
+"""Generate the kernel's one extension module from its Python files when it is compiled; the text is never committed.
 
-    compiled.pxd    what has to be known before any function: enumerations, structs, extension types (headers.py)
+    compiled.pxd    what must be known before any function: enumerations, structs, extension types (headers.py)
     compiled.pyx    C's library, constants, functions that are inlined where they are used; then an `include` a module
     NAME.pxi        the module NAME.py line for line, so that errors name the right line: without its imports, with the
-                    heads of C functions and extension types as Cython has them. All else stays as it is written
+                    heads of C functions and extension types in Cython's form. All else stays as it is written
 
-Everything of the kernel is in one name space there, so a name has one meaning in all of its modules.
+The whole kernel is one name space there, so a name has one meaning in all of its modules.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from pathlib import Path
 from heuncli.kernel import headers
 from heuncli.kernel.headers import PACKAGE
 from heuncli.kernel.modules import DECLARED, MODULES, NAME
-from heuncli.kernel.sources import digest_code, digest_texts, read
+from heuncli.kernel.sources import digest_code, digest_texts, read_module
 
-FIRST = """\
+HEADER = """\
 # Made of heuncli/kernel/*.py by one_module.py.
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ NUMBERS = '''cdef extern from *:
 {given}    """
 {known}
 '''
-OWN = ("TEXT_DIGEST", "CODE_DIGESTS", "cython")  # names that compose() gives
+GENERATED_NAMES = ("TEXT_DIGEST", "CODE_DIGESTS", "cython")  # names that compose() gives
 
 
 class DuplicateName(Exception):
     """A name has two meanings in the kernel."""
 
 
-def write(folder: Path, to: Path) -> Path:
-    """Write the text for the kernel's files in a folder into another, below their package; the path of the .pyx.
+def write_sources(folder: Path, target: Path) -> Path:
+    """Write the Cython text of a kernel folder below another folder, in their package; return the path of the .pyx.
 
-    What says the same stays as it is, with its time. Raises DuplicateName.
+    Files whose text does not change keep their time. Raises DuplicateName.
     """
-    package = to.joinpath(*PACKAGE.split("."))
+    package = target.joinpath(*PACKAGE.split("."))
     package.mkdir(parents=True, exist_ok=True)
-    modules = parse(folder)
+    modules = parse_modules(folder)
     refuse_duplicates(modules)
-    structs = headers.known_structs(modules)
-    texts = {f"{name}.pxi": include(read(str(folder), name), modules[name], structs) for name in MODULES}
-    texts |= {f"{NAME}.pxd": headers.declare(modules), f"{NAME}.pyx": compose(folder, modules)}
+    structs = headers.find_struct_names(modules)
+    texts = {f"{name}.pxi": convert_module(read_module(str(folder), name), modules[name], structs) for name in MODULES}
+    texts |= {f"{NAME}.pxd": headers.generate_declarations(modules), f"{NAME}.pyx": compose(folder, modules)}
     texts |= {"__init__.pxd": "", "../__init__.pxd": ""}
     for name, text in texts.items():
         path = package / name
@@ -59,45 +59,45 @@ def write(folder: Path, to: Path) -> Path:
     return package / f"{NAME}.pyx"
 
 
-def parse(folder: Path) -> dict[str, ast.Module]:
-    """All modules of the kernel by their names, those first that only declare."""
-    return {name: ast.parse(read(str(folder), name)) for name in (*DECLARED, *MODULES)}
+def parse_modules(folder: Path) -> dict[str, ast.Module]:
+    """Parse all modules of the kernel by name; those that only declare come first."""
+    return {name: ast.parse(read_module(str(folder), name)) for name in (*DECLARED, *MODULES)}
 
 
 def compose(folder: Path, modules: dict[str, ast.Module]) -> str:
-    """The text of the .pyx."""
-    blocks = {name: headers.plain_block(module) for name, module in modules.items() if name in MODULES}
-    library = sorted({name for block in blocks.values() for name in headers.library(block)})
-    taken = {ast.unparse(node) for name in MODULES for node in modules[name].body if is_import(node)}
-    numbers = [pair for name in MODULES for pair in headers.floats(modules[name])]
-    structs = headers.known_structs(modules)
-    inlined = [text for name in DECLARED for text in headers.inlined_functions(modules[name], structs)]
+    """Return the text of the .pyx."""
+    blocks = {name: headers.find_plain_block(module) for name, module in modules.items() if name in MODULES}
+    library = sorted({name for block in blocks.values() for name in headers.find_library_names(block)})
+    imports = {ast.unparse(node) for name in MODULES for node in modules[name].body if is_import(node)}
+    numbers = [pair for name in MODULES for pair in headers.find_float_constants(modules[name])]
+    structs = headers.find_struct_names(modules)
+    inline_functions = [text for name in DECLARED for text in headers.generate_inline_functions(modules[name], structs)]
     parts = [
-        FIRST,
+        HEADER,
         f"from libc.math cimport {', '.join(library)}\n",
-        "".join(f"{line}\n" for line in sorted(taken)),
+        "".join(f"{line}\n" for line in sorted(imports)),
         f'TEXT_DIGEST = "{digest_texts(str(folder))}"\nCODE_DIGESTS = {digest_code(str(folder))}\n',
         NUMBERS.format(
             given="".join(f"    static const double heun_{name} = {number!r};\n" for name, number in numbers),
             known="\n".join(f'    const double {name} "heun_{name}"' for name, _ in numbers),
         ),
-        *inlined,
+        *inline_functions,
         "".join(f'include "{name}.pxi"\n' for name in MODULES),
     ]
     return "\n".join(parts)
 
 
 def is_import(node: ast.stmt) -> bool:
-    """Whether a statement imports what the compiled kernel needs of Python."""
+    """Return whether a statement imports what the compiled kernel needs from Python."""
     return isinstance(node, ast.Import) or (isinstance(node, ast.ImportFrom) and node.module != "__future__")
 
 
-def include(text: str, module: ast.Module, structs: frozenset[str]) -> str:
-    """A module's text as the .pyx includes it, line for line."""
+def convert_module(text: str, module: ast.Module, structs: frozenset[str]) -> str:
+    """Return a module's text in the form that the .pyx includes, line for line."""
     lines = text.splitlines()
     for node in module.body:
-        if isinstance(node, (ast.Import, ast.ImportFrom, ast.Try, ast.If)) or headers.is_float(node):
-            blank(lines, node.lineno, node.end_lineno or node.lineno)
+        if isinstance(node, (ast.Import, ast.ImportFrom, ast.Try, ast.If)) or headers.is_float_constant(node):
+            clear_lines(lines, node.lineno, node.end_lineno or node.lineno)
         elif isinstance(node, ast.FunctionDef):
             rewrite_head(lines, node, structs)
         elif isinstance(node, ast.ClassDef):
@@ -109,14 +109,14 @@ def include(text: str, module: ast.Module, structs: frozenset[str]) -> str:
 
 
 def rewrite_head(lines: list[str], node: ast.FunctionDef, structs: frozenset[str]) -> None:
-    """The head of a C function as Cython has it, on its first line; other functions stay as they are."""
-    for signature in headers.signature(node, structs):
-        blank(lines, node.lineno, node.body[0].lineno - 1)
+    """Write the head of a C function in Cython's form on its first line; leave other functions unchanged."""
+    for signature in headers.generate_signature(node, structs):
+        clear_lines(lines, node.lineno, node.body[0].lineno - 1)
         lines[node.lineno - 1] = f"{' ' * node.col_offset}{signature}:"
 
 
-def blank(lines: list[str], first: int, last: int) -> None:
-    """Empty lines, the first of a file being 1."""
+def clear_lines(lines: list[str], first: int, last: int) -> None:
+    """Empty some lines; the first of a file is 1."""
     lines[first - 1 : last] = [""] * (last - first + 1)
 
 
@@ -124,12 +124,12 @@ def blank(lines: list[str], first: int, last: int) -> None:
 
 
 def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
-    """Raises DuplicateName where a name of the kernel is defined twice, or is one of Python's own or of C's library."""
-    blocks = [headers.plain_block(module) for name, module in modules.items() if name in MODULES]
-    places = dict.fromkeys(dir(builtins), "Python itself") | dict.fromkeys(OWN, "one_module.py")
-    places |= {name: "C's library" for block in blocks for name in headers.library(block)}
+    """Raises DuplicateName if a name of the kernel is defined twice, or is one of Python's own or of C's library."""
+    blocks = [headers.find_plain_block(module) for name, module in modules.items() if name in MODULES]
+    places = dict.fromkeys(dir(builtins), "Python itself") | dict.fromkeys(GENERATED_NAMES, "one_module.py")
+    places |= {name: "C's library" for block in blocks for name in headers.find_library_names(block)}
     wrong = []
-    for module, name, line in defined_names(modules):
+    for module, name, line in iter_defined_names(modules):
         place = f"{module}.py:{line}"
         if name in places:
             wrong.append(f"{name} is in {places[name]} and in {place}")
@@ -138,10 +138,10 @@ def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
         raise DuplicateName(f"the kernel is compiled as one module, where a name has one meaning: {'; '.join(wrong)}")
 
 
-def defined_names(modules: dict[str, ast.Module]) -> Iterator[tuple[str, str, int]]:
-    """Module, name and line of all that is defined at the top of modules, or in their blocks for plain Python."""
+def iter_defined_names(modules: dict[str, ast.Module]) -> Iterator[tuple[str, str, int]]:
+    """Yield module, name and line of all that is defined at the top of modules, or in their blocks for plain Python."""
     for module, text in modules.items():
-        for node in (*text.body, *([] if module in DECLARED else headers.plain_block(text))):
+        for node in (*text.body, *([] if module in DECLARED else headers.find_plain_block(text))):
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
                 yield module, node.name, node.lineno
             elif isinstance(node, ast.Assign):

@@ -1,12 +1,14 @@
-"""Multipliers of the closures and what they make of the freedoms, by an orthogonal factorisation: no squares.
+"""Multipliers of the closures and their effect on the freedoms, by an orthogonal factorisation: nothing is squared.
 
     M = L^-T D L^-1 by the sweep, D of the freedoms;  B = D^(-1/2) E,  its columns e_r of the independent rows
     B = Q R;   x = D^(-1/2) e  ->  x + B lambda,   B'(x + B lambda) = -demand
     y = -R^-T demand,  lambda = R^-1 (y - Q'x),    x <- x + Q (y - Q'x)
-A = B'B = J M^-1 J' has the square of B's condition, its Cholesky factor no digit left where B has half of them. Loads
-come in through Q'x, which divides by R once; what the rows demand is divided twice, as it must be. R by Householder's
-reflectors 1 - 2 v v' / v'v, one column after the other, each over the freedoms that it and earlier rows meet; the pivot
-is the largest entry left, which keeps what light and heavy bodies share (Cox and Higham, BIT 38 (1998) 34-50).
+
+A = B'B = J M^-1 J' has the square of B's condition number: its Cholesky factor has no digit left where B has half of
+them. Loads enter through Q'x, which is divided by R once; the rows' demands are divided twice, as they must be. R is
+found by Householder reflectors 1 - 2 v v' / v'v, one column after the other, each over the freedoms of it and of
+earlier rows; the pivot is the largest entry left, which preserves what light and heavy bodies share (Cox and Higham,
+BIT 38 (1998) 34-50).
 """
 
 from __future__ import annotations
@@ -19,23 +21,29 @@ except ImportError:
 if not cython.compiled:
     from math import fabs, sqrt
 
-    from heuncli.kernel.algebra import Vec3, from_half, half_solve, roots
-    from heuncli.kernel.closures import build_column, clear_path, put_unit_load, size_of_demand, sweep_column
-    from heuncli.kernel.plane_rows import spread_in_plane
+    from heuncli.kernel.algebra import Vec3, half_solve, inverse_diagonal_roots, undo_half_solve
+    from heuncli.kernel.closures import (
+        add_unit_load,
+        build_column,
+        clear_path,
+        size_of_required_acceleration,
+        sweep_column,
+    )
+    from heuncli.kernel.plane_rows import spread_row_in_plane
     from heuncli.kernel.scene import Body, Closure, Freedom, Scene
     from heuncli.kernel.shadow import cython
 
 
 def factor_closures(scene: cython.pointer[Scene]) -> cython.double:
-    """R and the reflectors over the independent rows; the least pivot.
+    """Find R and the reflectors over the independent rows. Returns the smallest pivot.
 
-    A pivot is what is left of a row by the earlier ones, squared, relative to what it could answer when the rows were
-    chosen: a row that vanishes counts. -1 where nothing is left.
+    A pivot is what earlier rows leave of a row, squared, relative to its response when the rows were chosen: so a row
+    that vanishes counts. -1 if nothing is left.
     """
     i: cython.Py_ssize_t
     pivot: cython.double
     least: cython.double = 1.0
-    take_roots(scene)
+    set_inertia_roots(scene)
     for i in range(scene.answer_count):
         scene.taken[i] = 0
     for i in range(scene.selected_count):
@@ -45,11 +53,11 @@ def factor_closures(scene: cython.pointer[Scene]) -> cython.double:
     return least
 
 
-def take_roots(scene: cython.pointer[Scene]) -> cython.void:
-    """D^(-1/2) of all freedoms, a ball's three turns by the factors of its inertia."""
+def set_inertia_roots(scene: cython.pointer[Scene]) -> cython.void:
+    """Set D^(-1/2) of all freedoms; for a ball's three rotations from the factors of its inertia."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    at: cython.Py_ssize_t
+    offset: cython.Py_ssize_t
     if scene.flat:
         for k in range(scene.freedom_count):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
@@ -57,111 +65,113 @@ def take_roots(scene: cython.pointer[Scene]) -> cython.void:
         return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        at = body.answer_at
+        offset = body.answer_at
         if body.ball:
-            r: Vec3 = roots(body.turning)
-            scene.root[at] = r.x
-            scene.root[at + 1] = r.y
-            scene.root[at + 2] = r.z
-            at += 3
+            r: Vec3 = inverse_diagonal_roots(body.turning)
+            scene.root[offset] = r.x
+            scene.root[offset + 1] = r.y
+            scene.root[offset + 2] = r.z
+            offset += 3
         for k in range(body.first_freedom, body.end_freedom):
-            scene.root[at] = sqrt(scene.freedoms[k].D)
-            at += 1
+            scene.root[offset] = sqrt(scene.freedoms[k].D)
+            offset += 1
 
 
-def halve(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cython.p_double) -> cython.void:
+def scale_by_roots(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cython.p_double) -> cython.void:
     """x <- D^(-1/2) x on the freedoms of one body."""
     k: cython.Py_ssize_t
-    at: cython.Py_ssize_t = body.answer_at
+    offset: cython.Py_ssize_t = body.answer_at
     if body.ball:
-        root: Vec3 = Vec3(scene.root[at], scene.root[at + 1], scene.root[at + 2])
-        turns: Vec3 = half_solve(body.turning, root, Vec3(x[at], x[at + 1], x[at + 2]))
-        x[at] = turns.x
-        x[at + 1] = turns.y
-        x[at + 2] = turns.z
-        at += 3
-    for k in range(at, at + body.end_freedom - body.first_freedom):
+        root: Vec3 = Vec3(scene.root[offset], scene.root[offset + 1], scene.root[offset + 2])
+        turns: Vec3 = half_solve(body.turning, root, Vec3(x[offset], x[offset + 1], x[offset + 2]))
+        x[offset] = turns.x
+        x[offset + 1] = turns.y
+        x[offset + 2] = turns.z
+        offset += 3
+    for k in range(offset, offset + body.end_freedom - body.first_freedom):
         x[k] *= scene.root[k]
 
 
-def add_doubled(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cython.p_double) -> cython.void:
-    """e <- e + D^(1/2) x on the freedoms of one body; what has no D answers nothing."""
+def add_unscaled(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cython.p_double) -> cython.void:
+    """e <- e + D^(1/2) x on the freedoms of one body; freedoms without D do not respond."""
     k: cython.Py_ssize_t
-    at: cython.Py_ssize_t = body.answer_at
+    offset: cython.Py_ssize_t = body.answer_at
     if body.ball:
-        if scene.root[at] > 0.0:
-            root: Vec3 = Vec3(scene.root[at], scene.root[at + 1], scene.root[at + 2])
-            turns: Vec3 = from_half(body.turning, root, Vec3(x[at], x[at + 1], x[at + 2]))
-            scene.e[at] += turns.x
-            scene.e[at + 1] += turns.y
-            scene.e[at + 2] += turns.z
-        at += 3
-    for k in range(at, at + body.end_freedom - body.first_freedom):
+        if scene.root[offset] > 0.0:
+            root: Vec3 = Vec3(scene.root[offset], scene.root[offset + 1], scene.root[offset + 2])
+            turns: Vec3 = undo_half_solve(body.turning, root, Vec3(x[offset], x[offset + 1], x[offset + 2]))
+            scene.e[offset] += turns.x
+            scene.e[offset + 1] += turns.y
+            scene.e[offset + 2] += turns.z
+        offset += 3
+    for k in range(offset, offset + body.end_freedom - body.first_freedom):
         if scene.root[k] > 0.0:
             scene.e[k] += x[k] / scene.root[k]
 
 
-def answer_of_sides(
+def response_of_sides(
     scene: cython.pointer[Scene], whole: cython.pointer[Closure], row: cython.pointer[Closure]
 ) -> cython.double:
-    """e . D^-1 e of the row's load on one of its two bodies alone, and on the other; whole: what it is a part of."""
-    found: cython.double = answer_of_side(scene, whole, row, row.b, 1.0)
-    return found + answer_of_side(scene, whole, row, row.a, -1.0)
+    """Return e . D^-1 e of the row's load on one of its two bodies alone, plus that on the other; whole: the row it is
+    a part of.
+    """
+    total: cython.double = response_of_side(scene, whole, row, row.b, 1.0)
+    return total + response_of_side(scene, whole, row, row.a, -1.0)
 
 
-def answer_of_side(
+def response_of_side(
     scene: cython.pointer[Scene],
     whole: cython.pointer[Closure],
     row: cython.pointer[Closure],
     body: cython.int,
     sign: cython.double,
 ) -> cython.double:
-    """e . D^-1 e of the row's load on one body."""
+    """Return e . D^-1 e of the row's load on one body."""
     clear_path(scene, whole)
-    put_unit_load(scene, row, body, sign)
+    add_unit_load(scene, row, body, sign)
     sweep_column(scene, whole)
     spread_column(scene, whole)
-    return answer_of_spread(scene, whole)
+    return response_of_spread(scene, whole)
 
 
-def answer_of_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+def response_of_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """e_r . D^-1 e_r."""
     spread_row(scene, row)
-    return answer_of_spread(scene, row)
+    return response_of_spread(scene, row)
 
 
-def answer_of_spread(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """e . D^-1 e of the column that is spread."""
+def response_of_spread(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return e . D^-1 e of the column that is spread."""
     k: cython.Py_ssize_t
-    found: cython.double = 0.0
+    total: cython.double = 0.0
     x: cython.double
     for k in range(row.answer_count):
         x = scene.spread[scene.indices[row.answers + k]]
-        found += x * x
-    return found
+        total += x * x
+    return total
 
 
 def spread_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """The row's column of B, spread over all freedoms."""
+    """Spread the row's column of B over all freedoms."""
     if scene.flat:
-        spread_in_plane(scene, row)
+        spread_row_in_plane(scene, row)
         return
     build_column(scene, row)
     spread_column(scene, row)
 
 
 def spread_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """The row's column of B from e_r as it is built, spread over all freedoms."""
+    """Spread the row's column of B, from e_r as it is built, over all freedoms."""
     k: cython.Py_ssize_t
     for k in range(row.filled_count):
         scene.spread[scene.indices[row.answers + k]] = 0.0
     for k in range(row.answer_count):
         scene.spread[scene.indices[row.answers + k]] = scene.columns[row.column + k]
     for k in range(row.path, row.path + row.path_count):
-        halve(scene, cython.address(scene.bodies[scene.indices[k]]), scene.spread)
+        scale_by_roots(scene, cython.address(scene.bodies[scene.indices[k]]), scene.spread)
 
 
-def reflect(scene: cython.pointer[Scene], row: cython.pointer[Closure], x: cython.p_double) -> cython.void:
+def apply_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure], x: cython.p_double) -> cython.void:
     """x <- (1 - 2 v v' / v'v) x by the row's reflector v."""
     k: cython.Py_ssize_t
     along: cython.double = 0.0
@@ -175,8 +185,8 @@ def reflect(scene: cython.pointer[Scene], row: cython.pointer[Closure], x: cytho
         x[scene.support[k]] -= along * v[k]
 
 
-def list_coupled(scene: cython.pointer[Scene]) -> cython.void:
-    """Of each independent row the places of the earlier ones that fill it, ascending."""
+def list_coupled_rows(scene: cython.pointer[Scene]) -> cython.void:
+    """List for each independent row the ranks of the earlier ones that fill it, ascending."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for i in range(scene.selected_count):
@@ -190,7 +200,7 @@ def list_coupled(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
-    """Row i of R' and the reflector that ends its column; its pivot."""
+    """Find row i of R' and the reflector that ends its column. Returns its pivot."""
     k: cython.Py_ssize_t
     m: cython.Py_ssize_t = scene.selected_count
     rank: cython.int
@@ -203,7 +213,7 @@ def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
     for k in range(row.couplings, row.couplings + row.coupled_count):
         rank = scene.coupled[k]
         earlier: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[rank]])
-        reflect(scene, earlier, scene.spread)
+        apply_reflector(scene, earlier, scene.spread)
         R[m * i + rank] = scene.spread[earlier.pivot_at]
     left: cython.double = make_reflector(scene, row)
     if left == 0.0:
@@ -214,7 +224,7 @@ def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
 
 
 def begin_row(scene: cython.pointer[Scene], i: cython.Py_ssize_t, first: cython.int) -> cython.void:
-    """Row i of R' begins at the first independent row that fills it."""
+    """Begin row i of R' at the first independent row that fills it."""
     k: cython.Py_ssize_t
     scene.envelope[i] = first
     for k in range(first, i):
@@ -222,16 +232,17 @@ def begin_row(scene: cython.pointer[Scene], i: cython.Py_ssize_t, first: cython.
 
 
 def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """The reflector that leaves of a column one entry where it is largest, and that entry; 0 where nothing is left.
+    """Make the reflector that leaves one entry of a column, where it is largest; return that entry, 0 if nothing is
+    left.
 
-    It is kept where it is not zero: the pivots of earlier rows drop out, so that loops in a row stay apart.
+    Only its nonzero entries are stored: the pivots of earlier rows drop out, so that loops in a chain stay separate.
     """
     k: cython.Py_ssize_t
     answer: cython.int
     x: cython.double
     square: cython.double = 0.0
     largest: cython.double = 0.0
-    at: cython.Py_ssize_t = -1
+    pivot_position: cython.Py_ssize_t = -1
     n: cython.Py_ssize_t = row.column
     for k in range(row.answers, row.answers + row.filled_count):
         answer = scene.indices[k]
@@ -243,25 +254,25 @@ def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
         square += x * x
         if fabs(x) > largest:
             largest = fabs(x)
-            at = n
+            pivot_position = n
         n += 1
     row.support_count = n - row.column
     row.reflector = 0.0
     row.pivot_at = scene.indices[row.answers]
-    if at < 0:
+    if pivot_position < 0:
         row.support_count = 0
         return 0.0
     length: cython.double = sqrt(square)
-    left: cython.double = -length if scene.columns[at] > 0.0 else length
-    scene.columns[at] -= left
+    left: cython.double = -length if scene.columns[pivot_position] > 0.0 else length
+    scene.columns[pivot_position] -= left
     row.reflector = 1.0 / (square + length * largest)
-    row.pivot_at = scene.support[at]
+    row.pivot_at = scene.support[pivot_position]
     scene.taken[row.pivot_at] = 1
     return left
 
 
 def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
-    """The multipliers that meet what the rows demand, and what they add to the loads e that the freedoms answer."""
+    """Find the multipliers that meet the rows' demands, and add their effect to the loads e on the freedoms."""
     i: cython.Py_ssize_t
     m: cython.Py_ssize_t = scene.selected_count
     x: cython.p_double = scene.spread
@@ -270,8 +281,8 @@ def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
         scene.closures[i].multiplier = 0.0
     scene.load_size = size_of_loads(scene)
     for i in range(m):
-        reflect(scene, cython.address(scene.closures[scene.selected[i]]), x)
-    meet_demands(scene)
+        apply_reflector(scene, cython.address(scene.closures[scene.selected[i]]), x)
+    solve_demands(scene)
     for i in range(m):
         y[i] -= x[scene.closures[scene.selected[i]].pivot_at]
     for i in range(scene.answer_count):
@@ -279,29 +290,29 @@ def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
     for i in range(m):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
         x[row.pivot_at] = y[i]
-    divide_back(scene, y)
+    solve_backward(scene, y)
     for i in range(m):
         scene.closures[scene.selected[i]].multiplier = y[i]
     for i in range(m - 1, -1, -1):
-        reflect(scene, cython.address(scene.closures[scene.selected[i]]), x)
+        apply_reflector(scene, cython.address(scene.closures[scene.selected[i]]), x)
     if scene.flat:
         for i in range(scene.answer_count):
             if scene.root[i] > 0.0:
                 scene.e[i] += x[i] / scene.root[i]
         return
     for i in range(scene.body_count):
-        add_doubled(scene, cython.address(scene.bodies[i]), x)
+        add_unscaled(scene, cython.address(scene.bodies[i]), x)
 
 
-def meet_demands(scene: cython.pointer[Scene]) -> cython.void:
+def solve_demands(scene: cython.pointer[Scene]) -> cython.void:
     """y = -R^-T demand."""
     i: cython.Py_ssize_t
     for i in range(scene.selected_count):
         scene.y[i] = -scene.closures[scene.selected[i]].demand
-    divide(scene, scene.y)
+    solve_forward(scene, scene.y)
 
 
-def divide(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
+def solve_forward(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
     """y <- R^-T y."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -314,7 +325,7 @@ def divide(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
         y[i] = x * scene.R[m * i + i]
 
 
-def divide_back(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
+def solve_backward(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
     """y <- R^-1 y."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -325,10 +336,12 @@ def divide_back(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void
             y[k] -= scene.R[m * i + k] * y[i]
 
 
-def doubt_multipliers(scene: cython.pointer[Scene]) -> cython.void:
-    """What rounding may make of the multipliers: |R^-1| (rounding of x and of B lambda + |R^-T| rounding of demands).
+def estimate_multiplier_doubt(scene: cython.pointer[Scene]) -> cython.void:
+    """Estimate the rounding error of the multipliers: |R^-1| (rounding of x and of B lambda + |R^-T| rounding of
+    demands).
 
-    Signs that let the solutions grow stand for absolute values (LINPACK's estimate of a condition).
+    Instead of absolute values the signs are chosen that let the solutions grow (LINPACK's estimate of a condition
+    number).
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -344,7 +357,9 @@ def doubt_multipliers(scene: cython.pointer[Scene]) -> cython.void:
         z = 0.0
         for k in range(scene.envelope[i], i):
             z -= R[m * i + k] * y[k]
-        y[i] = grown(z, rounding * size_of_demand(scene, cython.address(scene.closures[scene.selected[i]])))
+        y[i] = grow_magnitude(
+            z, rounding * size_of_required_acceleration(scene, cython.address(scene.closures[scene.selected[i]]))
+        )
         y[i] *= R[m * i + i]
     for i in range(m):
         y[i] = fabs(y[i]) + loads
@@ -352,20 +367,20 @@ def doubt_multipliers(scene: cython.pointer[Scene]) -> cython.void:
         scene.closures[scene.selected[i]].doubt = 0.0
     for i in range(m - 1, -1, -1):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-        row.doubt = grown(row.doubt, y[i]) * R[m * i + i]
+        row.doubt = grow_magnitude(row.doubt, y[i]) * R[m * i + i]
         for k in range(scene.envelope[i], i):
             scene.closures[scene.selected[k]].doubt -= R[m * i + k] * row.doubt
     for i in range(m):
         scene.closures[scene.selected[i]].doubt = fabs(scene.closures[scene.selected[i]].doubt)
 
 
-def grown(x: cython.double, by: cython.double) -> cython.double:
-    """x with `by` added to its magnitude."""
-    return x + by if x > 0.0 else x - by
+def grow_magnitude(x: cython.double, increment: cython.double) -> cython.double:
+    """x with `increment` added to its magnitude."""
+    return x + increment if x > 0.0 else x - increment
 
 
 def size_of_loads(scene: cython.pointer[Scene]) -> cython.double:
-    """x = D^(-1/2) e, spread over all freedoms; |x|."""
+    """Set x = D^(-1/2) e, spread over all freedoms, and return |x|."""
     i: cython.Py_ssize_t
     square: cython.double = 0.0
     if scene.flat:
@@ -376,22 +391,22 @@ def size_of_loads(scene: cython.pointer[Scene]) -> cython.double:
     for i in range(scene.answer_count):
         scene.spread[i] = scene.e[i]
     for i in range(scene.body_count):
-        halve(scene, cython.address(scene.bodies[i]), scene.spread)
+        scale_by_roots(scene, cython.address(scene.bodies[i]), scene.spread)
     for i in range(scene.answer_count):
         square += scene.spread[i] * scene.spread[i]
     return sqrt(square)
 
 
 def size_of_multipliers(scene: cython.pointer[Scene]) -> cython.double:
-    """Sum of |b_r| |lambda_r|, the parts of B lambda."""
+    """Return the sum of |b_r| |lambda_r|, the parts of B lambda."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     m: cython.Py_ssize_t = scene.selected_count
     square: cython.double
-    found: cython.double = 0.0
+    total: cython.double = 0.0
     for i in range(m):
         square = 1.0 / (scene.R[m * i + i] * scene.R[m * i + i])
         for k in range(scene.envelope[i], i):
             square += scene.R[m * i + k] * scene.R[m * i + k]
-        found += sqrt(square) * fabs(scene.closures[scene.selected[i]].multiplier)
-    return found
+        total += sqrt(square) * fabs(scene.closures[scene.selected[i]].multiplier)
+    return total

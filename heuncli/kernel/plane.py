@@ -1,12 +1,13 @@
-"""Trees whose bodies turn about z and shift across it: the sweep of tree.py, where three numbers are a motion.
+"""Trees whose bodies turn about z and shift across it: the sweep of tree.py with three components for a motion.
 
     [n_z; f_x; f_y] = A [alpha_z; a_x; a_y] + [M_z; f_x; f_y]       what a joint must exert on its branch
-The turn and the two shifts are the whole of a motion, so the articulated inertia of a branch is one symmetric matrix of
-three (body.A; C and G are left alone; K has the sizes of its terms before any freedom gave way: K.xx of the turn, of
-masses at their levers, K.yy of the shifts). Behind a joint that turns freely nothing is left of the first row: what the
-branch puts on its parent is a mass, not the same in all directions, at the joint. Other fields are as in space, with
-what there is none of zero, so that loads and closures read them alike; heights along z stay, for lengths count them.
-Loads out of the plane are not found here: they move nothing.
+
+The turn and the two shifts are the whole motion, so the articulated inertia of a branch is one symmetric matrix of
+three (body.A; C and G are unused; K holds the sizes of its terms before any freedom was eliminated: K.xx of the turn,
+of masses at their levers, K.yy of the shifts). Behind a joint that turns freely nothing is left of the first row: the
+branch acts on its parent as a mass at the joint, not the same in all directions. Other fields are as in space, with
+zeros in the components that do not exist, so that loads and closures read them alike; heights along z are kept, because
+lengths include them. Loads out of the plane are not found here: they move nothing.
 """
 
 from __future__ import annotations
@@ -20,18 +21,18 @@ if not cython.compiled:
     from math import cos, sin
 
     from heuncli.kernel.algebra import Mat3, Sym3, Vec3
-    from heuncli.kernel.paths import run_along
+    from heuncli.kernel.paths import place_on_path
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Scene
     from heuncli.kernel.shadow import cython
 
 
 def move_in_plane(scene: cython.pointer[Scene]) -> cython.void:
-    """Attitudes, joint points, velocities (46) and velocity terms from the freedoms; clears the applied loads."""
+    """Find attitudes, joint points, velocities (46) and velocity terms from the freedoms; clear the applied loads."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        hang_in_plane(scene, body)
-        turn_in_plane(scene, body)
+        set_joint_point_in_plane(scene, body)
+        set_orientation_in_plane(scene, body)
         square: cython.double = -body.omega.z * body.omega.z
         x: cython.double = body.R.xx * body.first_moment.x - body.R.yx * body.first_moment.y
         y: cython.double = body.R.yx * body.first_moment.x + body.R.xx * body.first_moment.y
@@ -41,8 +42,8 @@ def move_in_plane(scene: cython.pointer[Scene]) -> cython.void:
         body.f_applied = Vec3(0.0, 0.0, 0.0)
 
 
-def hang_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.void:
-    """Joint point, its velocity and its velocity terms, from the parent and the shifts of the joint.
+def set_joint_point_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.void:
+    """Find the joint point, its velocity and its velocity terms, from the parent and the shifts of the joint.
 
     r = r_p + l,  v = v_p + omega_p x l + w,  a - a_p - alpha_p x l = omega_p x (omega_p x l + 2 w) + wdot, w = sum u s
     """
@@ -64,7 +65,7 @@ def hang_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> c
     for k in range(body.first_freedom, body.end_freedom):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
         if freedom.pieces:
-            place: Vec3 = run_along(scene, body.parent, freedom)
+            place: Vec3 = place_on_path(scene, body.parent, freedom)
             bent: cython.double = freedom.u * freedom.u
             x += place.x
             y += place.y
@@ -88,22 +89,22 @@ def hang_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> c
         body.v = Vec3(wx, wy, 0.0)
         body.a_bias = Vec3(px, py, 0.0)
         return
-    on: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-    omega: cython.double = on.omega.z
-    body.r = Vec3(on.r.x + x, on.r.y + y, on.r.z + body.joint_in_parent.z)
+    carrier: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
+    omega: cython.double = carrier.omega.z
+    body.r = Vec3(carrier.r.x + x, carrier.r.y + y, carrier.r.z + body.joint_in_parent.z)
     x *= omega
     y *= omega
-    body.v = Vec3(on.v.x - y + wx, on.v.y + x + wy, 0.0)
+    body.v = Vec3(carrier.v.x - y + wx, carrier.v.y + x + wy, 0.0)
     body.a_bias = Vec3(px - omega * (x + 2.0 * wy), py + omega * (2.0 * wx - y), 0.0)
 
 
-def turn_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.void:
-    """Attitude and angular velocity: the parent's, the frame's and the freedoms' turns about z, in any order."""
+def set_orientation_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.void:
+    """Find attitude and angular velocity: the sum of the parent's, the frame's and the freedoms' turns about z."""
     k: cython.Py_ssize_t
     angle: cython.double = 0.0
     omega: cython.double = 0.0
     udot: cython.double = 0.0
-    turns: cython.bint = False
+    has_turn: cython.bint = False
     c: cython.double = body.frame.xx
     s: cython.double = body.frame.yx
     x: cython.double
@@ -116,12 +117,12 @@ def turn_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> c
     for k in range(body.first_freedom, body.end_freedom):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
         if freedom.kind != SHIFT:
-            turns = True
+            has_turn = True
             freedom.s = freedom.direction
             angle += freedom.direction.z * freedom.q
             omega += freedom.direction.z * freedom.u
             udot += freedom.direction.z * freedom.udot
-    if turns:
+    if has_turn:
         cosine: cython.double = cos(angle)
         sine: cython.double = sin(angle)
         x = c * cosine - s * sine
@@ -133,20 +134,21 @@ def turn_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> c
 
 
 def factor_in_plane(scene: cython.pointer[Scene]) -> cython.int:
-    """Articulated inertias, from the tips to the roots, reduced by every freedom that is not driven.
+    """Find the articulated inertias, from the tips to the roots, reduced by every freedom that is not driven.
 
-    Gives the number of freedoms with no inertia behind them.
+    Returns the number of freedoms with no inertia behind them.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    idle: cython.int = 0
+    massless: cython.int = 0
     for i in range(scene.body_count):
-        own: cython.pointer[Body] = cython.address(scene.bodies[i])
-        own.A = Sym3(own.inertia.zz, -own.mc.y, own.mc.x, own.mass, 0.0, own.mass)
-        own.K = Sym3(own.inertia.zz, 0.0, 0.0, own.mass, 0.0, own.mass)
+        tip: cython.pointer[Body] = cython.address(scene.bodies[i])
+        tip.A = Sym3(tip.inertia.zz, -tip.mc.y, tip.mc.x, tip.mass, 0.0, tip.mass)
+        tip.K = Sym3(tip.inertia.zz, 0.0, 0.0, tip.mass, 0.0, tip.mass)
     for i in range(scene.body_count - 1, -1, -1):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        # a freedom's inertia is nothing beside that before any freedom was taken out: what is left of it is rounding
+        # compare a freedom's inertia with that before any freedom was eliminated: a much smaller rest is
+        # rounding
         mass: cython.double = scene.limits.no_inertia * body.K.yy
         turning: cython.double = scene.limits.no_inertia * body.K.xx
         for k in range(body.first_freedom, body.end_freedom):
@@ -154,22 +156,24 @@ def factor_in_plane(scene: cython.pointer[Scene]) -> cython.int:
             if freedom.driven:
                 freedom.D = 0.0
             elif freedom.kind == SHIFT:
-                idle += give_way_to_shift(body, freedom, mass)
+                massless += eliminate_shift(body, freedom, mass)
             else:
-                idle += give_way_to_turn(body, freedom, turning)
+                massless += eliminate_turn(body, freedom, turning)
         if body.parent >= 0:
             add_branch_in_plane(cython.address(scene.bodies[body.parent]), body)
-    return idle
+    return massless
 
 
-def give_way_to_turn(body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double) -> cython.int:
-    """U = I s, D = s . U, I <- I - U U' / D of a turn; 1 where it moves no more than `least`."""
+def eliminate_turn(
+    body: cython.pointer[Body], freedom: cython.pointer[Freedom], min_inertia: cython.double
+) -> cython.int:
+    """U = I s, D = s . U, I <- I - U U' / D for a turn. Returns 1 if its inertia is not above `min_inertia`."""
     turn: cython.double = body.A.xx
     x: cython.double = body.A.xy
     y: cython.double = body.A.xz
     freedom.U_turn = Vec3(0.0, 0.0, freedom.s.z * turn)
     freedom.U_shift = Vec3(freedom.s.z * x, freedom.s.z * y, 0.0)
-    freedom.D = 1.0 / turn if turn > least else 0.0
+    freedom.D = 1.0 / turn if turn > min_inertia else 0.0
     if freedom.D == 0.0:
         return 1
     ux: cython.double = freedom.D * x
@@ -178,8 +182,10 @@ def give_way_to_turn(body: cython.pointer[Body], freedom: cython.pointer[Freedom
     return 0
 
 
-def give_way_to_shift(body: cython.pointer[Body], freedom: cython.pointer[Freedom], least: cython.double) -> cython.int:
-    """What `give_way_to_turn` does, for a shift."""
+def eliminate_shift(
+    body: cython.pointer[Body], freedom: cython.pointer[Freedom], min_inertia: cython.double
+) -> cython.int:
+    """Do the same as `eliminate_turn` for a shift."""
     sx: cython.double = freedom.s.x
     sy: cython.double = freedom.s.y
     turn: cython.double = body.A.xy * sx + body.A.xz * sy
@@ -188,7 +194,7 @@ def give_way_to_shift(body: cython.pointer[Body], freedom: cython.pointer[Freedo
     D: cython.double = sx * x + sy * y
     freedom.U_turn = Vec3(0.0, 0.0, turn)
     freedom.U_shift = Vec3(x, y, 0.0)
-    freedom.D = 1.0 / D if D > least else 0.0
+    freedom.D = 1.0 / D if D > min_inertia else 0.0
     D = freedom.D
     body.A = Sym3(
         body.A.xx - D * turn * turn,
@@ -202,7 +208,7 @@ def give_way_to_shift(body: cython.pointer[Body], freedom: cython.pointer[Freedo
 
 
 def add_branch_in_plane(parent: cython.pointer[Body], body: cython.pointer[Body]) -> cython.void:
-    """The branch hangs at the arm l: K += K_b, C += C_b + l x K_b, A += A_b + 2 l x C_b + (l x K_b) x l."""
+    """Add the branch at the arm l: K += K_b, C += C_b + l x K_b, A += A_b + 2 l x C_b + (l x K_b) x l."""
     x: cython.double = body.arm.x
     y: cython.double = body.arm.y
     lx: cython.double = x * body.A.yz - y * body.A.yy
@@ -219,8 +225,8 @@ def add_branch_in_plane(parent: cython.pointer[Body], body: cython.pointer[Body]
     )
 
 
-def load_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """What each body asks of its joint: its velocity terms less the applied loads."""
+def set_branch_loads_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """Set the load that each body needs from its joint: its velocity terms minus the applied loads."""
     i: cython.Py_ssize_t
     count: cython.double = 1.0 if inertial else 0.0
     for i in range(scene.body_count):
@@ -230,8 +236,8 @@ def load_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython
         body.f_branch = Vec3(x, count * body.centrifugal.y - body.f_applied.y, 0.0)
 
 
-def load_all_in_plane(scene: cython.pointer[Scene]) -> cython.void:
-    """What `load_in_plane` gives with all that bodies resist if no freedom accelerates; alpha_zero and a_zero."""
+def set_full_branch_loads_in_plane(scene: cython.pointer[Scene]) -> cython.void:
+    """Add the inertia loads for the case that no freedom accelerates; set alpha_zero and a_zero."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
@@ -256,12 +262,12 @@ def load_all_in_plane(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def turning_load(body: cython.pointer[Body], alpha: cython.double, x: cython.double, y: cython.double) -> cython.double:
-    """J alpha + m c x a, less the applied moment."""
+    """J alpha + m c x a, minus the applied moment."""
     return body.inertia.zz * alpha + (body.mc.x * y - body.mc.y * x) - body.M_applied.z
 
 
-def add_zeros_in_plane(scene: cython.pointer[Scene]) -> cython.void:
-    """The accelerations that answer all loads, and those if no freedom accelerated, gravity taken off."""
+def add_zero_accelerations_in_plane(scene: cython.pointer[Scene]) -> cython.void:
+    """Add the accelerations if no freedom accelerated, minus gravity, to those that respond to the loads."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
@@ -270,8 +276,8 @@ def add_zeros_in_plane(scene: cython.pointer[Scene]) -> cython.void:
         body.a.y += body.a_zero.y - scene.gravity.y
 
 
-def upward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """From what stands in M_branch and f_branch, and velocity terms, to e, which the freedoms answer; tips to roots."""
+def sweep_up_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """From M_branch, f_branch and velocity terms find e, the loads on the freedoms; tips to roots."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for i in range(scene.body_count - 1, -1, -1):
@@ -304,8 +310,8 @@ def upward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cyth
             parent.f_branch.y += y
 
 
-def downward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """From e to the accelerations of freedoms and bodies, roots to tips."""
+def sweep_down_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
+    """From e find the accelerations of freedoms and bodies, roots to tips."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     for i in range(scene.body_count):
@@ -329,8 +335,8 @@ def downward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cy
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
             if freedom.driven:
                 continue
-            carried: cython.double = freedom.U_shift.x * x + freedom.U_shift.y * y + freedom.U_turn.z * alpha
-            udot: cython.double = freedom.D * (scene.e[freedom.answer_at] - carried)
+            base_load: cython.double = freedom.U_shift.x * x + freedom.U_shift.y * y + freedom.U_turn.z * alpha
+            udot: cython.double = freedom.D * (scene.e[freedom.answer_at] - base_load)
             freedom.udot = udot
             x += udot * freedom.s.x
             y += udot * freedom.s.y
@@ -340,17 +346,17 @@ def downward_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cy
 
 
 def balance_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.void:
-    """Joint loads in the plane from the accelerations found and the applied loads, tips to roots."""
+    """Find the joint loads in the plane from the accelerations found and the applied loads, tips to roots."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     count: cython.double = 1.0 if inertial else 0.0
     for i in range(scene.body_count):
-        own: cython.pointer[Body] = cython.address(scene.bodies[i])
-        alpha: cython.double = own.alpha.z
-        own.M_joint = Vec3(0.0, 0.0, turning_load(own, alpha, own.a.x, own.a.y))
-        own.f_joint = Vec3(
-            own.mass * own.a.x - alpha * own.mc.y + count * own.centrifugal.x - own.f_applied.x,
-            own.mass * own.a.y + alpha * own.mc.x + count * own.centrifugal.y - own.f_applied.y,
+        tip: cython.pointer[Body] = cython.address(scene.bodies[i])
+        alpha: cython.double = tip.alpha.z
+        tip.M_joint = Vec3(0.0, 0.0, turning_load(tip, alpha, tip.a.x, tip.a.y))
+        tip.f_joint = Vec3(
+            tip.mass * tip.a.x - alpha * tip.mc.y + count * tip.centrifugal.x - tip.f_applied.x,
+            tip.mass * tip.a.y + alpha * tip.mc.x + count * tip.centrifugal.y - tip.f_applied.y,
             0.0,
         )
     for i in range(scene.body_count - 1, -1, -1):

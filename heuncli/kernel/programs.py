@@ -1,4 +1,4 @@
-"""The structs of expressions: programs, what they run on and what they give (evaluator.py, jets.py, enclosure.py)."""
+"""The structs of expressions: programs, their operands and their results (evaluator.py, jets.py, enclosure.py)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from array import array
 
 from heuncli.kernel.structs import Size, Struct, Value
 
-# Operations, in the order in which they are told apart: without operands, of two, of one, and the others.
+# Operations, in the order in which they are distinguished: without operands, of two, of one, and the others.
 CONST, VAR = range(2)
 ADD, SUB, MUL, DIV, POW, ATAN2, HYPOT, MIN, MAX = range(2, 11)
 NEG, POWER, ABS, SIGN, STEP = range(11, 16)
@@ -29,7 +29,7 @@ class Instruction(Value):
 
 
 class Program(Value):
-    """`count` instructions from number `start`; none where a number stands in the program's stead."""
+    """`count` instructions from number `start`; count is 0 if a number is used instead of a program."""
 
     start: int
     count: int
@@ -44,7 +44,7 @@ class Jet(Value):
 
 
 class Table(Value):
-    """A table among the constants: its knots and coefficients begin at these places."""
+    """A table among the constants: the positions of its knots and coefficients."""
 
     pieces: int
     outside: int
@@ -54,14 +54,14 @@ class Table(Value):
 
 
 class Bounds(Value):
-    """The least and the largest that a number may be."""
+    """The smallest and the largest that a number may be."""
 
     low: float
     high: float
 
 
 class Span(Value):
-    """Bounds of a value, its rate and its second derivative over a stretch of time."""
+    """Bounds of a value, its rate and its second derivative over an interval of time."""
 
     value: Bounds
     rate: Bounds
@@ -69,7 +69,7 @@ class Span(Value):
 
 
 class Programs(Struct):
-    """Programs side by side, what they point into, the stacks they run on, and the branches they hold."""
+    """Programs side by side, the data they refer to, the stacks they run on, and the branches they hold."""
 
     code: list[Instruction]
     constants: list[float]
@@ -79,7 +79,7 @@ class Programs(Struct):
     jets: list[Jet]
     held: list[float]
     holding: int
-    doubt: list[int]  # whether each branch held may change over the stretch of time
+    doubt: list[int]  # whether each held branch may change over the interval of time
     ranges: list[Span]  # of the variables over a stretch of time
     middles: list[Span]  # and at an instant of it
     spans: list[Span]

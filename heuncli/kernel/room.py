@@ -1,4 +1,4 @@
-"""A scene in the kernel's memory: copies of its tables, whose rows are the structs, and room for the work."""
+"""A scene in the kernel's memory: copies of its tables, whose rows are the structs, and work arrays."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ if not cython.compiled:
     from heuncli.kernel.events import find_angles
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.scene import (
+        ArtificialInertia,
         Body,
         BodyAtState,
         BodyTangent,
@@ -24,7 +25,6 @@ if not cython.compiled:
         Freedom,
         FreedomTangent,
         Island,
-        Lent,
         Limits,
         Load,
         PathPiece,
@@ -35,8 +35,8 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
 
 
-def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: dict[str, Any]) -> None:
-    """The single numbers of a scene, and how many rows its tables have."""
+def set_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: dict[str, Any]) -> None:
+    """Set the single numbers of a scene, and how many rows its tables have."""
     x, y, z = numbers["gravity"]
     scene.gravity = Vec3(x, y, z)
     scene.size = numbers["size"]
@@ -64,31 +64,47 @@ def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: 
     scene.flat = numbers["flat"] and scene.lent_count == 0
 
 
-def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, Any]) -> None:
+def copy_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, Any]) -> None:
     """Copy the tables: compiled their rows are the structs, in plain Python they become objects."""
     if cython.compiled:
-        scene.bodies = cython.cast(cython.pointer[Body], memory.rows(tables["bodies"], cython.sizeof(Body)))
-        scene.freedoms = cython.cast(cython.pointer[Freedom], memory.rows(tables["freedoms"], cython.sizeof(Freedom)))
-        scene.loads = cython.cast(cython.pointer[Load], memory.rows(tables["loads"], cython.sizeof(Load)))
-        scene.closures = cython.cast(cython.pointer[Closure], memory.rows(tables["closures"], cython.sizeof(Closure)))
-        scene.parts = cython.cast(cython.pointer[Closure], memory.rows(tables["parts"], cython.sizeof(Closure)))
-        scene.counters = cython.cast(cython.pointer[Counter], memory.rows(tables["counters"], cython.sizeof(Counter)))
-        scene.pieces = cython.cast(cython.pointer[PathPiece], memory.rows(tables["pieces"], cython.sizeof(PathPiece)))
-        scene.variables = cython.cast(
-            cython.pointer[Variable], memory.rows(tables["variables"], cython.sizeof(Variable))
+        scene.bodies = cython.cast(cython.pointer[Body], memory.copy_structs(tables["bodies"], cython.sizeof(Body)))
+        scene.freedoms = cython.cast(
+            cython.pointer[Freedom], memory.copy_structs(tables["freedoms"], cython.sizeof(Freedom))
         )
-        scene.lents = cython.cast(cython.pointer[Lent], memory.rows(tables["lents"], cython.sizeof(Lent)))
-        scene.islands = cython.cast(cython.pointer[Island], memory.rows(tables["islands"], cython.sizeof(Island)))
-        scene.watches = cython.cast(cython.pointer[Watch], memory.rows(tables["watches"], cython.sizeof(Watch)))
-        scene.contacts = cython.cast(cython.pointer[Contact], memory.rows(tables["contacts"], cython.sizeof(Contact)))
+        scene.loads = cython.cast(cython.pointer[Load], memory.copy_structs(tables["loads"], cython.sizeof(Load)))
+        scene.closures = cython.cast(
+            cython.pointer[Closure], memory.copy_structs(tables["closures"], cython.sizeof(Closure))
+        )
+        scene.parts = cython.cast(cython.pointer[Closure], memory.copy_structs(tables["parts"], cython.sizeof(Closure)))
+        scene.counters = cython.cast(
+            cython.pointer[Counter], memory.copy_structs(tables["counters"], cython.sizeof(Counter))
+        )
+        scene.pieces = cython.cast(
+            cython.pointer[PathPiece], memory.copy_structs(tables["pieces"], cython.sizeof(PathPiece))
+        )
+        scene.variables = cython.cast(
+            cython.pointer[Variable], memory.copy_structs(tables["variables"], cython.sizeof(Variable))
+        )
+        scene.lents = cython.cast(
+            cython.pointer[ArtificialInertia], memory.copy_structs(tables["lents"], cython.sizeof(ArtificialInertia))
+        )
+        scene.islands = cython.cast(
+            cython.pointer[Island], memory.copy_structs(tables["islands"], cython.sizeof(Island))
+        )
+        scene.watches = cython.cast(cython.pointer[Watch], memory.copy_structs(tables["watches"], cython.sizeof(Watch)))
+        scene.contacts = cython.cast(
+            cython.pointer[Contact], memory.copy_structs(tables["contacts"], cython.sizeof(Contact))
+        )
         limits: cython.pointer[Limits] = cython.cast(
-            cython.pointer[Limits], memory.rows(tables["limits"], cython.sizeof(Limits))
+            cython.pointer[Limits], memory.copy_structs(tables["limits"], cython.sizeof(Limits))
         )
         scene.limits = limits[0]
         scene.bodies_beside, scene.freedoms_beside = scene.bodies, scene.freedoms
         if scene.point_count:
-            scene.bodies_beside = cython.cast(cython.pointer[Body], memory.rows(tables["bodies"], cython.sizeof(Body)))
-            freedoms: cython.p_void = memory.rows(tables["freedoms"], cython.sizeof(Freedom))
+            scene.bodies_beside = cython.cast(
+                cython.pointer[Body], memory.copy_structs(tables["bodies"], cython.sizeof(Body))
+            )
+            freedoms: cython.p_void = memory.copy_structs(tables["freedoms"], cython.sizeof(Freedom))
             scene.freedoms_beside = cython.cast(cython.pointer[Freedom], freedoms)
     else:
         scene.bodies_beside = [Body(row) for row in tables["bodies"].tolist()]
@@ -101,32 +117,32 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.counters = [Counter(row) for row in tables["counters"].tolist()]
         scene.pieces = [PathPiece(row) for row in tables["pieces"].tolist()]
         scene.variables = [Variable(row) for row in tables["variables"].tolist()]
-        scene.lents = [Lent(row) for row in tables["lents"].tolist()]
+        scene.lents = [ArtificialInertia(row) for row in tables["lents"].tolist()]
         scene.islands = [Island(row) for row in tables["islands"].tolist()]
         scene.watches = [Watch(row) for row in tables["watches"].tolist()]
         scene.contacts = [Contact(row) for row in tables["contacts"].tolist()]
         scene.limits = Limits(tables["limits"].tolist()[0])
 
 
-def make_room(scene: cython.pointer[Scene], memory: Memory, indices: array[int], numbers: dict[str, Any]) -> None:
-    """Copy the indices and the measures of the answers, make room for the work."""
-    answers: cython.Py_ssize_t = scene.answer_count
+def allocate_work(scene: cython.pointer[Scene], memory: Memory, indices: array[int], numbers: dict[str, Any]) -> None:
+    """Copy the indices and the measures of the freedoms, and allocate the work arrays."""
+    response_count: cython.Py_ssize_t = scene.answer_count
     rows: cython.Py_ssize_t = scene.closure_count
     scene.indices = memory.ints(indices)
     scene.selected = memory.ints(bytes(4 * rows))
     scene.envelope = memory.ints(bytes(4 * rows))
     scene.support = memory.ints(bytes(4 * numbers["column_count"]))
     scene.coupled = memory.ints(bytes(4 * len(indices)))
-    scene.taken = memory.ints(bytes(4 * answers))
+    scene.taken = memory.ints(bytes(4 * response_count))
     scene.measure = memory.doubles(numbers["measure"])
-    scene.e = memory.zeros(answers)
-    scene.root = memory.zeros(answers)
-    scene.spread = memory.zeros(answers)
+    scene.e = memory.zeros(response_count)
+    scene.root = memory.zeros(response_count)
+    scene.spread = memory.zeros(response_count)
     scene.columns = memory.zeros(numbers["column_count"])
     scene.R = memory.zeros(rows * rows)
     scene.J = memory.zeros(numbers["island_room"])
     scene.left = memory.zeros(rows)
-    scene.filled = memory.ints(bytes(4 * answers))
+    scene.filled = memory.ints(bytes(4 * response_count))
     scene.reach = memory.ints(bytes(4 * rows))
     scene.standing = memory.ints(bytes(4 * rows))
     scene.y = memory.zeros(rows)
@@ -135,16 +151,16 @@ def make_room(scene: cython.pointer[Scene], memory: Memory, indices: array[int],
     scene.least = memory.zeros(scene.variable_count)
     scene.most = memory.zeros(scene.variable_count)
     scene.own = memory.zeros(scene.lent_count * scene.lent_count)
-    make_rubs(scene, memory)
-    make_tangents(scene, memory)
+    allocate_friction(scene, memory)
+    allocate_tangents(scene, memory)
 
 
-def make_rubs(scene: cython.pointer[Scene], memory: Memory) -> None:
-    """Which loads are friction by what presses, and room to find that."""
-    rubs = [k for k in range(scene.load_count) if scene.loads[k].presses]
-    n: cython.Py_ssize_t = len(rubs)
+def allocate_friction(scene: cython.pointer[Scene], memory: Memory) -> None:
+    """List the loads of joint friction, and allocate the arrays to solve for their normal forces."""
+    friction_loads = [k for k in range(scene.load_count) if scene.loads[k].presses]
+    n: cython.Py_ssize_t = len(friction_loads)
     scene.rub_count = n
-    scene.rubs = memory.ints(rubs)
+    scene.rubs = memory.ints(friction_loads)
     scene.carried = memory.zeros(6 * n * (n + 2))
     scene.kept = memory.zeros(6 * scene.body_count if n else 0)
     scene.bound = memory.zeros(n * n)
@@ -152,8 +168,8 @@ def make_rubs(scene: cython.pointer[Scene], memory: Memory) -> None:
     scene.trial = memory.zeros(5 * n)
 
 
-def make_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:
-    """Room for what the scene changes by along a direction of its state."""
+def allocate_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:
+    """Allocate the changes of the scene along a direction of its state."""
     n: cython.Py_ssize_t = 2 * scene.freedom_count + scene.counter_count + 1
     i: cython.Py_ssize_t
     for i in range(scene.body_count):

@@ -1,14 +1,15 @@
-"""How fast the length of a rope may change over a stretch of time of length T, and how fast that does.
+"""Bound the first and second rate of a rope's length over an interval of time of length T.
 
-Of a strand from a sheave a to a sheave or point b (sheaves.py), seen from a, by bounds of the motions:
+For a strand from a sheave a to a sheave or point b (sheaves.py), seen from a, from bounds of the motions:
 
     V = speed_a + speed_b + spin_a |D|                     of the centre of b
     |g| <= G = 1 + (1 - l/S) |sigma| / l                   1 - l/S <= h^2 / (2 l^2)
     |S'|  <= G V + R_b (spin_a + spin_b)
     |S''| <= G (A_a + A_b + (twist_a + spin_a^2) |D| + 2 spin_a V) + V^2 / l + |sigma| V^2 (2 + |sigma| / l) / l^2
              + R_b (twist_a + twist_b + spin_a (spin_a + spin_b))
-with the least l and the largest |D| and h that there may be within T of how the strand lies at its end. What lies on a
-sheave grows by what its strands tell.
+
+with the smallest l and the largest |D| and h that are possible within T of the strand's position at its end. The length
+on a sheave changes with its strands.
 """
 
 from __future__ import annotations
@@ -31,10 +32,10 @@ if not cython.compiled:
     from heuncli.kernel.values import LengthBounds
 
 
-def bounds_of_rope(
+def bound_rope(
     scene: cython.pointer[Scene], points: cython.pointer[Orbits], load: cython.pointer[Load], T: cython.double
 ) -> LengthBounds:
-    """Of all its parts together, as they lie at the end of the stretch."""
+    """Bound all parts of a rope together, from their positions at the end of the interval."""
     i: cython.Py_ssize_t
     rate: cython.double = 0.0
     second: cython.double = 0.0
@@ -42,27 +43,29 @@ def bounds_of_rope(
     for i in range(load.part, load.part + load.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
         if part.kind == ROD or part.kind == STRAND:
-            own: Jet = bounds_of_strand(points, part, T)
-            rate += fabs(part.factor) * own.rate
-            second += fabs(part.factor) * own.second
-            far += fabs(part.factor) * own.value
+            strand: Jet = bound_strand(points, part, T)
+            rate += fabs(part.factor) * strand.rate
+            second += fabs(part.factor) * strand.second
+            far += fabs(part.factor) * strand.value
     bend: cython.double = 0.125 * second * T * T if second < INFINITY else 0.5 * rate * T
     return LengthBounds(rate, second, bend, far, scene.limits.rounding)
 
 
-def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> Jet:
-    """Of one strand: how far it may be from the origin, and its rates; between two points it turns with neither."""
+def bound_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> Jet:
+    """Bound one strand: its distance from the origin, and its rates; between two points the bodies' rotation has no
+    effect.
+    """
     turns: cython.double = 1.0 if part.kind == STRAND else 0.0
     sigma: cython.double = turns * fabs(part.g.x - part.g.y)
     radius: cython.double = turns * fabs(part.g.y)
     spin: cython.double = turns * bound_spin(points, part.a)
     both: cython.double = spin + turns * bound_spin(points, part.b)
-    apart: cython.double = bound_speed(points, part.a, part.p) + bound_speed(points, part.b, part.q)
-    lies: Vec3 = sub(part.on_b, part.on_a)
-    span: cython.double = sqrt(dot(lies, lies) + sigma * sigma) + apart * T
-    V: cython.double = apart + spin * span
-    across: cython.double = fabs(dot(part.t, lies)) if part.kind == STRAND else norm(lies)
-    slant: cython.double = sqrt(fabs(dot(lies, lies) - across * across)) + V * T
+    speed: cython.double = bound_speed(points, part.a, part.p) + bound_speed(points, part.b, part.q)
+    span_vector: Vec3 = sub(part.on_b, part.on_a)
+    span: cython.double = sqrt(dot(span_vector, span_vector) + sigma * sigma) + speed * T
+    V: cython.double = speed + spin * span
+    across: cython.double = fabs(dot(part.t, span_vector)) if part.kind == STRAND else norm(span_vector)
+    slant: cython.double = sqrt(fabs(dot(span_vector, span_vector) - across * across)) + V * T
     nearest: cython.double = sqrt(across * across + sigma * sigma) - V * T
     far: cython.double = bound_reach(points, part.a, part.p) + bound_reach(points, part.b, part.q) + sigma + radius
     free: cython.double = nearest * nearest - sigma * sigma

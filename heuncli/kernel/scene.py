@@ -1,10 +1,11 @@
-"""The scene as the kernel sees it: one struct a body, freedom, load, closure row.
+"""The scene as the kernel sees it: one struct for each body, freedom, load and closure row.
 
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
                                                                  outward, about the body's joint point r; world axes
+
 Rows of NumPy tables (multibody/tree/tables.py makes their types from these classes) are the compiled kernel's memory;
-the plain kernel makes objects of them. Fields up to the blank line are given when the scene is packed, the others are
-the kernel's own. World axes unless said otherwise; `a` is throughout the acceleration less that of gravity.
+the plain kernel makes objects of them. Fields up to the blank line are set when the scene is packed, the others belong
+to the kernel. World axes unless stated otherwise; `a` always is the acceleration minus that of gravity.
 """
 
 from __future__ import annotations
@@ -18,18 +19,16 @@ TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)
 BUSHING_SHIFT, BUSHING_TURN, ROPE = range(12, 15)
-AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
+AT_POINT, OF_LOAD = range(1, 3)  # variables that depend on the bodies' places
 ALONG_LINE, DRAWN = range(3, 5)  # of a load: its length, and of that without load the rate; before, the strain's parts
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
 TRACK, ALONG = range(10, 12)  # of paths
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
-GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(
-    5
-)  # what presses where a load rubs: nothing found, the joint's force or
+GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(5)  # normal force of a joint's friction: given, the joint's force or
 # parts of it, the multiplier of a coupling's row
-FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
+FOUND, JAMS, TWO, UNPROVED = range(4)  # solutions of joint friction: one, none, two, perhaps not one
 
 
 class Body(Record):
@@ -41,7 +40,7 @@ class Body(Record):
     rate_at: int  # and its angular velocity
     first_freedom: int  # scalar freedoms, in the order from the parent outward
     end_freedom: int
-    answer_at: int  # a ball's three turns, then its freedoms, among the loads e that the freedoms answer
+    answer_at: int  # position of a ball's three turns, then its freedoms, among the loads e on the freedoms
     framed: int  # 1: `frame` is not 1
     mass: float
     first_moment: Vec3  # m c, body axes from the joint point
@@ -54,7 +53,7 @@ class Body(Record):
     omega: Vec3
     v: Vec3  # of the joint point
     arm: Vec3  # from the parent's joint point to this one
-    alpha_bias: Vec3  # of alpha against the parent's: what hangs on velocities and prescribed accelerations
+    alpha_bias: Vec3  # of alpha relative to the parent's: the part due to velocities and prescribed accelerations
     a_bias: Vec3
     alpha_zero: Vec3  # alpha and a (gravity left out) if no freedom accelerated
     a_zero: Vec3
@@ -68,7 +67,7 @@ class Body(Record):
     K: Sym3
     turning: Ldl3  # of a ball: factors of A
     G: Mat3  # of a ball: A^-1 C
-    M_branch: Vec3  # what the branch asks of its joint; of all loads, or of one closure row's unit load
+    M_branch: Vec3  # load that the branch needs from its joint; for all loads, or for one closure row's unit load
     f_branch: Vec3
     alpha: Vec3
     a: Vec3
@@ -94,7 +93,7 @@ class Freedom(Record):
     reach: float  # bounds of the path's |r|, |r'| and |r''|
     slope: float
     bend: float
-    radius: float  # of a roller whose centre runs beside the path; 0: on it
+    radius: float  # of a roller, the distance of its centre from the path; 0: on it
     normal: Vec3  # of the path's plane, to the left of which the roller is
 
     s: Vec3  # its direction, of unit length or, along a path, r'
@@ -105,7 +104,7 @@ class Freedom(Record):
     D: float  # 1 / (s . I s); zero where it is driven or moves nothing
     q: float
     u: float
-    still: int  # 1: a closed contact holds it, so that its rate is 0, and not what rounding leaves of that
+    still: int  # 1: a closed contact holds it, so that its rate is exactly 0, without rounding
     udot: float  # prescribed, or found
     drive: float  # load of the drive along it
 
@@ -135,7 +134,9 @@ class Load(Record):
     offset: float
     across: Vec3  # of a joint that was cut: a direction across the axis, in a
     mark: Vec3  # and the one in b that agrees with it at angle 0
-    presses: int  # of friction: GIVEN, or what of the joint's own load presses; the coefficient is then by that
+    # of friction: GIVEN, or which part of the joint's own load is the normal force; the coefficient then
+    # multiplies it
+    presses: int
     held_by: int  # the body whose joint it is; -1: the joint was cut
     row: int  # of a joint that was cut: its first closure row; of a thread its own
     row_count: int
@@ -156,23 +157,26 @@ class Load(Record):
     strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
-    unit: Vec3  # of friction by what presses: force or moment on b where that is 1; of a thread the moment
-    pressed: float  # what presses [N]; of GIVEN friction its size [N], [N m]
+    unit: Vec3  # of joint friction: force or moment on b for a normal force of 1; of a thread the moment
+    pressed: float  # normal force [N]; of GIVEN friction its size [N], [N m]
 
 
 class Closure(Record):
     """A closure row J V = 0: multiplier 1 puts the force f at the point Q and the couple m on b, the opposite on a.
 
-    GUIDE: e . (Q - P) = length, e fixed in a. DOT: e . g = 0, e fixed in a, g in b. ROD: |Q - P| = length.
-    TURN: a pin's angle = length, about e fixed in a. SUM: of its parts, each of which is such a condition of two bodies
-    by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
+    GUIDE: e . (Q - P) = length, e fixed in a. DOT: e . g = 0, e fixed in a, g in b. ROD: |Q - P| = length. TURN: a
+    pin's angle = length, about e fixed in a. SUM: the sum of its parts, each of which is such a condition between two
+    bodies, taken `factor` times; parts have a table of their own, as they have no multiplier.
+
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
     coordinates of two freedoms. CAM: the coordinate of freedom_b is the lift over that of `freedom` (kernel/cams.py).
-    TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS: a wheel's on a plane (kernel/rolling.py); those that roll
-    hold a speed, and have no gap.
-    STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
-    b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
-    runs from b to a. ARC, WOUND: beside the strand `part` of the same row, `radius` is such a one.
+    TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS: of a wheel on a plane (kernel/rolling.py); those that roll
+    constrain a speed, and have no gap.
+
+    STRAND, ARC, WOUND: of a rope (sheaves.py). A strand goes from the sheave a, about e at p, to a sheave or point q of
+    b; g: the radii there, positive if it goes round counter-clockwise about e, and 1, or -1 if the rope as listed goes
+    from b to a. ARC, WOUND: next to the strand `part` of the same row; `radius` is such a signed radius.
+
     TRACK: across a path of a, along which a counter counts. ALONG: the coordinate of `freedom` along its path = length.
     """
 
@@ -225,12 +229,12 @@ class Closure(Record):
     gamma: float  # J Vdot + gamma = 0
     multiplier: float
     terms: float  # size of the terms of J Vdot + gamma over a step, while a contact is closed
-    demand: float  # what it asks of the answer: J V = -demand
+    demand: float  # what it demands of the response: J V = -demand
     prescribed_rate: float
     prescribed_second: float  # of a driven length; of a blow the jump of its rate
-    answer: float  # of the freedoms to its unit load, in the measure of M
+    answer: float  # size of the freedoms' response to its unit load, in the norm of M
     doubt: float  # what rounding may make of its multiplier
-    mode: int  # CARRIES; of a contact also APART: it is open; LEANS: closed by what others hold, it carries nothing
+    mode: int  # CARRIES; of a contact also APART: it is open; LEANS: kept closed by other contacts, it carries nothing
     pivot_at: int  # the answer that its reflector leaves something of
     chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet
     support_count: int  # numbers of its reflector
@@ -240,10 +244,10 @@ class Closure(Record):
 
 
 class Contact(Record):
-    """A one-sided closure row: its margin, sense * gap while it is open, sense * multiplier while closed, is not > 0.
+    """A unilateral closure row: its margin, sense * gap if open, sense * multiplier if closed, is not positive.
 
-    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves. The
-    row of a latch holds both ways while it is closed, by a place that is told with that: it has no margin.
+    The margin is followed over every step; for an open contact its rate shows whether it leaves. The row of a latch
+    holds both ways while it is closed, at a length that is given with its mode: it has no margin.
     """
 
     row: int
@@ -268,7 +272,7 @@ class Contact(Record):
 
 
 class PathPiece(Record):
-    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h from where the coordinate is `begin`."""
+    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h measured from the coordinate `begin`."""
 
     begin: float
     c0: Vec3
@@ -278,7 +282,7 @@ class PathPiece(Record):
 
 
 class Counter(Record):
-    """The angle of a pin that was cut, counted on over many turns as a state of its own; or a place on a path."""
+    """The angle of a pin that was cut, counted over many turns as a state of its own; or a place on a path."""
 
     a: int
     b: int
@@ -290,9 +294,10 @@ class Counter(Record):
 
 
 class Variable(Record):
-    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
+    """A variable of expressions: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
 
-    Of a load (OF_LOAD) the length of its line, or the rate of that, or of a rope without load; or a part of its strain.
+    For a load (OF_LOAD) the length of its line, or the rate of that, or the rate of a rope's unloaded length; or a
+    component of its strain.
     """
 
     freedom: int
@@ -307,7 +312,7 @@ class Variable(Record):
 
 
 class Watch(Record):
-    """A program that is watched over the steps: a load's, a drive's, or a condition that nothing moves by."""
+    """A program that is watched over the steps: a load's, a drive's, or a condition that does not affect the motion."""
 
     program: Program
     curved: int  # 1: the acceleration of a drive counts
@@ -320,19 +325,21 @@ class Watch(Record):
     rounding: float  # of its terms
 
 
-class Lent(Record):
-    """Inertia lent to a body about an axis, so that the tree can be factored, and given back (kernel/response.py)."""
+class ArtificialInertia(Record):
+    """Inertia added to a body about an axis, so that the tree can be factored, and compensated afterwards
+    (kernel/response.py).
+    """
 
     body: int
     root: float  # of the inertia
     axis: Vec3  # unit vector, body axes
 
     n: Vec3  # root times the axis, world
-    z: float  # n . alpha: the load z n on the body is what the lent inertia takes
+    z: float  # n . alpha: the artificial inertia takes the load z n on the body
 
 
 class Group(Record):
-    """Components of the state whose errors are measured together, one body's: its coordinates, then its rates."""
+    """Components of the state whose errors are measured together, those of one body: coordinates, then rates."""
 
     coordinates: int
     rates: int
@@ -343,7 +350,7 @@ class Group(Record):
 
 
 class Island(Record):
-    """Closure rows of loops that share bodies, and the freedoms of those, which `indices` lists."""
+    """Closure rows of loops that share bodies, and their freedoms, which `indices` lists."""
 
     rows: int
     row_count: int
@@ -356,8 +363,8 @@ class Limits(Record):
 
     dodges: int  # lengths tried for a step whose stages come near to a singular pose
     no_inertia: float  # of all directions' inertia: what has less moves nothing
-    own_share: float  # of a motion's inertia, lent and its own: with less of its own nothing holds it
-    much_lent: float  # with less, but more than that, less is lent
+    own_share: float  # of a motion's inertia, artificial and its own: with a smaller own share nothing resists it
+    much_lent: float  # with a smaller share than this, but more than that, less artificial inertia is used
     across: float  # part of what a row could answer across its arms that counts as its scale in any pose
     independent: float  # least length of what is left of a row, by the rows chosen before it, for it to be chosen
     passing: float  # the same on the way through a singular pose
@@ -410,7 +417,7 @@ class Limits(Record):
 
 
 class BodyAtState(Record):
-    """What of a body stands at a state while directions from there are looked at (tangent.py)."""
+    """A body's values at a state, stored while directions from there are evaluated (tangent.py)."""
 
     inertia: Sym3  # about the joint point, world axes
     alpha: Vec3
@@ -420,7 +427,7 @@ class BodyAtState(Record):
 
 
 class BodyTangent(Record):
-    """What a body's motion and loads change by along a direction of the state, per unit of it; world axes."""
+    """The change of a body's motion and loads along a direction of the state, per unit of it; world axes."""
 
     moves: int  # 0: nothing of its motion changes
     turn: Vec3  # its attitude, as a small turn: dR = turn x R
@@ -436,7 +443,7 @@ class BodyTangent(Record):
 
 
 class FreedomTangent(Record):
-    """What a freedom changes by along a direction of the state."""
+    """The change of a freedom along a direction of the state."""
 
     q: float
     u: float
@@ -464,13 +471,13 @@ class Scene(Struct):
     angle_count: int  # of them those of atan2
     answer_count: int  # freedoms, a ball's three turns among them
     selected_count: int  # independent closure rows
-    rub_count: int  # loads of friction by what presses
+    rub_count: int  # loads of joint friction that depend on the joint's own load
     jammed: int  # what was last found of them where no one answer was: JAMS, TWO, UNPROVED
     jammed_load: int  # and which load it is that says so
     jammed_at: float  # when
     driven: int  # something is driven: the work of drives counts
     flat: int  # bodies turn about z and shift across it: plane.py moves them
-    work_at: int  # where the work stands in the state; -1: it is not asked for
+    work_at: int  # position of the work in the state; -1: it is not computed
     gravity: Vec3
     size: float
     limits: Limits
@@ -483,7 +490,7 @@ class Scene(Struct):
     lent_part: float  # root of the part of the inertias in `lents` that is lent
     own_share: float  # least pivot of 1 - T: of the inertia in a motion, how much is not lent
     pivot_recovered: float  # least of the independent rows there, as they were selected: geometry alone, squared
-    load_size: float  # |D^(-1/2) e|: what the freedoms would answer without closures, in the measure of M
+    load_size: float  # |D^(-1/2) e|: size of the response without closures, in the norm of M
     residual: float  # largest J Vdot + gamma of all rows there, of the terms it is the sum of
     bodies: list[Body]
     freedoms: list[Freedom]
@@ -493,9 +500,9 @@ class Scene(Struct):
     counters: list[Counter]
     variables: list[Variable]
     pieces: list[PathPiece]
-    bodies_beside: list[Body]  # others of the same kind, on which points are looked at without a trace
+    bodies_beside: list[Body]  # spare bodies, on which points are evaluated without changing the scene's
     freedoms_beside: list[Freedom]
-    lents: list[Lent]
+    lents: list[ArtificialInertia]
     islands: list[Island]
     watches: list[Watch]
     contacts: list[Contact]
@@ -510,7 +517,7 @@ class Scene(Struct):
     coupled: list[int]  # of the independent rows: places of earlier ones that fill them, where their couplings stand
     taken: list[int]  # which answers are pivots of reflectors already
     measure: list[float]  # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
-    e: list[float]  # load that each freedom answers
+    e: list[float]  # load on each freedom
     root: list[float]  # D^(-1/2) of each answer
     spread: list[float]  # one vector over all answers
     columns: list[float]  # e_r of all rows, one after the other; then the reflectors that make R of them
@@ -521,16 +528,16 @@ class Scene(Struct):
     standing: list[int]  # its rows that may yet be chosen, ascending
     reach: list[int]  # of each row of J in which parts of the island's freedoms it has something, a bit a part
     y: list[float]  # a number an independent row
-    own: list[float]  # 1 - T of the lent inertias, and its Cholesky factor
+    own: list[float]  # 1 - T of the artificial inertias, and its Cholesky factor
     at_state: list[BodyAtState]  # what stands at the state whose directions are looked at
     tangents: list[BodyTangent]  # of the bodies, along one direction
     freedom_tangents: list[FreedomTangent]
     multipliers: list[float]  # at the state
     slopes: list[float]  # of the variables of the expressions, along the direction
     sloping: int  # some of them are not 0
-    rubs: list[int]  # the loads of friction by what presses
+    rubs: list[int]  # the loads of joint friction that depend on the joint's own load
     carried: list[float]  # of each cause, of each of them: the two vectors whose lengths press (kernel/pressing.py)
-    kept: list[float]  # moment and force applied to each body, while others are asked
+    kept: list[float]  # moment and force applied to each body, stored while others are solved for
     bound: list[float]  # by how much what presses one can grow by a unit of another; then its elimination
     newton: list[float]  # 1 - the slope of that at the answer
     trial: list[float]  # rows of a number each of them: the answer tried, what it leaves, a weight, the terms' size

@@ -1,7 +1,8 @@
-"""Stand-in for `import cython` where the kernel runs as plain Python.
+"""Stand-in for `import cython` if the kernel runs as plain Python.
 
-Cython is a build requirement only, and its own stand-in knows no objects behind pointers: here a pointer to one struct
-is the object itself, a pointer to the first of many is the list of them, and any other name a type that does nothing.
+Cython is a build requirement only, and its own stand-in cannot represent objects behind pointers: here a pointer to one
+struct is the object itself, a pointer to the first of many is the list of them, and any other name is a type that does
+nothing.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import Any
 
 
 class _Type:
-    """A C type as an annotation or a cast: indexing gives a type again, calling gives the value back."""
+    """A C type as an annotation or a cast: indexing returns a type again, calling returns the value."""
 
     def __getitem__(self, _: Any) -> _Type:
         return self

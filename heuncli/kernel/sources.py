@@ -1,6 +1,7 @@
-"""What the compiled kernel is made from, so that one made from other code is noticed before it runs.
+"""Digests of the kernel's code, so that a compiled kernel made from other code is detected before it runs.
 
-What counts is code: neither comments nor docstrings nor empty lines. The digests are compiled in (one_module.py).
+Comments, docstrings and empty lines do not count. The digests are compiled in (one_module.py).
+
 Impure: reads the kernel's files and their times.
 """
 
@@ -18,28 +19,33 @@ SOURCES = frozenset((*MODULES, *DECLARED, "headers", "modules", "one_module"))
 
 
 def digest_texts(folder: str) -> str:
-    """A digest of all the text; 3 ms."""
+    """Return a digest of all the text; takes 3 ms."""
     import hashlib  # only builds ask, and checkouts in which something was edited
 
-    texts = (f"{name}\n{read(folder, name)}" for name in sorted(SOURCES))
+    texts = (f"{name}\n{read_module(folder, name)}" for name in sorted(SOURCES))
     return hashlib.sha256("\0".join(texts).encode()).hexdigest()
 
 
 def digest_code(folder: str, names: Iterable[str] = SOURCES) -> dict[str, str]:
-    """A digest of the code of each of some files; 10 ms a file."""
+    """Return a digest of the code of each of some files; takes 10 ms a file."""
     import hashlib
 
-    return {name: hashlib.sha256("\n".join(code_lines(read(folder, name))).encode()).hexdigest() for name in names}
+    return {
+        name: hashlib.sha256("\n".join(iter_code_lines(read_module(folder, name))).encode()).hexdigest()
+        for name in names
+    }
 
 
-def read(folder: str, name: str) -> str:
-    """The text of a module."""
+def read_module(folder: str, name: str) -> str:
+    """Read the text of a module."""
     with open(os.path.join(folder, f"{name}.py"), encoding="utf-8") as file:
         return file.read()
 
 
-def code_lines(text: str) -> Iterator[str]:
-    """The lines of a text without comments, docstrings and what is empty then; the same for every Python."""
+def iter_code_lines(text: str) -> Iterator[str]:
+    """Yield the lines of a text without comments, docstrings and lines that are empty then; the same for every Python
+    version.
+    """
     import io
     from tokenize import COMMENT, DEDENT, INDENT, NEWLINE, NL, STRING, generate_tokens
 
@@ -60,7 +66,7 @@ def code_lines(text: str) -> Iterator[str]:
     return (line.rstrip() for line in lines if line.strip())
 
 
-def newer_than(folder: str, compiled: str) -> list[str]:
-    """Which modules have a text that looks newer than the compiled kernel; 0.1 ms on a quick disk."""
-    last = os.stat(os.path.join(folder, compiled)).st_mtime_ns
+def find_newer_modules(folder: str, compiled_file: str) -> list[str]:
+    """Return the modules whose text looks newer than the compiled kernel; takes 0.1 ms on a fast disk."""
+    last = os.stat(os.path.join(folder, compiled_file)).st_mtime_ns
     return sorted(name for name in SOURCES if os.stat(os.path.join(folder, f"{name}.py")).st_mtime_ns > last)

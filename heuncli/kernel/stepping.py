@@ -1,4 +1,4 @@
-"""The structs of the stepping loop: a method, a step under way, and a run (integration.py makes them)."""
+"""The structs of the stepping loop: a method, the present step, and a run (integration.py creates them)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from heuncli.kernel.structs import Struct
 
 
 class Tangent(Struct):
-    """The tangent of a motion at a state, and room for its work."""
+    """The tangent of a motion at a state, and its work arrays."""
 
     n: int
     J: list[float]  # d(ydot)/dy by rows
@@ -73,9 +73,9 @@ class Method(Struct):
 
 
 class Orbits(Struct):
-    """What points move on over a stretch of time: the state's components, and bounds of how bodies carry points.
+    """The motion of points over an interval of time: the state's components, and bounds of the bodies' motion.
 
-    The bounds are one a body, of magnitudes over the part that is looked at.
+    The bounds are magnitudes over the part that is checked, one for each body.
     """
 
     n: int  # length of the state
@@ -98,7 +98,7 @@ class Orbits(Struct):
 
 
 class Course(Struct):
-    """The course of the coordinates over a stretch of time."""
+    """The course of the coordinates over an interval of time."""
 
     degree: int  # of their polynomials
     late: int  # 1: events are where they are certain, not where margins are zero
@@ -140,7 +140,7 @@ class Branch(Struct):
 
 
 class Controller(Struct):
-    """How long the steps are, and by what they are judged (judging.py)."""
+    """The lengths of the steps, and what decides them (judging.py)."""
 
     tolerance: float
     step: float  # of a method of fixed step; 0: adaptive
@@ -158,7 +158,7 @@ class Controller(Struct):
 
 
 class Stiffness(Struct):
-    """Whether stability, not accuracy, keeps the steps short (stiffness.py)."""
+    """Whether stability, not accuracy, limits the steps (stiffness.py)."""
 
     after: int  # steps held short after which the loop is left; 0: not looked at
     easy_after: int  # steps on end that were not, after which their count begins anew
@@ -170,7 +170,9 @@ class Stiffness(Struct):
 
 
 class Landing(Struct):
-    """Where the step under way is to end on an event, and events that gather (landing.py, contacts.py)."""
+    """Where the present step is to end on an event, and events that follow each other closely (landing.py,
+    contacts.py).
+    """
 
     has_cut: int  # 1: the step under way ends at `cut`
     attempts: int  # to end this step on an event of a branch or a load
@@ -194,7 +196,7 @@ class Chart(Struct):
 
 
 class Samples(Struct):
-    """The asked instants, and the states there."""
+    """The requested instants, and the states there."""
 
     next: int
     count: int
@@ -203,7 +205,7 @@ class Samples(Struct):
 
 
 class Track(Struct):
-    """The steps of one call: those done, or those to be followed."""
+    """The steps of one call: those done, or those to be repeated."""
 
     most: int  # room for so many
     done: int
@@ -212,14 +214,14 @@ class Track(Struct):
     pivots: list[float]  # of each the least pivot of the closures
     turned: list[float]  # of each whether branches turned at its end
     branches: list[list[float]]  # of each the branches that were held
-    passed: list[list[float]]  # at each end what the next step starts from (steps.py, put_record)
+    passed: list[list[float]]  # at each end what the next step starts from (steps.py, write_record)
     coursed: int  # 1: the polynomials of steps that made one are put down, too
     spans: list[list[float]]  # of each step whether it left its polynomial, its begin and its length
     courses: list[list[float]]  # of each the state at its begin, then the rows of the polynomial, (., n)
 
 
 class Run(Struct):
-    """The stepping loop's state: how it was asked for, the step under way, and its parts."""
+    """The stepping loop's state: its options, the present step, and its parts."""
 
     n: int  # length of the state
     group_count: int

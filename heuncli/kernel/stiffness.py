@@ -1,13 +1,14 @@
-"""Whether stability, and not accuracy, keeps the steps of an explicit method short.
+"""Detect whether stability, and not accuracy, limits the steps of an explicit method.
 
-The last two stages of an explicit method stand at the same instant, the end of the step, and differ by errors in which
-what decays or swings fastest prevails. So the quotient of their derivatives,
+The last two stages of an explicit method are at the same instant, the end of the step, and differ by errors in which
+the fastest decay or oscillation dominates. So the quotient of their derivatives,
 
     h |lambda|  ~  h |f(z) - f(g)| / |z - g|,
 
-is what one turn of the power method gives of the largest eigenvalue of the tangent; rates count by h, for they are
-changes of coordinates in a step. Where accuracy decides, it is well below the boundary of the method's stability; where
-stability does, the control of the step keeps it there.
+is the estimate of the tangent's largest eigenvalue by one step of the power method; rates are multiplied by h, which
+makes them changes of coordinates in a step. If accuracy decides, it is well below the boundary of the method's
+stability; if stability does, the step size control keeps it there.
+
 Hairer, Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
 """
 
@@ -26,14 +27,14 @@ if not cython.compiled:
     from heuncli.kernel.stepping import Method, Run
 
 
-def estimate_swiftness(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """h |lambda| of the step tried, whose last stage is still in `stage`."""
+def estimate_stiffness(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """Estimate h |lambda| of the trial step, whose last stage is still in `stage`."""
     b: cython.int
     i: cython.Py_ssize_t
     w: cython.double
     x: cython.double
     changes: cython.double = 0.0
-    apart: cython.double = 0.0
+    distance: cython.double = 0.0
     end: cython.p_double = run.K[method.stages]
     last: cython.p_double = run.K[method.stages - 1]
     for b in range(run.group_count):
@@ -44,17 +45,18 @@ def estimate_swiftness(method: cython.pointer[Method], run: cython.pointer[Run])
                 if i >= group.rates:
                     w *= run.h
                 x = w * (run.z[i] - run.stage[i])
-                apart += x * x
+                distance += x * x
                 x = w * (end[i] - last[i])
                 changes += x * x
-    run.stiffness.swiftness = run.h * sqrt(changes / apart) if apart > 0.0 else 0.0
+    run.stiffness.swiftness = run.h * sqrt(changes / distance) if distance > 0.0 else 0.0
 
 
-def is_held_short(run: cython.pointer[Run]) -> cython.bint:
-    """Whether so many of the steps done were at the boundary; some on end that were not begin the count anew.
+def is_stability_limited(run: cython.pointer[Run]) -> cython.bint:
+    """Return whether enough of the steps done were at the stability boundary; several in a row that were not reset the
+    count.
 
-    Where loads may be stiff, also after some steps, and each time that they have doubled: what saturates, as friction
-    does, is driven to and fro by a coarse tolerance, and no quotient tells.
+    If loads may be stiff, also after some steps, and each time that their number has doubled: what saturates, as
+    friction does, is driven back and forth by a coarse tolerance, and no quotient shows it.
     """
     if run.stiffness.look_after and run.steps >= run.stiffness.look_after:
         run.stiffness.look_after = 2 * run.steps

@@ -1,7 +1,7 @@
-"""How a load between two bodies is strained: the length of its line, a bushing's shift and turn in its own axes.
+"""The strain of a load between two bodies: the length of its line, or a bushing's shift and rotation in its own axes.
 
-d = T' (x_b - x_a)              shift of b's point against a's, in the axes T = R_a F_a, which turn with a
-exp [phi] = T' R_b F_b          rotation vector of b against a, in the same axes; |phi| <= pi
+d = T' (x_b - x_a)              shift of b's point relative to a's, in the axes T = R_a F_a, which turn with a
+exp [phi] = T' R_b F_b          rotation vector of b relative to a, in the same axes; |phi| <= pi
 l = |x_b - x_a|,  l' = n . (v_b - v_a)
 """
 
@@ -15,53 +15,53 @@ except ImportError:
 if not cython.compiled:
     from math import atan2, sqrt
 
-    from heuncli.kernel.algebra import Mat3, Quaternion, Vec3, dot, norm, product, rotate_back, scaled, sub
-    from heuncli.kernel.carried_points import carried, place_of
-    from heuncli.kernel.ropes import free_length, motion_of_rope
+    from heuncli.kernel.algebra import Mat3, Quaternion, Vec3, dot, norm, product, rotate_back, scale_vector, sub
+    from heuncli.kernel.carried_points import point_motion, world_place
+    from heuncli.kernel.ropes import free_length, measure_rope
     from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.values import RopeMotion
 
 
-def axes_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:
-    """T, axes of a bushing to world."""
+def bushing_axes(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:
+    """Return T, axes of a bushing to world."""
     return load.frame if load.a < 0 else product(scene.bodies[load.a].R, load.frame)
 
 
 def find_span_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """From a's point to b's, world axes."""
-    return sub(place_of(scene, load.b, load.q), place_of(scene, load.a, load.p))
+    """Return the vector from a's point to b's, world axes."""
+    return sub(world_place(scene, load.b, load.q), world_place(scene, load.a, load.p))
 
 
-def find_turn_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """phi."""
-    T: Mat3 = axes_of(scene, load)
+def find_bushing_rotation(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return phi."""
+    T: Mat3 = bushing_axes(scene, load)
     B: Mat3 = load.to_frame if load.b < 0 else product(scene.bodies[load.b].R, load.to_frame)
     x: Vec3 = rotate_back(T, Vec3(B.xx, B.yx, B.zx))
     y: Vec3 = rotate_back(T, Vec3(B.xy, B.yy, B.zy))
     z: Vec3 = rotate_back(T, Vec3(B.xz, B.yz, B.zz))
-    return rotation_vector(Mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z))
+    return find_rotation_vector(Mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z))
 
 
-def strain_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """d or phi, by the part of a bushing that the load is."""
+def bushing_strain(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return d or phi, depending on the part of a bushing that the load is."""
     if load.kind == BUSHING_SHIFT:
-        return rotate_back(axes_of(scene, load), find_span_vector(scene, load))
-    return find_turn_vector(scene, load)
+        return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
+    return find_bushing_rotation(scene, load)
 
 
-def rotation_vector(R: Mat3) -> Vec3:
-    """phi of a rotation: by its quaternion, from the largest component of that."""
-    q: Quaternion = quaternion_of(R)
+def find_rotation_vector(R: Mat3) -> Vec3:
+    """Return phi of a rotation, from its quaternion."""
+    q: Quaternion = find_quaternion(R)
     v: Vec3 = Vec3(q.x, q.y, q.z)
     s: cython.double = norm(v)
     if s < 1e-3:
-        return scaled(2.0 + s * s * (1.0 / 3.0 + 0.15 * s * s), v)
-    return scaled(2.0 * atan2(s, q.w) / s, v)
+        return scale_vector(2.0 + s * s * (1.0 / 3.0 + 0.15 * s * s), v)
+    return scale_vector(2.0 * atan2(s, q.w) / s, v)
 
 
-def quaternion_of(R: Mat3) -> Quaternion:
-    """The quaternion of a rotation with w >= 0, without cancellation."""
+def find_quaternion(R: Mat3) -> Quaternion:
+    """Return the quaternion of a rotation with w >= 0, without cancellation."""
     trace: cython.double = R.xx + R.yy + R.zz
     w: cython.double
     x: cython.double
@@ -95,33 +95,35 @@ def quaternion_of(R: Mat3) -> Quaternion:
     return Quaternion(w, x, y, z) if w >= 0.0 else Quaternion(-w, -x, -y, -z)
 
 
-def of_load(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) -> cython.double:
-    """The variable that is the length of a load's line or rope, its rate, or a component of a bushing's strain."""
+def evaluate_load_variable(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) -> cython.double:
+    """Return the length of a load's line or rope, its rate, or a component of a bushing's strain, as the variable asks
+    for.
+    """
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
     if variable.part == DRAWN:
         return free_length(scene, load).rate
     if load.kind == ROPE:
-        rope: RopeMotion = motion_of_rope(scene, load)
+        rope: RopeMotion = measure_rope(scene, load)
         return rope.rate if variable.is_rate else rope.S
     if variable.part != ALONG_LINE:
-        return component_of(strain_of(scene, load), variable.part)
-    return rate_of_length(scene, load) if variable.is_rate else norm(find_span_vector(scene, load))
+        return vector_component(bushing_strain(scene, load), variable.part)
+    return line_rate(scene, load) if variable.is_rate else norm(find_span_vector(scene, load))
 
 
-def component_of(x: Vec3, part: cython.int) -> cython.double:
-    """Along one of the axes."""
+def vector_component(x: Vec3, part: cython.int) -> cython.double:
+    """Return a vector's component along one of the axes."""
     return x.x if part == 0 else x.y if part == 1 else x.z
 
 
-def rate_of_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """l'; 0 of what has no length."""
+def line_rate(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """Return l'; 0 if the length is zero."""
     span: Vec3 = find_span_vector(scene, load)
     length: cython.double = norm(span)
-    return dot(span, parting_of(scene, load)) / length if length > 0.0 else 0.0
+    return dot(span, separation_velocity(scene, load)) / length if length > 0.0 else 0.0
 
 
-def parting_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Velocity of b's point less that of a's, world axes."""
-    at: Vec3 = place_of(scene, load.b, load.q)
-    from_at: Vec3 = place_of(scene, load.a, load.p)
-    return sub(carried(scene, load.b, at).v, carried(scene, load.a, from_at).v)
+def separation_velocity(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the velocity of b's point minus that of a's, world axes."""
+    end_place: Vec3 = world_place(scene, load.b, load.q)
+    start_place: Vec3 = world_place(scene, load.a, load.p)
+    return sub(point_motion(scene, load.b, end_place).v, point_motion(scene, load.a, start_place).v)

@@ -1,10 +1,10 @@
-"""The form in which the kernel's structs stand: once, for C (headers.py makes its declarations) and for plain Python.
+"""The form of the kernel's structs, written once, for C (headers.py generates its declarations) and for plain Python.
 
     class Bounds(Value):
         low: float
         high: float
 
-The fields are those annotated, in that order, and no others. What an annotation says, of the field in C:
+The fields are those annotated, in that order. An annotation stands for this type of the field in C:
 
     int, float, bool, Size     int, double, bint, Py_ssize_t
     Vec3                       the struct itself
@@ -26,7 +26,7 @@ ZEROS = {"int": 0, "Size": 0, "float": 0.0, "bool": False}
 
 
 class Fields(type):
-    """Makes slots of a class's annotations: a struct has its fields and no others."""
+    """Make slots of a class's annotations: a struct has its fields and no others."""
 
     def __new__(mcs, name: str, bases: tuple[type, ...], names: dict[str, Any]) -> Fields:
         names["__slots__"] = tuple(names.get("__annotations__", ()))
@@ -38,15 +38,15 @@ class Struct(metaclass=Fields):
 
     @classmethod
     def blank(cls) -> Self:
-        """All of it zero, as C has it at first; pointers lead nowhere."""
-        made = cls.__new__(cls)
+        """Return a struct with all fields zero, as C has it at first; pointers are null."""
+        instance = cls.__new__(cls)
         for name, kind in cls.__annotations__.items():
-            setattr(made, name, zero(kind, vars(sys.modules[cls.__module__])))
-        return made
+            setattr(instance, name, make_zero(kind, vars(sys.modules[cls.__module__])))
+        return instance
 
 
 class Record(Struct):
-    """A row of a table (multibody/tree/tables.py): in plain Python made of nested tuples, as NumPy gives them."""
+    """A row of a table (multibody/tree/tables.py): in plain Python made from nested tuples, as NumPy gives them."""
 
     def __init__(self, row: Iterable[Any]) -> None:
         known = vars(sys.modules[type(self).__module__])
@@ -56,7 +56,7 @@ class Record(Struct):
 
 @dataclass_transform(eq_default=False)
 class Value(Struct):
-    """A struct that is handed about by value: made of all its fields, and never changed in place."""
+    """A struct that is passed by value: made from all its fields, and never changed in place."""
 
     def __init_subclass__(cls) -> None:
         names = tuple(cls.__annotations__)
@@ -66,10 +66,10 @@ class Value(Struct):
         cls.__init__ = made["__init__"]  # type: ignore[method-assign]
 
 
-def zero(kind: str, known: dict[str, Any]) -> Any:
-    """Zero of a kind of field; known: the structs that it may name."""
+def make_zero(kind: str, structs: dict[str, Any]) -> Any:
+    """Return the zero of a kind of field; structs: the structs that it may name."""
     if kind in ZEROS:
         return ZEROS[kind]
     if kind.startswith("tuple["):
-        return tuple(zero(part.strip(), known) for part in kind[6:-1].split(","))
-    return known[kind].blank() if kind in known else None
+        return tuple(make_zero(part.strip(), structs) for part in kind[6:-1].split(","))
+    return structs[kind].blank() if kind in structs else None

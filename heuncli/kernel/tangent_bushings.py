@@ -1,4 +1,4 @@
-"""What bushings change by along a direction of the state: bushings.py, differentiated line by line."""
+"""The change of bushings along a direction of the state: bushings.py, differentiated line by line."""
 
 from __future__ import annotations
 
@@ -9,37 +9,42 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, sub
-    from heuncli.kernel.bushings import moment_along, multiply_components
-    from heuncli.kernel.loads import given_vector
+    from heuncli.kernel.bushings import bushing_moment_tangent, multiply_components
+    from heuncli.kernel.loads import evaluate_load_vector
     from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import axes_of
-    from heuncli.kernel.tangent_motion import swung
-    from heuncli.kernel.tangent_strains import strain_along
+    from heuncli.kernel.strains import bushing_axes
+    from heuncli.kernel.tangent_motion import vector_tangent
+    from heuncli.kernel.tangent_strains import strain_tangent
     from heuncli.kernel.values import BushingTangent
 
 
-def bushing_along(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], slope: Vec3, motion: Vec3, d_motion: Vec3
+def bushing_tangent(
+    scene: cython.pointer[Scene],
+    load: cython.pointer[Load],
+    preload_change: Vec3,
+    velocity: Vec3,
+    velocity_change: Vec3,
 ) -> BushingTangent:
-    """Of force or moment on b, world axes, and of the power of its damping.
+    """Return the change of the force or moment on b, world axes, and of the power of its damping.
 
-    slope: of its given components; motion: of b as seen from a, world axes, and what that changes by.
+    preload_change: of its given components
+    velocity: of b as seen from a, world axes, and its change
     """
-    T: Mat3 = axes_of(scene, load)
-    given: Vec3 = given_vector(scene, load)
-    rate: Vec3 = rotate_back(T, motion)
-    d_rate: Vec3 = rotate_back(T, sub(d_motion, swung(scene, load.a, motion)))
+    T: Mat3 = bushing_axes(scene, load)
+    given: Vec3 = evaluate_load_vector(scene, load)
+    rate: Vec3 = rotate_back(T, velocity)
+    d_rate: Vec3 = rotate_back(T, sub(velocity_change, vector_tangent(scene, load.a, velocity)))
     drag: Vec3 = multiply_components(load.resistances, d_rate)
     loss: cython.double = -2.0 * dot(multiply_components(load.resistances, rate), d_rate)
     x: Vec3 = load.strain
-    dx: Vec3 = strain_along(scene, load, x)
-    change: Vec3 = sub(slope, multiply_components(load.stiffnesses, dx))
-    acts: Vec3
+    dx: Vec3 = strain_tangent(scene, load, x)
+    change: Vec3 = sub(preload_change, multiply_components(load.stiffnesses, dx))
+    load_on_b: Vec3
     if load.kind == BUSHING_SHIFT:
-        acts = load.force
+        load_on_b = load.force
     else:
-        change = moment_along(x, sub(given, multiply_components(load.stiffnesses, x)), dx, change)
-        acts = load.moment
-    turned: Vec3 = swung(scene, load.a, acts)
+        change = bushing_moment_tangent(x, sub(given, multiply_components(load.stiffnesses, x)), dx, change)
+        load_on_b = load.moment
+    turned: Vec3 = vector_tangent(scene, load.a, load_on_b)
     return BushingTangent(add(rotate(T, sub(change, drag)), turned), loss)

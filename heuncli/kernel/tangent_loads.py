@@ -1,7 +1,7 @@
-"""What applied loads change by along a direction of the state: loads.py, differentiated line by line.
+"""The change of applied loads along a direction of the state: loads.py, differentiated line by line.
 
-Each is put on the bodies (d.M, d.f of BodyTangent) as less of what they ask of their joints. The load itself stands in
-the scene as it was found at the state.
+Each is applied to the bodies by reducing the loads that they need from their joints (d.M, d.f of BodyTangent). The load
+itself is in the scene as found at the state.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ except ImportError:
 if not cython.compiled:
     from math import tanh
 
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
-    from heuncli.kernel.directions import direction_of
+    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
+    from heuncli.kernel.directions import world_direction
     from heuncli.kernel.jets import slope
     from heuncli.kernel.libm import NAN
-    from heuncli.kernel.loads import motion_in, omega_of, sliding_in
+    from heuncli.kernel.loads import body_omega, relative_motion, sliding_velocity
     from heuncli.kernel.scene import (
         ACTUATOR,
         BUSHING_SHIFT,
@@ -39,44 +39,44 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_bushings import bushing_along
-    from heuncli.kernel.tangent_conditions import condition_along
-    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
-    from heuncli.kernel.tangent_ropes import rope_along, rope_power_along
-    from heuncli.kernel.tangent_strains import line_along
-    from heuncli.kernel.tree import point_of
+    from heuncli.kernel.tangent_bushings import bushing_tangent
+    from heuncli.kernel.tangent_conditions import condition_tangent
+    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
+    from heuncli.kernel.tangent_ropes import rope_power_tangent, rope_tangent
+    from heuncli.kernel.tangent_strains import line_tangent
+    from heuncli.kernel.tree import locate_point
     from heuncli.kernel.values import BushingTangent, LineTangent, LoadTangent, PointMotion, RowTangent
 
 
-def loads_along(scene: cython.pointer[Scene]) -> cython.double:
-    """Put what all loads change by on the bodies; what the power of those without potential changes by."""
+def add_load_tangents(scene: cython.pointer[Scene]) -> cython.double:
+    """Apply the changes of all loads to the bodies. Returns the change of the power of those without potential."""
     i: cython.Py_ssize_t
     power: cython.double = 0.0
     for i in range(scene.load_count):
         load: cython.pointer[Load] = cython.address(scene.loads[i])
         if load.kind == ROPE:
-            power += pull_changed(scene, load, given_along(scene, load).x)
+            power += add_rope_tangent(scene, load, load_vector_tangent(scene, load).x)
             continue
-        still: cython.bint = load.a < 0 or not scene.tangents[load.a].moves
+        is_still_load: cython.bint = load.a < 0 or not scene.tangents[load.a].moves
         if load.b >= 0 and scene.tangents[load.b].moves:
-            still = False
-        if still and not scene.sloping:
+            is_still_load = False
+        if is_still_load and not scene.sloping:
             continue
-        there: PointMotion = point_along(scene, load.b, load.q)
-        given: Vec3 = given_along(scene, load)
+        point: PointMotion = point_tangent(scene, load.b, load.q)
+        vector: Vec3 = load_vector_tangent(scene, load)
         if load.kind == FORCE or load.kind == COUPLE:
-            power += outer_along(scene, load, given, there)
+            power += add_outer_load_tangent(scene, load, vector, point)
         elif load.kind == SPRING or load.kind == ACTUATOR:
-            power += pair_along(scene, load, given.x, there)
+            power += add_pair_load_tangent(scene, load, vector.x, point)
         elif load.kind >= BUSHING_SHIFT:
-            power += elastic_along(scene, load, given, there)
+            power += add_bushing_tangent(scene, load, vector, point)
         else:
-            power += joint_along(scene, load, given.x, there)
+            power += add_joint_load_tangent(scene, load, vector.x, point)
     return power
 
 
-def given_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Of the load's given components: expressions in coordinates and rates."""
+def load_vector_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the change of the load's components, which are expressions in coordinates and rates."""
     if not scene.sloping:
         return Vec3(0.0, 0.0, 0.0)
     return Vec3(
@@ -86,42 +86,47 @@ def given_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec
     )
 
 
-def push_along(scene: cython.pointer[Scene], body: cython.int, at: Vec3, force: Vec3, d: LoadTangent) -> cython.void:
-    """Put what a force at a place, and a moment, change by on a body; the ground takes them silently."""
+def push_load_tangent(
+    scene: cython.pointer[Scene], body: cython.int, place: Vec3, force: Vec3, d: LoadTangent
+) -> cython.void:
+    """Apply the change of a force at a place, and of a moment, to a body; the ground ignores it."""
     if body >= 0:
-        on: cython.pointer[BodyTangent] = cython.address(scene.tangents[body])
-        moment: Vec3 = add_cross(d.moment, sub(at, scene.bodies[body].r), d.force)
-        on.M = sub(on.M, add_cross(moment, sub(d.at, on.r), force))
-        on.f = sub(on.f, d.force)
+        target: cython.pointer[BodyTangent] = cython.address(scene.tangents[body])
+        moment: Vec3 = add_cross(d.moment, sub(place, scene.bodies[body].r), d.force)
+        target.M = sub(target.M, add_cross(moment, sub(d.at, target.r), force))
+        target.f = sub(target.f, d.force)
 
 
-def opposite(d: LoadTangent) -> LoadTangent:
-    """Of the opposite load at the same place."""
-    return LoadTangent(d.at, scaled(-1.0, d.force), scaled(-1.0, d.moment))
+def opposite_load(d: LoadTangent) -> LoadTangent:
+    """Return the change of the opposite load at the same place."""
+    return LoadTangent(d.at, scale_vector(-1.0, d.force), scale_vector(-1.0, d.moment))
 
 
-def outer_along(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, there: PointMotion
+def add_outer_load_tangent(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], vector_change: Vec3, point: PointMotion
 ) -> cython.double:
-    """A force on a point, or a couple, from outside the system; what its power changes by."""
+    """Apply the change of a force on a point, or a couple, from outside the system. Returns the change of its power."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    acts: Vec3 = load.force if load.kind == FORCE else load.moment
-    change: Vec3 = scaled(load.factor, direction_of(scene, load.b, given) if load.in_body else given)
+    load_on_b: Vec3 = load.force if load.kind == FORCE else load.moment
+    change: Vec3 = scale_vector(
+        load.factor, world_direction(scene, load.b, vector_change) if load.in_body else vector_change
+    )
     if load.in_body:
-        change = add(change, swung(scene, load.b, acts))
+        change = add(change, vector_tangent(scene, load.b, load_on_b))
     if load.kind == FORCE:
-        push_along(scene, load.b, load.at, acts, LoadTangent(there.x, change, zero))
-        return dot(change, point_of(scene, load.b, load.q).v) + dot(acts, there.v)
-    push_along(scene, load.b, load.at, zero, LoadTangent(there.x, zero, change))
+        push_load_tangent(scene, load.b, load.at, load_on_b, LoadTangent(point.x, change, zero))
+        return dot(change, locate_point(scene, load.b, load.q).v) + dot(load_on_b, point.v)
+    push_load_tangent(scene, load.b, load.at, zero, LoadTangent(point.x, zero, change))
     if load.b < 0:
         return 0.0
-    return dot(change, scene.bodies[load.b].omega) + dot(acts, scene.tangents[load.b].omega)
+    return dot(change, scene.bodies[load.b].omega) + dot(load_on_b, scene.tangents[load.b].omega)
 
 
-def pair_along(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], given: cython.double, there: PointMotion
+def add_pair_load_tangent(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], value_change: cython.double, point: PointMotion
 ) -> cython.double:
-    """A spring or actuator along the line n between two points; what the power of damping or drive changes by.
+    """Apply the change of a spring or actuator along the line n between two points. Returns the change of the power of
+    damping or drive.
 
     dF = -k dl - c d(ldot).
     """
@@ -130,135 +135,142 @@ def pair_along(
     force: Vec3 = zero
     if load.a == load.b:
         return 0.0
-    here: PointMotion = point_along(scene, load.a, load.p)
+    start_point: PointMotion = point_tangent(scene, load.a, load.p)
     if load.span > 0.0:
-        line: LineTangent = line_along(scene, load)
-        F: cython.double = given
+        line: LineTangent = line_tangent(scene, load)
+        F: cython.double = value_change
         if load.kind == SPRING:
             F = -load.stiffness * line.length - load.coefficient * line.rate
             power = -2.0 * load.coefficient * load.rate * line.rate
         else:
-            power = given * load.rate + load.value * line.rate
-        force = add_scaled(scaled(F / load.span, sub(load.at, load.from_at)), load.value, line.turned)
-    elif load.kind == SPRING and load.length == 0.0:  # as the force begins where the points coincide
-        force = scaled(-load.stiffness, sub(there.x, here.x))
-    d: LoadTangent = LoadTangent(there.x, force, zero)
-    push_along(scene, load.b, load.at, load.force, d)
-    d = opposite(LoadTangent(here.x, force, zero))
-    push_along(scene, load.a, load.from_at, scaled(-1.0, load.force), d)
+            power = value_change * load.rate + load.value * line.rate
+        force = add_scaled(scale_vector(F / load.span, sub(load.at, load.from_at)), load.value, line.turned)
+    elif load.kind == SPRING and load.length == 0.0:  # the force to first order where the points coincide
+        force = scale_vector(-load.stiffness, sub(point.x, start_point.x))
+    d: LoadTangent = LoadTangent(point.x, force, zero)
+    push_load_tangent(scene, load.b, load.at, load.force, d)
+    d = opposite_load(LoadTangent(start_point.x, force, zero))
+    push_load_tangent(scene, load.a, load.from_at, scale_vector(-1.0, load.force), d)
     return power
 
 
-def joint_along(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], given: cython.double, there: PointMotion
+def add_joint_load_tangent(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], value_change: cython.double, point: PointMotion
 ) -> cython.double:
-    """A torque, thrust or spring about or along the joint's axis, a damper or friction; what its power changes by."""
+    """Apply the change of a torque, thrust or spring about or along the joint's axis, or of a damper or friction.
+    Returns the change of its power.
+    """
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    axis: Vec3 = direction_of(scene, load.a, load.axis)
+    axis: Vec3 = world_direction(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
-    motion: Vec3 = sub(omega_of(scene, load.b), omega_of(scene, load.a))
-    change: Vec3 = sub(omega_along(scene, load.b), omega_along(scene, load.a))
+    motion: Vec3 = sub(body_omega(scene, load.b), body_omega(scene, load.a))
+    change: Vec3 = sub(omega_tangent(scene, load.b), omega_tangent(scene, load.a))
     if slides:
-        motion = sliding_in(scene, load, point_of(scene, load.b, load.q).v)
-        change = sliding_along(scene, load, there)
+        motion = sliding_velocity(scene, load, locate_point(scene, load.b, load.q).v)
+        change = sliding_velocity_tangent(scene, load, point)
     power: cython.double
-    acts: Vec3
+    load_on_b: Vec3
     if load.kind <= TURN_SPRING:
-        turned: Vec3 = swung(scene, load.a, axis)
-        rate: cython.double = dot(change, axis) + dot(motion, turned)
-        F: cython.double = given
-        power = given * load.rate + load.value * rate
+        axis_change: Vec3 = vector_tangent(scene, load.a, axis)
+        rate: cython.double = dot(change, axis) + dot(motion, axis_change)
+        F: cython.double = value_change
+        power = value_change * load.rate + load.value * rate
         if load.kind == TURN_SPRING:
-            F = -load.stiffness * angle_along(scene, load) - load.coefficient * rate
+            F = -load.stiffness * turn_spring_angle_tangent(scene, load) - load.coefficient * rate
             power = -2.0 * load.coefficient * load.rate * rate
-        acts = add_scaled(scaled(F, axis), load.value, turned)
+        load_on_b = add_scaled(scale_vector(F, axis), load.value, axis_change)
     else:
         speed: cython.double = norm(motion)
-        faster: cython.double = dot(motion, change) / speed if speed > 0.0 else 0.0
-        against: cython.double = resistance(load, speed)
-        more: cython.double = resistance_along(load, speed) * faster
-        acts = add_scaled(scaled(-against, change), -more, motion)
-        power = -more * speed * speed - 2.0 * against * speed * faster
-    d: LoadTangent = LoadTangent(there.x, acts, zero) if slides else LoadTangent(there.x, zero, acts)
+        speed_change: cython.double = dot(motion, change) / speed if speed > 0.0 else 0.0
+        resistance_factor: cython.double = resistance_per_speed(load, speed)
+        factor_change: cython.double = resistance_slope(load, speed) * speed_change
+        load_on_b = add_scaled(scale_vector(-resistance_factor, change), -factor_change, motion)
+        power = -factor_change * speed * speed - 2.0 * resistance_factor * speed * speed_change
+    d: LoadTangent = LoadTangent(point.x, load_on_b, zero) if slides else LoadTangent(point.x, zero, load_on_b)
     if load.kind == THREAD_FRICTION:
-        d = LoadTangent(there.x, scaled(load.factor, acts), acts)
-        power += dot(d.force, sliding_in(scene, load, point_of(scene, load.b, load.q).v))
-        power += dot(load.force, sliding_along(scene, load, there))
-    push_along(scene, load.b, load.at, load.force, d)
-    push_along(scene, load.a, load.at, scaled(-1.0, load.force), opposite(d))
+        d = LoadTangent(point.x, scale_vector(load.factor, load_on_b), load_on_b)
+        power += dot(d.force, sliding_velocity(scene, load, locate_point(scene, load.b, load.q).v))
+        power += dot(load.force, sliding_velocity_tangent(scene, load, point))
+    push_load_tangent(scene, load.b, load.at, load.force, d)
+    push_load_tangent(scene, load.a, load.at, scale_vector(-1.0, load.force), opposite_load(d))
     return power
 
 
-def elastic_along(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, there: PointMotion
+def add_bushing_tangent(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], preload_change: Vec3, point: PointMotion
 ) -> cython.double:
-    """A bushing between two bodies; what the power of what has no potential changes by."""
+    """Apply the change of a bushing between two bodies. Returns the change of the power of what has no potential."""
     if load.a == load.b:
         return 0.0
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     slides: cython.bint = load.kind == BUSHING_SHIFT
-    motion: Vec3 = motion_in(scene, load, point_of(scene, load.b, load.q).v, slides)
-    change: Vec3 = sub(omega_along(scene, load.b), omega_along(scene, load.a))
+    motion: Vec3 = relative_motion(scene, load, locate_point(scene, load.b, load.q).v, slides)
+    change: Vec3 = sub(omega_tangent(scene, load.b), omega_tangent(scene, load.a))
     if slides:
-        change = sliding_along(scene, load, there)
-    found: BushingTangent = bushing_along(scene, load, given, motion, change)
-    d: LoadTangent = LoadTangent(there.x, found.acts, zero) if slides else LoadTangent(there.x, zero, found.acts)
-    push_along(scene, load.b, load.at, load.force, d)
-    push_along(scene, load.a, load.at, scaled(-1.0, load.force), opposite(d))
-    return found.power
+        change = sliding_velocity_tangent(scene, load, point)
+    tangent_of_load: BushingTangent = bushing_tangent(scene, load, preload_change, motion, change)
+    d: LoadTangent = (
+        LoadTangent(point.x, tangent_of_load.acts, zero) if slides else LoadTangent(point.x, zero, tangent_of_load.acts)
+    )
+    push_load_tangent(scene, load.b, load.at, load.force, d)
+    push_load_tangent(scene, load.a, load.at, scale_vector(-1.0, load.force), opposite_load(d))
+    return tangent_of_load.power
 
 
-def pull_changed(scene: cython.pointer[Scene], load: cython.pointer[Load], change: cython.double) -> cython.double:
-    """A rope whose `value` changes, and the unit loads of its parts; what the power of what has no potential does."""
+def add_rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], change: cython.double) -> cython.double:
+    """Apply the change of a rope's `value`, and of the unit loads of its parts. Returns the change of the power of what
+    has no potential.
+    """
     i: cython.Py_ssize_t
     for i in range(load.part, load.part + load.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
-        d: RowTangent = condition_along(scene, part)
+        d: RowTangent = condition_tangent(scene, part)
         pull: cython.double = load.value * part.factor
-        force: Vec3 = add_scaled(scaled(pull, d.f), change * part.factor, part.f)
-        moment: Vec3 = add_scaled(scaled(pull, d.m), change * part.factor, part.m)
-        own: LoadTangent = LoadTangent(d.Q, force, moment)
-        push_along(scene, part.b, part.Q, scaled(pull, part.f), own)
-        push_along(scene, part.a, part.Q, scaled(-pull, part.f), opposite(own))
-    return rope_power_along(scene, load, change, rope_along(scene, load))
+        force: Vec3 = add_scaled(scale_vector(pull, d.f), change * part.factor, part.f)
+        moment: Vec3 = add_scaled(scale_vector(pull, d.m), change * part.factor, part.m)
+        part_change: LoadTangent = LoadTangent(d.Q, force, moment)
+        push_load_tangent(scene, part.b, part.Q, scale_vector(pull, part.f), part_change)
+        push_load_tangent(scene, part.a, part.Q, scale_vector(-pull, part.f), opposite_load(part_change))
+    return rope_power_tangent(scene, load, change, rope_tangent(scene, load))
 
 
-def sliding_along(scene: cython.pointer[Scene], load: cython.pointer[Load], there: PointMotion) -> Vec3:
-    """Of the velocity of b's point as seen from a."""
+def sliding_velocity_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], point: PointMotion) -> Vec3:
+    """Return the change of the velocity of b's point as seen from a."""
     if load.a < 0:
-        return there.v
+        return point.v
     a: cython.pointer[Body] = cython.address(scene.bodies[load.a])
-    on: cython.pointer[BodyTangent] = cython.address(scene.tangents[load.a])
+    carrier_tangent: cython.pointer[BodyTangent] = cython.address(scene.tangents[load.a])
     arm: Vec3 = sub(load.at, a.r)
-    swept: Vec3 = add_cross(cross(on.omega, arm), a.omega, sub(there.x, on.r))
-    return sub(sub(there.v, swept), on.v)
+    swept: Vec3 = add_cross(cross(carrier_tangent.omega, arm), a.omega, sub(point.x, carrier_tangent.r))
+    return sub(sub(point.v, swept), carrier_tangent.v)
 
 
-def angle_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """Of the angle of a turn spring: a coordinate, or of a joint that was cut what the bodies' axes make.
+def turn_spring_angle_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """Return the change of the angle of a turn spring: a coordinate, or for a cut joint the angle between the bodies'
+    axes.
 
-    phi = atan2(y, x) of y = n . (before x now), x = before . now:   (x^2 + y^2) dphi = x dy - y dx.
+    phi = atan2(y, x) of y = n . (reference x marker), x = reference . marker:   (x^2 + y^2) dphi = x dy - y dx.
     """
     if load.freedom >= 0:
         return scene.freedom_tangents[load.freedom].q
     if load.counter < 0:
         return 0.0
-    n: Vec3 = direction_of(scene, load.a, load.axis)
-    before: Vec3 = direction_of(scene, load.a, load.across)
-    now: Vec3 = direction_of(scene, load.b, load.mark)
-    d_before: Vec3 = swung(scene, load.a, before)
-    d_now: Vec3 = swung(scene, load.b, now)
-    x: cython.double = dot(before, now)
-    y: cython.double = dot(n, cross(before, now))
-    dx: cython.double = dot(d_before, now) + dot(before, d_now)
-    across: Vec3 = add_cross(cross(d_before, now), before, d_now)
-    dy: cython.double = dot(swung(scene, load.a, n), cross(before, now)) + dot(n, across)
+    n: Vec3 = world_direction(scene, load.a, load.axis)
+    reference: Vec3 = world_direction(scene, load.a, load.across)
+    marker: Vec3 = world_direction(scene, load.b, load.mark)
+    reference_change: Vec3 = vector_tangent(scene, load.a, reference)
+    marker_change: Vec3 = vector_tangent(scene, load.b, marker)
+    x: cython.double = dot(reference, marker)
+    y: cython.double = dot(n, cross(reference, marker))
+    dx: cython.double = dot(reference_change, marker) + dot(reference, marker_change)
+    across: Vec3 = add_cross(cross(reference_change, marker), reference, marker_change)
+    dy: cython.double = dot(vector_tangent(scene, load.a, n), cross(reference, marker)) + dot(n, across)
     square: cython.double = x * x + y * y
     return (x * dy - y * dx) / square if square > 0.0 else NAN
 
 
-def resistance(load: cython.pointer[Load], speed: cython.double) -> cython.double:
-    """Of a damper or friction: the load by the speed."""
+def resistance_per_speed(load: cython.pointer[Load], speed: cython.double) -> cython.double:
+    """Return the load of a damper or friction, divided by the speed."""
     if load.kind < TURN_FRICTION:
         return load.coefficient
     size: cython.double = load.coefficient * load.pressed
@@ -267,8 +279,10 @@ def resistance(load: cython.pointer[Load], speed: cython.double) -> cython.doubl
     return size / load.speed
 
 
-def resistance_along(load: cython.pointer[Load], speed: cython.double) -> cython.double:
-    """What `resistance` changes by with the speed; of friction (F (1 - tanh^2) / v0 - F tanh / v) / v."""
+def resistance_slope(load: cython.pointer[Load], speed: cython.double) -> cython.double:
+    """Return the derivative of `resistance_per_speed` by the speed; for friction (F (1 - tanh^2) / v0 - F tanh / v) /
+    v.
+    """
     if load.kind < TURN_FRICTION or not speed > 0.0:
         return 0.0
     f: cython.double = tanh(speed / load.speed)

@@ -1,4 +1,4 @@
-"""What a load fixed in a carrier changes by along a direction of the state: meshing.py, differentiated line by line."""
+"""The change of a load fixed in a carrier along a direction of the state: meshing.py, differentiated line by line."""
 
 from __future__ import annotations
 
@@ -9,51 +9,55 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, cross, dot, sub
-    from heuncli.kernel.carried_points import carried
-    from heuncli.kernel.loads import omega_of
+    from heuncli.kernel.carried_points import point_motion
+    from heuncli.kernel.loads import body_omega
     from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
-    from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
+    from heuncli.kernel.tangent_points import alpha_tangent, body_alpha, point_acceleration, point_motion_tangent
     from heuncli.kernel.values import MotionTangent, RowTangent
 
 
-def mesh_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
+def mesh_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
     """f . (A_b - A_a) + m . (alpha_b - alpha_a) + (omega_c x f) . (v_b - v_a) + (omega_c x m) . (omega_b - omega_a).
 
     A: acceleration of a body's point that stays at Q.
     """
-    dQ: Vec3 = point_along(scene, row.c, row.p).x
-    df: Vec3 = swung(scene, row.c, row.f)
-    dm: Vec3 = swung(scene, row.c, row.m)
-    c: Vec3 = omega_of(scene, row.c)
-    dc: Vec3 = omega_along(scene, row.c)
-    b: MotionTangent = carried_along(scene, row.b, row.Q, dQ)
-    a: MotionTangent = carried_along(scene, row.a, row.Q, dQ)
-    v: Vec3 = sub(carried(scene, row.b, row.Q).v, carried(scene, row.a, row.Q).v)
+    dQ: Vec3 = point_tangent(scene, row.c, row.p).x
+    df: Vec3 = vector_tangent(scene, row.c, row.f)
+    dm: Vec3 = vector_tangent(scene, row.c, row.m)
+    c: Vec3 = body_omega(scene, row.c)
+    dc: Vec3 = omega_tangent(scene, row.c)
+    b: MotionTangent = point_motion_tangent(scene, row.b, row.Q, dQ)
+    a: MotionTangent = point_motion_tangent(scene, row.a, row.Q, dQ)
+    v: Vec3 = sub(point_motion(scene, row.b, row.Q).v, point_motion(scene, row.a, row.Q).v)
     dv: Vec3 = sub(b.v, a.v)
-    turn: Vec3 = sub(omega_of(scene, row.b), omega_of(scene, row.a))
-    dturn: Vec3 = sub(omega_along(scene, row.b), omega_along(scene, row.a))
-    A: Vec3 = sub(staying(scene, row, row.b), staying(scene, row, row.a))
-    dA: Vec3 = sub(staying_along(scene, row, row.b, dQ), staying_along(scene, row, row.a, dQ))
-    alpha: Vec3 = sub(alpha_at(scene, row.b), alpha_at(scene, row.a))
-    dalpha: Vec3 = sub(alpha_along(scene, row.b), alpha_along(scene, row.a))
+    turn: Vec3 = sub(body_omega(scene, row.b), body_omega(scene, row.a))
+    dturn: Vec3 = sub(omega_tangent(scene, row.b), omega_tangent(scene, row.a))
+    A: Vec3 = sub(fixed_place_acceleration(scene, row, row.b), fixed_place_acceleration(scene, row, row.a))
+    dA: Vec3 = sub(
+        fixed_place_acceleration_tangent(scene, row, row.b, dQ), fixed_place_acceleration_tangent(scene, row, row.a, dQ)
+    )
+    alpha: Vec3 = sub(body_alpha(scene, row.b), body_alpha(scene, row.a))
+    dalpha: Vec3 = sub(alpha_tangent(scene, row.b), alpha_tangent(scene, row.a))
     rate: cython.double = dot(df, v) + dot(row.f, dv) + dot(dm, turn) + dot(row.m, dturn)
-    found: cython.double = dot(df, A) + dot(row.f, dA) + dot(dm, alpha) + dot(row.m, dalpha)
-    found += dot(add_cross(cross(dc, row.f), c, df), v) + dot(cross(c, row.f), dv)
-    found += dot(add_cross(cross(dc, row.m), c, dm), turn) + dot(cross(c, row.m), dturn)
-    return RowTangent(dQ, df, dm, rate, found)
+    acceleration: cython.double = dot(df, A) + dot(row.f, dA) + dot(dm, alpha) + dot(row.m, dalpha)
+    acceleration += dot(add_cross(cross(dc, row.f), c, df), v) + dot(cross(c, row.f), dv)
+    acceleration += dot(add_cross(cross(dc, row.m), c, dm), turn) + dot(cross(c, row.m), dturn)
+    return RowTangent(dQ, df, dm, rate, acceleration)
 
 
-def staying(scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int) -> Vec3:
-    """Acceleration, less gravity, of a body's point that stays at Q: A + omega x (v_c - v)."""
-    way: Vec3 = sub(carried(scene, row.c, row.Q).v, carried(scene, body, row.Q).v)
-    return add_cross(acceleration_at(scene, body, row.Q), omega_of(scene, body), way)
+def fixed_place_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int) -> Vec3:
+    """Return the acceleration, minus gravity, of a body's point that stays at Q: A + omega x (v_c - v)."""
+    slip: Vec3 = sub(point_motion(scene, row.c, row.Q).v, point_motion(scene, body, row.Q).v)
+    return add_cross(point_acceleration(scene, body, row.Q), body_omega(scene, body), slip)
 
 
-def staying_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int, dQ: Vec3) -> Vec3:
-    """What that changes by."""
-    way: Vec3 = sub(carried(scene, row.c, row.Q).v, carried(scene, body, row.Q).v)
-    own: MotionTangent = carried_along(scene, body, row.Q, dQ)
-    dway: Vec3 = sub(carried_along(scene, row.c, row.Q, dQ).v, own.v)
-    return add_cross(add_cross(own.a, omega_along(scene, body), way), omega_of(scene, body), dway)
+def fixed_place_acceleration_tangent(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int, dQ: Vec3
+) -> Vec3:
+    """Return the change of `fixed_place_acceleration`."""
+    slip: Vec3 = sub(point_motion(scene, row.c, row.Q).v, point_motion(scene, body, row.Q).v)
+    point_change: MotionTangent = point_motion_tangent(scene, body, row.Q, dQ)
+    slip_change: Vec3 = sub(point_motion_tangent(scene, row.c, row.Q, dQ).v, point_change.v)
+    return add_cross(add_cross(point_change.a, omega_tangent(scene, body), slip), body_omega(scene, body), slip_change)

@@ -1,8 +1,10 @@
-"""What the motion of a tree changes by along a direction of its state, at the accelerations that stand there.
+"""The change of a tree's motion along a direction of its state, at the accelerations of the state.
 
     dR = turn x R;   r, v, omega, a, alpha: their derivatives along the direction, a letter each as in tree.py
-The same recursion from the roots to the tips as `kinematics`, differentiated line by line; accelerations of bodies are
-those that the accelerations of the freedoms make, which stay as they are. Planar scenes have the same equations.
+
+The same recursion from the roots to the tips as `update_kinematics`, differentiated line by line; the accelerations of
+bodies are those due to the accelerations of the freedoms, which stay as they are. Planar scenes have the same
+equations.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scaled, sub, transform
+    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scale_vector, sub, transform
     from heuncli.kernel.scene import (
         SHIFT,
         TURN_IN_BODY,
@@ -30,34 +32,36 @@ if not cython.compiled:
     from heuncli.kernel.values import PointMotion
 
 
-def move_along(scene: cython.pointer[Scene], y: cython.p_double, along: cython.p_double) -> cython.void:
-    """What all bodies change by, and the inertia that they resist with."""
+def differentiate_motion(scene: cython.pointer[Scene], y: cython.p_double, direction: cython.p_double) -> cython.void:
+    """Find the changes of all bodies' motions, and of their inertia loads."""
     i: cython.Py_ssize_t
-    coordinates_along(scene, along)
+    set_coordinate_tangents(scene, direction)
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         d: cython.pointer[BodyTangent] = cython.address(scene.tangents[i])
         clear_body_tangent(d)
-        d.moves = is_moved(scene, body, along)
+        d.moves = has_motion_change(scene, body, direction)
         if not d.moves:
             continue
-        hang_along(scene, body, d)
+        set_joint_point_tangent(scene, body, d)
         if body.ball:
-            ball_along(body, d, y, along)
+            set_ball_tangent(body, d, y, direction)
         else:
-            orient_along(scene, body, d)
-        resist_along(body, cython.address(scene.at_state[i]), d)
+            set_orientation_tangent(scene, body, d)
+        set_inertia_load_tangent(body, cython.address(scene.at_state[i]), d)
 
 
-def coordinates_along(scene: cython.pointer[Scene], along: cython.p_double) -> cython.void:
-    """Coordinates and rates of the scalar freedoms, and the variables of the expressions; what is driven stays."""
+def set_coordinate_tangents(scene: cython.pointer[Scene], direction: cython.p_double) -> cython.void:
+    """Set the changes of coordinates and rates of the scalar freedoms, and of the expressions' variables; driven ones
+    do not change.
+    """
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         d: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[i])
-        d.q = 0.0 if freedom.driven else along[freedom.q_at]
-        d.u = 0.0 if freedom.driven else along[freedom.u_at]
+        d.q = 0.0 if freedom.driven else direction[freedom.q_at]
+        d.u = 0.0 if freedom.driven else direction[freedom.u_at]
         d.load = 0.0
         d.s = zero
     scene.sloping = 0
@@ -66,23 +70,25 @@ def coordinates_along(scene: cython.pointer[Scene], along: cython.p_double) -> c
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
         if variable.is_point:
             continue
-        of: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[variable.freedom])
-        scene.slopes[i] = of.u if variable.is_rate else of.q
+        freedom_tangent: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[variable.freedom])
+        scene.slopes[i] = freedom_tangent.u if variable.is_rate else freedom_tangent.q
         if scene.slopes[i] != 0.0:
             scene.sloping = 1
 
 
-def is_moved(scene: cython.pointer[Scene], body: cython.pointer[Body], along: cython.p_double) -> cython.bint:
-    """Whether anything of a body's motion changes: by its own freedoms, or with what it hangs on."""
+def has_motion_change(
+    scene: cython.pointer[Scene], body: cython.pointer[Body], direction: cython.p_double
+) -> cython.bint:
+    """Return whether anything of a body's motion changes: by its own freedoms, or with its parent."""
     k: cython.Py_ssize_t
     if body.parent >= 0 and scene.tangents[body.parent].moves:
         return True
     if body.ball:
         for k in range(body.attitude_at, body.attitude_at + 4):
-            if along[k] != 0.0:
+            if direction[k] != 0.0:
                 return True
         for k in range(body.rate_at, body.rate_at + 3):
-            if along[k] != 0.0:
+            if direction[k] != 0.0:
                 return True
     for k in range(body.first_freedom, body.end_freedom):
         if scene.freedom_tangents[k].q != 0.0 or scene.freedom_tangents[k].u != 0.0:
@@ -91,7 +97,7 @@ def is_moved(scene: cython.pointer[Scene], body: cython.pointer[Body], along: cy
 
 
 def clear_body_tangent(d: cython.pointer[BodyTangent]) -> cython.void:
-    """Nothing of the body changes."""
+    """Set all changes of the body to zero."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     d.turn = zero
     d.arm = zero
@@ -104,28 +110,31 @@ def clear_body_tangent(d: cython.pointer[BodyTangent]) -> cython.void:
     d.f = zero
 
 
-def hang_along(scene: cython.pointer[Scene], body: cython.pointer[Body], d: cython.pointer[BodyTangent]) -> cython.void:
-    """Of the joint point, its velocity and its acceleration, from the parent and the shifts of the joint.
+def set_joint_point_tangent(
+    scene: cython.pointer[Scene], body: cython.pointer[Body], d: cython.pointer[BodyTangent]
+) -> cython.void:
+    """Set the changes of the joint point, its velocity and its acceleration, from the parent and the shifts of the
+    joint.
 
     r = r_p + l,  v = v_p + omega_p x l + w,  a = a_p + alpha_p x l + omega_p x (omega_p x l + 2 w) + sum udot s
     """
-    shift_along(scene, body, d)
+    set_shift_tangent(scene, body, d)
     if body.parent < 0:
         return
     parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
     alpha: Vec3 = scene.at_state[body.parent].alpha
-    on: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
-    w: Vec3 = find_sliding_speed(scene, body)
+    parent_tangent: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
+    w: Vec3 = find_sliding_velocity(scene, body)
     swept: Vec3 = cross(parent.omega, body.arm)
-    change: Vec3 = add_cross(cross(on.omega, body.arm), parent.omega, d.arm)  # of omega_p x l
-    d.r = add(on.r, d.arm)
-    d.a = add(add(d.a, on.a), add_cross(cross(on.alpha, body.arm), alpha, d.arm))
-    d.a = add_cross(d.a, on.omega, add_scaled(swept, 2.0, w))
+    change: Vec3 = add_cross(cross(parent_tangent.omega, body.arm), parent.omega, d.arm)  # of omega_p x l
+    d.r = add(parent_tangent.r, d.arm)
+    d.a = add(add(d.a, parent_tangent.a), add_cross(cross(parent_tangent.alpha, body.arm), alpha, d.arm))
+    d.a = add_cross(d.a, parent_tangent.omega, add_scaled(swept, 2.0, w))
     d.a = add_cross(d.a, parent.omega, add_scaled(change, 2.0, d.v))
-    d.v = add(add(on.v, change), d.v)
+    d.v = add(add(parent_tangent.v, change), d.v)
 
 
-def find_sliding_speed(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> Vec3:
+def find_sliding_velocity(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> Vec3:
     """w = sum u s over the shifts of the joint."""
     k: cython.Py_ssize_t
     w: Vec3 = Vec3(0.0, 0.0, 0.0)
@@ -135,10 +144,12 @@ def find_sliding_speed(scene: cython.pointer[Scene], body: cython.pointer[Body])
     return w
 
 
-def shift_along(
+def set_shift_tangent(
     scene: cython.pointer[Scene], body: cython.pointer[Body], d: cython.pointer[BodyTangent]
 ) -> cython.void:
-    """Of the arm, of w = sum u s (in d.v) and of sum udot s (in d.a); the directions s turn with the parent."""
+    """Set the changes of the arm, of w = sum u s (in d.v) and of sum udot s (in d.a); the directions s turn with the
+    parent.
+    """
     k: cython.Py_ssize_t
     turn: Vec3 = Vec3(0.0, 0.0, 0.0)
     if body.parent >= 0:
@@ -146,117 +157,128 @@ def shift_along(
     d.arm = cross(turn, body.arm)
     for k in range(body.first_freedom, body.end_freedom):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-        own: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[k])
+        freedom_tangent: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[k])
         if freedom.kind == SHIFT:
-            own.s = add_scaled(cross(turn, freedom.s), own.q, freedom.curved)
-            d.arm = add_scaled(d.arm, own.q, freedom.s)
+            freedom_tangent.s = add_scaled(cross(turn, freedom.s), freedom_tangent.q, freedom.curved)
+            d.arm = add_scaled(d.arm, freedom_tangent.q, freedom.s)
             if freedom.pieces:
-                d.a = add(d.a, bent_along(freedom, own, turn))
-            d.v = add_scaled(add_scaled(d.v, own.u, freedom.s), freedom.u, own.s)
-            d.a = add_scaled(d.a, own.udot, own.s)
+                d.a = add(d.a, path_acceleration_tangent(freedom, freedom_tangent, turn))
+            d.v = add_scaled(add_scaled(d.v, freedom_tangent.u, freedom.s), freedom.u, freedom_tangent.s)
+            d.a = add_scaled(d.a, freedom_tangent.udot, freedom_tangent.s)
     if body.parent < 0:
         d.r = d.arm
 
 
-def bent_along(freedom: cython.pointer[Freedom], own: cython.pointer[FreedomTangent], turn: Vec3) -> Vec3:
-    """Of u^2 r'', what a path adds to sum udot s; it turns with the parent, and changes with the coordinate."""
-    bend: Vec3 = add_scaled(cross(turn, freedom.curved), own.q, freedom.twisted)
-    return scaled(freedom.u, add_scaled(scaled(2.0 * own.u, freedom.curved), freedom.u, bend))
+def path_acceleration_tangent(
+    freedom: cython.pointer[Freedom], freedom_tangent: cython.pointer[FreedomTangent], turn: Vec3
+) -> Vec3:
+    """Return the change of u^2 r'', which a path adds to sum udot s; it turns with the parent, and changes with the
+    coordinate.
+    """
+    bend: Vec3 = add_scaled(cross(turn, freedom.curved), freedom_tangent.q, freedom.twisted)
+    return scale_vector(freedom.u, add_scaled(scale_vector(2.0 * freedom_tangent.u, freedom.curved), freedom.u, bend))
 
 
-def orient_along(
+def set_orientation_tangent(
     scene: cython.pointer[Scene], body: cython.pointer[Body], d: cython.pointer[BodyTangent]
 ) -> cython.void:
-    """Of attitude, angular velocity and acceleration of a body on single axes, in the order of its turns."""
+    """Set the changes of attitude, angular velocity and acceleration of a body on single axes, in the order of its
+    turns.
+    """
     k: cython.Py_ssize_t
     d.spin = Vec3(0.0, 0.0, 0.0)
     if body.parent >= 0:
-        on: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
+        parent_tangent: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
         d.spin = scene.bodies[body.parent].omega
-        d.turn = on.turn
-        d.omega = on.omega
-        d.alpha = on.alpha
+        d.turn = parent_tangent.turn
+        d.omega = parent_tangent.omega
+        d.alpha = parent_tangent.alpha
     for k in range(body.first_freedom, body.end_freedom):
         if scene.freedoms[k].kind == TURN_IN_PARENT:
-            turn_along(cython.address(scene.freedoms[k]), cython.address(scene.freedom_tangents[k]), d)
+            add_turn_tangent(cython.address(scene.freedoms[k]), cython.address(scene.freedom_tangents[k]), d)
     for k in range(body.first_freedom, body.end_freedom):
         if scene.freedoms[k].kind == TURN_IN_BODY:
-            turn_along(cython.address(scene.freedoms[k]), cython.address(scene.freedom_tangents[k]), d)
+            add_turn_tangent(cython.address(scene.freedoms[k]), cython.address(scene.freedom_tangents[k]), d)
 
 
-def turn_along(
-    freedom: cython.pointer[Freedom], own: cython.pointer[FreedomTangent], d: cython.pointer[BodyTangent]
+def add_turn_tangent(
+    freedom: cython.pointer[Freedom], freedom_tangent: cython.pointer[FreedomTangent], d: cython.pointer[BodyTangent]
 ) -> cython.void:
-    """Of a turn about an axis s: alpha += omega x s u + s udot, omega += s u, R <- R Rot; the axis turns before it."""
-    own.s = cross(d.turn, freedom.s)
-    spin: Vec3 = scaled(freedom.u, freedom.s)
-    change: Vec3 = add_scaled(scaled(own.u, freedom.s), freedom.u, own.s)
+    """Add a turn about an axis s: alpha += omega x s u + s udot, omega += s u, R <- R Rot; the turns before it turn the
+    axis.
+    """
+    freedom_tangent.s = cross(d.turn, freedom.s)
+    spin: Vec3 = scale_vector(freedom.u, freedom.s)
+    change: Vec3 = add_scaled(scale_vector(freedom_tangent.u, freedom.s), freedom.u, freedom_tangent.s)
     d.alpha = add_cross(add_cross(d.alpha, d.omega, spin), d.spin, change)
-    d.alpha = add_scaled(d.alpha, own.udot, own.s)
+    d.alpha = add_scaled(d.alpha, freedom_tangent.udot, freedom_tangent.s)
     d.omega = add(d.omega, change)
     d.spin = add(d.spin, spin)
-    d.turn = add_scaled(d.turn, own.q, freedom.s)
+    d.turn = add_scaled(d.turn, freedom_tangent.q, freedom.s)
 
 
-def ball_along(
-    body: cython.pointer[Body], d: cython.pointer[BodyTangent], y: cython.p_double, along: cython.p_double
+def set_ball_tangent(
+    body: cython.pointer[Body], d: cython.pointer[BodyTangent], y: cython.p_double, direction: cython.p_double
 ) -> cython.void:
-    """Of a body's own attitude, turn = 2 dq q* / |q|^2, and of its angular velocity; its acceleration stands."""
+    """Set the changes of a body's own attitude, turn = 2 dq q* / |q|^2, and angular velocity; its acceleration does not
+    change.
+    """
     k: cython.Py_ssize_t = body.attitude_at
     g: cython.double = 2.0 / (y[k] * y[k] + y[k + 1] * y[k + 1] + y[k + 2] * y[k + 2] + y[k + 3] * y[k + 3])
     q: Vec3 = Vec3(y[k + 1], y[k + 2], y[k + 3])
-    change: Vec3 = Vec3(along[k + 1], along[k + 2], along[k + 3])
-    d.turn = scaled(g, add_cross(add_scaled(scaled(y[k], change), -along[k], q), q, change))
+    change: Vec3 = Vec3(direction[k + 1], direction[k + 2], direction[k + 3])
+    d.turn = scale_vector(g, add_cross(add_scaled(scale_vector(y[k], change), -direction[k], q), q, change))
     k = body.rate_at
-    d.omega = Vec3(along[k], along[k + 1], along[k + 2])
+    d.omega = Vec3(direction[k], direction[k + 1], direction[k + 2])
 
 
-def resist_along(
-    body: cython.pointer[Body], at: cython.pointer[BodyAtState], d: cython.pointer[BodyTangent]
+def set_inertia_load_tangent(
+    body: cython.pointer[Body], base: cython.pointer[BodyAtState], d: cython.pointer[BodyTangent]
 ) -> cython.void:
-    """Of M = J alpha + omega x J omega + m c x a and f = m a + alpha x m c + omega x (omega x m c), world axes.
+    """Set the changes of M = J alpha + omega x J omega + m c x a and f = m a + alpha x m c + omega x (omega x m c),
+    world axes.
 
     J turns with the body: d(J x) = turn x J x + J (dx - turn x x).
     """
-    spin: Vec3 = transform(at.inertia, at.alpha)
-    momentum: Vec3 = transform(at.inertia, body.omega)
+    spin: Vec3 = transform(base.inertia, base.alpha)
+    momentum: Vec3 = transform(base.inertia, body.omega)
     mc: Vec3 = cross(d.turn, body.mc)
-    spin = add(cross(d.turn, spin), transform(at.inertia, sub(d.alpha, cross(d.turn, at.alpha))))
-    change: Vec3 = add(cross(d.turn, momentum), transform(at.inertia, sub(d.omega, cross(d.turn, body.omega))))
+    spin = add(cross(d.turn, spin), transform(base.inertia, sub(d.alpha, cross(d.turn, base.alpha))))
+    change: Vec3 = add(cross(d.turn, momentum), transform(base.inertia, sub(d.omega, cross(d.turn, body.omega))))
     d.M = add_cross(add_cross(spin, d.omega, momentum), body.omega, change)
-    d.M = add_cross(add_cross(d.M, mc, at.a), body.mc, d.a)
-    d.f = add_cross(add_cross(scaled(body.mass, d.a), d.alpha, body.mc), at.alpha, mc)
+    d.M = add_cross(add_cross(d.M, mc, base.a), body.mc, d.a)
+    d.f = add_cross(add_cross(scale_vector(body.mass, d.a), d.alpha, body.mc), base.alpha, mc)
     d.f = add_cross(d.f, d.omega, cross(body.omega, body.mc))
     d.f = add_cross(d.f, body.omega, add_cross(cross(d.omega, body.mc), body.omega, mc))
 
 
-def swung(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
-    """What a vector that turns with a body, or stands on the ground (-1), changes by; a is in world axes."""
+def vector_tangent(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
+    """Return the change of a vector that turns with a body, or is fixed in the ground (-1); a is in world axes."""
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return cross(scene.tangents[body].turn, a)
 
 
-def turn_along_of(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """By what a body turns; the ground does not."""
+def rotation_tangent(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """Return the small rotation of a body; zero for the ground."""
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return scene.tangents[body].turn
 
 
-def omega_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """What a body's angular velocity changes by; the ground's does not."""
+def omega_tangent(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """Return the change of a body's angular velocity; zero for the ground."""
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return scene.tangents[body].omega
 
 
-def point_along(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> PointMotion:
-    """What place and velocity of a body's point change by, given from its joint point in its axes."""
+def point_tangent(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> PointMotion:
+    """Return the changes of place and velocity of a body's point, given from its joint point in its axes."""
     if body < 0:
         return PointMotion(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
-    on: cython.pointer[Body] = cython.address(scene.bodies[body])
+    carrier: cython.pointer[Body] = cython.address(scene.bodies[body])
     d: cython.pointer[BodyTangent] = cython.address(scene.tangents[body])
-    arm: Vec3 = rotate(on.R, q)
+    arm: Vec3 = rotate(carrier.R, q)
     swing: Vec3 = cross(d.turn, arm)
-    return PointMotion(add(d.r, swing), add_cross(add_cross(d.v, d.omega, arm), on.omega, swing))
+    return PointMotion(add(d.r, swing), add_cross(add_cross(d.v, d.omega, arm), carrier.omega, swing))

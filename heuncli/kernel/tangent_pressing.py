@@ -1,8 +1,10 @@
-"""What friction by what a joint carries changes by along a direction of the state: pressing.py, differentiated.
+"""The change of joint friction that depends on the joint's own load, along a direction of the state: pressing.py,
+differentiated.
 
     dN_j = sum over both ends of E / |E| . (dE + sum over k of A_k dN_k)
-dE is what E changes by at the same N, of the change of the joint's own load and of the directions it is taken along;
-dN_k then rubs as N_k does, and is answered likewise.
+
+dE is the change of E at the same N, from the change of the joint's own load and of the directions that define E. dN_k
+then acts as friction as N_k does, and has the same kind of response.
 """
 
 from __future__ import annotations
@@ -13,11 +15,18 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scaled, sub
-    from heuncli.kernel.closures import push_closures
-    from heuncli.kernel.directions import direction_of
-    from heuncli.kernel.loads import sliding_in
-    from heuncli.kernel.pressing import carried_force, carried_moment, pressed_along, put_ends, put_parts, thrust
+    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scale_vector, sub
+    from heuncli.kernel.closures import apply_multipliers
+    from heuncli.kernel.directions import world_direction
+    from heuncli.kernel.loads import sliding_velocity
+    from heuncli.kernel.pressing import (
+        find_normal_force_tangent,
+        joint_force,
+        joint_moment,
+        store_end_forces,
+        store_force_parts,
+        thread_thrust,
+    )
     from heuncli.kernel.scene import (
         ENDS,
         SHIFT_FRICTION,
@@ -31,75 +40,75 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_closures import row_along
-    from heuncli.kernel.tangent_loads import opposite, push_along
-    from heuncli.kernel.tangent_motion import point_along, swung
-    from heuncli.kernel.tree import balance, point_of
+    from heuncli.kernel.tangent_closures import row_tangent
+    from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
+    from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
+    from heuncli.kernel.tree import balance_joints, locate_point
     from heuncli.kernel.values import LoadTangent
 
 
-def carry_along(scene: cython.pointer[Scene]) -> cython.void:
-    """What the loads of all joints change by, by the accelerations and multipliers that answer the change."""
+def find_joint_load_tangents(scene: cython.pointer[Scene]) -> cython.void:
+    """Find the changes of the loads of all joints, from the accelerations and multipliers due to the change."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
-        scene.bodies[i].M_applied = scaled(-1.0, scene.tangents[i].M)
-        scene.bodies[i].f_applied = scaled(-1.0, scene.tangents[i].f)
-    push_closures(scene)
-    balance(scene, False)
+        scene.bodies[i].M_applied = scale_vector(-1.0, scene.tangents[i].M)
+        scene.bodies[i].f_applied = scale_vector(-1.0, scene.tangents[i].f)
+    apply_multipliers(scene)
+    balance_joints(scene, False)
 
 
-def press_along(scene: cython.pointer[Scene]) -> cython.double:
-    """Put on the bodies what friction changes by as what presses does; what its power changes by with that."""
+def add_friction_tangent(scene: cython.pointer[Scene]) -> cython.double:
+    """Apply the change of friction due to that of the normal forces to the bodies. Returns the change of its power."""
     k: cython.Py_ssize_t
     n: cython.Py_ssize_t = scene.rub_count
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     power: cython.double = 0.0
-    carry_along(scene)
-    see_along(scene)
-    pressed_along(scene)
+    find_joint_load_tangents(scene)
+    record_contact_force_tangents(scene)
+    find_normal_force_tangent(scene)
     for k in range(n):
         load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[k]])
-        change: Vec3 = scaled(scene.trial[4 * n + k], load.unit)
-        power += dot(change, direction_of(scene, load.a, load.axis)) * load.rate
+        change: Vec3 = scale_vector(scene.trial[4 * n + k], load.unit)
+        power += dot(change, world_direction(scene, load.a, load.axis)) * load.rate
         d: LoadTangent = LoadTangent(zero, zero, change)
         if load.kind == SHIFT_FRICTION:
             d = LoadTangent(zero, change, zero)
         elif load.kind == THREAD_FRICTION:
-            d = LoadTangent(zero, scaled(load.factor, change), change)
-            power += dot(d.force, sliding_in(scene, load, point_of(scene, load.b, load.q).v))
-        push_along(scene, load.b, load.at, zero, d)
-        push_along(scene, load.a, load.at, zero, opposite(d))
+            d = LoadTangent(zero, scale_vector(load.factor, change), change)
+            power += dot(d.force, sliding_velocity(scene, load, locate_point(scene, load.b, load.q).v))
+        push_load_tangent(scene, load.b, load.at, zero, d)
+        push_load_tangent(scene, load.a, load.at, zero, opposite_load(d))
     return power
 
 
-def see_along(scene: cython.pointer[Scene]) -> cython.void:
-    """Put down what E of all joints changes by, in the column behind those of friction."""
+def record_contact_force_tangents(scene: cython.pointer[Scene]) -> cython.void:
+    """Store the change of E of all joints, in the column after those of friction."""
     j: cython.Py_ssize_t
     column: cython.Py_ssize_t = scene.rub_count + 1
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for j in range(scene.rub_count):
         load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[j]])
         if load.presses == THRUST_OF_ROW:
-            put_parts(scene, column, j, thrust(scene, load), zero)
+            store_force_parts(scene, column, j, thread_thrust(scene, load), zero)
             continue
-        change: Vec3 = force_along(scene, load)
+        change: Vec3 = joint_force_tangent(scene, load)
         if load.presses == WHOLE:
-            put_parts(scene, column, j, change, zero)
+            store_force_parts(scene, column, j, change, zero)
             continue
-        n: Vec3 = direction_of(scene, load.a, load.axis)
-        dn: Vec3 = swung(scene, load.a, n)
-        F: Vec3 = force_at(scene, load)
-        along: cython.double = dot(dn, F) + dot(n, change)
-        change = add_scaled(add_scaled(change, -dot(n, F), dn), -along, n)
+        n: Vec3 = world_direction(scene, load.a, load.axis)
+        dn: Vec3 = vector_tangent(scene, load.a, n)
+        F: Vec3 = base_joint_force(scene, load)
+        normal_change: cython.double = dot(dn, F) + dot(n, change)
+        change = add_scaled(add_scaled(change, -dot(n, F), dn), -normal_change, n)
         if load.presses == ENDS:
-            couple: Vec3 = add_cross(cross(dn, moment_at(scene, load)), n, find_moment_change(scene, load))
-            put_ends(scene, column, j, change, couple)
+            couple: Vec3 = add_cross(cross(dn, base_joint_moment(scene, load)), n, joint_moment_tangent(scene, load))
+            store_end_forces(scene, column, j, change, couple)
         else:
-            put_parts(scene, column, j, change, zero)
+            store_force_parts(scene, column, j, change, zero)
 
 
-def force_at(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Force of the load's joint at the state (`carried_force`)."""
+def base_joint_force(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the force of the load's joint at the base state (`joint_force`)."""
     i: cython.Py_ssize_t
     total: Vec3 = Vec3(0.0, 0.0, 0.0)
     if load.held_by >= 0:
@@ -109,40 +118,40 @@ def force_at(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     return total
 
 
-def moment_at(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Moment of the load's joint about its `to` point at the state (`carried_moment`)."""
+def base_joint_moment(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the moment of the load's joint about its `to` point at the base state (`joint_moment`)."""
     i: cython.Py_ssize_t
     total: Vec3 = Vec3(0.0, 0.0, 0.0)
     if load.held_by >= 0:
-        at: cython.pointer[BodyAtState] = cython.address(scene.at_state[load.held_by])
-        return add_cross(at.M, sub(scene.bodies[load.held_by].r, load.at), at.f)
+        base: cython.pointer[BodyAtState] = cython.address(scene.at_state[load.held_by])
+        return add_cross(base.M, sub(scene.bodies[load.held_by].r, load.at), base.f)
     for i in range(load.row, load.row + load.row_count):
         total = add_scaled(total, scene.multipliers[i], scene.closures[i].m)
     return total
 
 
-def force_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """What the force of the load's joint changes by; of one that was cut d(lambda) f + lambda df."""
+def joint_force_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the change of the force of the load's joint; for a cut one d(lambda) f + lambda df."""
     i: cython.Py_ssize_t
-    total: Vec3 = carried_force(scene, load)
+    total: Vec3 = joint_force(scene, load)
     if load.held_by < 0:
         for i in range(load.row, load.row + load.row_count):
             row: cython.pointer[Closure] = cython.address(scene.closures[i])
             if row.rank >= 0:
-                total = add_scaled(total, scene.multipliers[i], row_along(scene, row).f)
+                total = add_scaled(total, scene.multipliers[i], row_tangent(scene, row).f)
     return total
 
 
-def find_moment_change(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """What the moment of the load's joint changes by: dM + (dr - dx) x F + (r - x) x dF, about its `to` point x."""
+def joint_moment_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the change of the joint's moment about its `to` point x: dM + (dr - dx) x F + (r - x) x dF."""
     i: cython.Py_ssize_t
-    total: Vec3 = carried_moment(scene, load)
+    total: Vec3 = joint_moment(scene, load)
     if load.held_by >= 0:
         d: cython.pointer[BodyTangent] = cython.address(scene.tangents[load.held_by])
-        way: Vec3 = sub(d.r, point_along(scene, load.b, load.q).x)
-        return add_cross(total, way, scene.at_state[load.held_by].f)
+        arm_change: Vec3 = sub(d.r, point_tangent(scene, load.b, load.q).x)
+        return add_cross(total, arm_change, scene.at_state[load.held_by].f)
     for i in range(load.row, load.row + load.row_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[i])
         if row.rank >= 0:
-            total = add_scaled(total, scene.multipliers[i], row_along(scene, row).m)
+            total = add_scaled(total, scene.multipliers[i], row_tangent(scene, row).m)
     return total

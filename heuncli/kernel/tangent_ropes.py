@@ -1,4 +1,4 @@
-"""What a rope that stretches changes by along a direction of the state (ropes.py)."""
+"""The change of an elastic rope along a direction of the state (ropes.py)."""
 
 from __future__ import annotations
 
@@ -10,39 +10,43 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import dot, sub
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.ropes import free_length, stiffness_at, stretch_of
+    from heuncli.kernel.ropes import free_length, rope_stiffness, rope_stretch
     from heuncli.kernel.scene import Closure, Load, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_conditions import condition_along
-    from heuncli.kernel.tangent_sheaves import carried_by, swung_by
+    from heuncli.kernel.tangent_conditions import condition_tangent
+    from heuncli.kernel.tangent_sheaves import body_rotation, point_displacement
     from heuncli.kernel.values import RopeMotion
 
 
-def rope_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
-    """What S and S' change by: dS = sum of f . (way of b - way of a at Q) + m . (turn of b - turn of a)."""
+def rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
+    """Return the changes of S and S': dS = sum of f . (displacement of b - that of a at Q) + m . (rotation of b - that
+    of a).
+    """
     i: cython.Py_ssize_t
     longer: cython.double = 0.0
     faster: cython.double = 0.0
     for i in range(load.part, load.part + load.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
-        own: cython.double = dot(part.f, sub(carried_by(scene, part.b, part.Q), carried_by(scene, part.a, part.Q)))
-        own += dot(part.m, sub(swung_by(scene, part.b), swung_by(scene, part.a)))
-        longer += part.factor * own
-        faster += part.factor * condition_along(scene, part).rate
+        part_change: cython.double = dot(
+            part.f, sub(point_displacement(scene, part.b, part.Q), point_displacement(scene, part.a, part.Q))
+        )
+        part_change += dot(part.m, sub(body_rotation(scene, part.b), body_rotation(scene, part.a)))
+        longer += part.factor * part_change
+        faster += part.factor * condition_tangent(scene, part).rate
     return RopeMotion(longer, faster)
 
 
-def rope_power_along(
+def rope_power_tangent(
     scene: cython.pointer[Scene], load: cython.pointer[Load], pull: cython.double, d: RopeMotion
 ) -> cython.double:
-    """What value S' + dV/dt changes by as `value` does by `pull`, and S and S' by d, at one instant."""
+    """Return the change of value S' + dV/dt for a change `pull` of `value`, and d of S and S', at one instant."""
     free: Jet = free_length(scene, load)
-    found: cython.double = pull * load.rate + load.value * d.rate
-    x: cython.double = stretch_of(load, load.span, free.value)
+    power: cython.double = pull * load.rate + load.value * d.rate
+    x: cython.double = rope_stretch(load, load.span, free.value)
     if x == 0.0 and load.in_body:
-        return found
-    k: cython.double = stiffness_at(load, free.value)
-    found += k * (d.S * (load.rate - free.rate) + x * d.rate)
+        return power
+    k: cython.double = rope_stiffness(load, free.value)
+    power += k * (d.S * (load.rate - free.rate) + x * d.rate)
     if load.y.count:
-        found -= k * x * d.S * free.rate / free.value
-    return found
+        power -= k * x * d.S * free.rate / free.value
+    return power

@@ -1,4 +1,4 @@
-"""What the kernel's functions hand to each other by value: motions of points and lines, and how they change."""
+"""Values that the kernel's functions pass to each other: motions of points and lines, and their changes."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ class PointMotion(Value):
     v: Vec3
 
 
-class Carried(Value):
-    """How a body carries a place with it: velocity, centripetal acceleration, and its angular velocity."""
+class PointKinematics(Value):
+    """The motion of a body's point: velocity, centripetal acceleration, and the body's angular velocity."""
 
     v: Vec3
     centripetal: Vec3
     omega: Vec3
 
 
-class CarriedInPlane(Value):
-    """How a body carries a place in the plane: velocity, centripetal acceleration, its angular velocity."""
+class PlanarPointKinematics(Value):
+    """The motion of a body's point in the plane: velocity, centripetal acceleration, the body's angular velocity."""
 
     vx: float
     vy: float
@@ -41,7 +41,7 @@ class CarriedInPlane(Value):
 
 
 class LoadTangent(Value):
-    """What a load changes by along a direction of the state: its place, force and moment."""
+    """The change of a load along a direction of the state: of its place, force and moment."""
 
     at: Vec3
     force: Vec3
@@ -49,7 +49,7 @@ class LoadTangent(Value):
 
 
 class LineTangent(Value):
-    """What the line between a load's two points changes by along a direction of the state: n, length and its rate."""
+    """The change of the line between a load's two points along a direction of the state: of n, length and its rate."""
 
     turned: Vec3
     length: float
@@ -57,14 +57,14 @@ class LineTangent(Value):
 
 
 class BushingTangent(Value):
-    """What a bushing's force or moment changes by along a direction of the state, and the power of its loss."""
+    """The change of a bushing's force or moment along a direction of the state, and of the power of its damping."""
 
     acts: Vec3
     power: float
 
 
 class RowTangent(Value):
-    """What a closure row changes by along a direction of the state: place, unit load, rate, J Vdot + gamma."""
+    """The change of a closure row along a direction of the state: of place, unit load, rate, J Vdot + gamma."""
 
     Q: Vec3
     f: Vec3
@@ -74,7 +74,7 @@ class RowTangent(Value):
 
 
 class Strand(Value):
-    """How a strand of a rope lies (sheaves.py): the axis, its direction across it, t x n, lengths across and whole."""
+    """How a strand of a rope lies (sheaves.py): the axis, its direction across it, t x n, lengths across and in all."""
 
     n: Vec3
     t: Vec3
@@ -86,7 +86,7 @@ class Strand(Value):
 
 
 class StrandRate(Value):
-    """How a strand moves: rates of its angle and of its lengths across and whole; bend: of its second derivative."""
+    """How a strand moves: rates of its angle and of its lengths across and in all; bend: of its second derivative."""
 
     chi: float
     l: float
@@ -102,9 +102,11 @@ class RopeMotion(Value):
 
 
 class LengthBounds(Value):
-    """Over a stretch of time: of a length, or a strain, how large its rate and its second derivative may be.
+    """Bounds, over an interval of time, of the rate and the second derivative of a length or strain.
 
-    bend: how far from the chord between its ends it may be; far: of what it is the difference; rounding: relative.
+    bend: how far it may be from the chord between its ends
+    far: size of the terms that it is the difference of
+    rounding: relative
     """
 
     rate: float
@@ -122,33 +124,33 @@ class VectorRate(Value):
 
 
 class VectorRateTangent(Value):
-    """A vector with its rate, and what both change by along a direction of the state."""
+    """A vector with its rate, and the changes of both along a direction of the state."""
 
     own: VectorRate
     change: VectorRate
 
 
 class WheelContact(Value):
-    """Where a wheel touches its plane, and the direction that a row of it looks along."""
+    """Where a wheel touches its plane, and the direction of its row."""
 
     c: VectorRate
     e: VectorRate
 
 
 class WheelTangent(Value):
-    """The same with what it changes by along a direction of the state."""
+    """A wheel's contact with its change along a direction of the state."""
 
     c: VectorRateTangent
     e: VectorRateTangent
 
 
 class CamStance(Value):
-    """A cam and its follower in the world; or what these change by."""
+    """A cam and its follower in the world; or the changes of these."""
 
     e: Vec3  # the disc's axis
     g: Vec3  # the follower's axis or guide
-    C: Vec3  # the follower's point, from the disc's axis on
-    w: Vec3  # its velocity against the carrier, by a unit of the follower's rate
+    C: Vec3  # the follower's point, from the disc's axis
+    w: Vec3  # its velocity relative to the carrier for a unit of the follower's rate
     h: Vec3  # the normal of its face
     slope: float  # L'
 
@@ -161,14 +163,14 @@ class CamContact(Value):
 
 
 class TrackFrame(Value):
-    """A direction across a path, and what it changes by along it."""
+    """A direction across a path, and its change along it."""
 
     N: Vec3
     change: Vec3
 
 
 class PlaceTangent(Value):
-    """What the place s of a path beside a point changes by: s itself, r', r'', and |r'|^2 - r'' . (D - r)."""
+    """The change of the place s of a path nearest to a point: of s itself, r', r'', and |r'|^2 - r'' . (D - r)."""
 
     s: float
     slope: Vec3
@@ -178,18 +180,18 @@ class PlaceTangent(Value):
 
 
 class MotionTangent(Value):
-    """What velocity and acceleration of a place that a body carries change by."""
+    """The changes of velocity and acceleration of a place fixed in a body."""
 
     v: Vec3
     a: Vec3
 
 
 class Instants(Value):
-    """States to recover, and room for the work; what is told of one kind stands end to end, state by state."""
+    """States to recover, and work arrays; the results of one kind follow each other, state by state."""
 
     count: Size  # how many states
     n: Size  # numbers of a state
-    body_width: Size  # numbers of what is told of all bodies at one
+    body_width: Size  # numbers of all bodies' results at one state
     freedom_width: Size
     load_width: Size
     row_width: Size
@@ -199,12 +201,12 @@ class Instants(Value):
     afresh: bool  # the closure rows are chosen anew at each
     held: bool  # `branches` are given
     causes: bool  # a column a cause is answered, too
-    opening: int  # numbers of `holding` a state (take_holding); 0: the contacts stay as they are
+    opening: int  # numbers of `holding` for each state (set_contact_modes); 0: the contacts stay as they are
     branches: list[float]  # that expressions hold
     holding: list[float]  # which contacts are closed, and how; where latches hold
     times: list[float]
     states: list[float]  # settled in place
-    bodies: list[float]  # the answers, a kind each (multibody/tree/tables.py)
+    bodies: list[float]  # the results, one array for each kind (multibody/tree/tables.py)
     freedoms: list[float]
     loads: list[float]
     rows: list[float]

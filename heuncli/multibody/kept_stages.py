@@ -1,9 +1,8 @@
-"""Stages of a computation whose results are kept, each with what of its input it has looked at.
+"""A cache for the results of stages: each result is stored with the part of its input that the stage has read.
 
-A stage is a function of records that changes nothing. Run for the first time its input is handed to it wrapped, and
-every field that it reads is written down. Given other input in which all that it read is the same to the bit, its
-result can be no other, and is taken over: that a force does not move the pose in which a scene is assembled is
-found out by that, and asserted nowhere.
+A stage is a function of records without side effects. On its first run it gets its input wrapped in proxies that record
+every field it reads. Given other input in which all of these fields are equal to the bit, its result must be the same
+and is taken from the cache: that a force does not change the assembled pose is found out in this way, not asserted.
 """
 
 from __future__ import annotations
@@ -18,88 +17,88 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import fields
 from heuncli.multibody.stages import Stages
-from heuncli.scene.file_format.sharing import same
+from heuncli.scene.file_format.sharing import is_same
 
 T = TypeVar("T")
 
 Key = tuple[Callable[..., Any], str]
 
 
-class KeptStage(NamedTuple):
-    """The result of a stage and what it looked at."""
+class CachedStage(NamedTuple):
+    """The result of a stage and the trace of the input it read."""
 
     result: Any
-    looked_at: tuple[LookedAt, ...]
+    looked_at: tuple[InputTrace, ...]
 
-    def stands(self, given: tuple[Any, ...]) -> bool:
-        """Whether the stage would see in this input what it saw."""
-        for one, new in zip(self.looked_at, given, strict=True):
-            if new is not one.value and not one.stands(new):
+    def is_valid_for(self, inputs: tuple[Any, ...]) -> bool:
+        """Whether the stage would read the same values from this input."""
+        for trace, new in zip(self.traces, inputs, strict=True):
+            if new is not trace.value and not trace.matches(new):
                 return False
         return True
 
 
-class FirstStages(Stages):
-    """Runs stages for the first time, and keeps what they look at; of one that is run again the first run."""
+class RecordingStages(Stages):
+    """Runs stages and records what they read; of a repeated stage the first run is stored."""
 
     def __init__(self) -> None:
-        self.kept: dict[Key, KeptStage] = {}
+        self.cached: dict[Key, CachedStage] = {}
 
-    def run(self, stage: Callable[..., T], *given: Any, of: str = "", by: Callable[[], T] | None = None) -> T:
-        """The result of a stage; where it is kept its arrays cannot be written to.
+    def run(self, stage: Callable[..., T], *inputs: Any, key: str = "", fallback: Callable[[], T] | None = None) -> T:
+        """Return the result of a stage; the arrays of a cached result cannot be written to.
 
-        It is not kept where it holds some of the input, nor where wrapped input gives another one or none: a stage may
-        ask whether two records are the same object.
+        A result is not cached if it contains part of the input, or if the proxies give another result or an error: a
+        stage may test whether two records are the same object.
         """
-        result = stage(*given) if by is None else by()
-        if (stage, of) not in self.kept:
-            looked_at = tuple(map(LookedAt, given))
+        result = stage(*inputs) if fallback is None else fallback()
+        if (stage, key) not in self.cached:
+            traces = tuple(map(InputTrace, inputs))
             with suppress(Exception):
-                again = stage(*map(watched, looked_at))
-                if holds_no_input(again) and same(again, result):
+                again = stage(*map(make_tracing_proxy, traces))
+                if holds_no_input(again) and is_same(again, result):
                     lock(result)
-                    self.kept[stage, of] = KeptStage(result, looked_at)
+                    self.cached[stage, key] = CachedStage(result, traces)
         return result
 
 
-class LaterStages(Stages):
-    """Takes the results of first stages where they stand."""
+class ReusingStages(Stages):
+    """Takes the results of a recorded run where they are still valid."""
 
-    def __init__(self, first: FirstStages) -> None:
+    def __init__(self, first: RecordingStages) -> None:
         self.first = first
 
-    def run(self, stage: Callable[..., T], *given: Any, of: str = "", by: Callable[[], T] | None = None) -> T:
-        """The result of a stage."""
-        kept = self.first.kept.get((stage, of))
-        if kept is not None and kept.stands(given):
-            result: T = kept.result
+    def run(self, stage: Callable[..., T], *inputs: Any, key: str = "", fallback: Callable[[], T] | None = None) -> T:
+        """Return the result of a stage."""
+        cached = self.first.cached.get((stage, key))
+        if cached is not None and cached.is_valid_for(inputs):
+            result: T = cached.result
             return result
-        return stage(*given) if by is None else by()
+        return stage(*inputs) if fallback is None else fallback()
 
 
-class LookedAt:
-    """A value that was handed to a stage, and the parts of it that were looked at; a value without parts counts whole.
+class InputTrace:
+    """An input value of a stage, and the parts of it that were read; a value without parts counts as a whole.
 
-    parts: fields of a record by their names, members of a list or tuple with records by their places.
+    parts: fields of a record by name, members of a list or tuple of records by index
     """
 
     __slots__ = ("parts", "value")
 
     def __init__(self, value: Any) -> None:
         self.value = value
-        self.parts: dict[Any, LookedAt] | None = None
+        self.parts: dict[Any, InputTrace] | None = None
         if is_record(value):
             self.parts = {}
         elif type(value) in (tuple, list) and any(map(is_record, value)):
-            self.parts = {place: LookedAt(member) for place, member in enumerate(value)}
+            self.parts = {place: InputTrace(member) for place, member in enumerate(value)}
 
-    def stands(self, new: Any) -> bool:
-        """Whether another value is the same in all that was looked at."""
+    def matches(self, new: Any) -> bool:
+        """Whether another value is equal in all parts that were read."""
         old = self.value
         if new is old:
             return True
         if self.parts is None:
-            return same(new, old)
+            return is_same(new, old)
         if type(new) is not type(old):
             return False
         if is_record(old):
@@ -109,7 +108,7 @@ class LookedAt:
         else:
             members = [(part, new[place]) for place, part in self.parts.items()]
         for part, member in members:  # noqa: SIM110 - half the time of all()
-            if member is not part.value and not part.stands(member):
+            if member is not part.value and not part.matches(member):
                 return False
         return True
 
@@ -118,27 +117,27 @@ def is_record(value: Any) -> bool:
     return hasattr(type(value), "__record_fields__")
 
 
-def watched(seen: LookedAt) -> Any:
-    """What stands for a value and writes down which parts of it are looked at."""
-    value = seen.value
-    if seen.parts is None:
+def make_tracing_proxy(trace: InputTrace) -> Any:
+    """Make a proxy of a value that records which parts of it are read."""
+    value = trace.value
+    if trace.parts is None:
         return value
     if not is_record(value):
-        return type(value)(watched(part) for part in seen.parts.values())
+        return type(value)(make_tracing_proxy(part) for part in trace.parts.values())
     kind: Any = type(value)
-    return _standing_for(_watched_class(kind), seen, {})
+    return _make_proxy(_make_proxy_class(kind), trace, {})
 
 
-def _standing_for(kind: Any, seen: LookedAt, parts: dict[str, Any]) -> Any:
-    """A record of a watched kind in the place of another; parts: what stands for those of its fields that were read."""
-    made = object.__new__(kind)
-    made.__dict__.update(_looked_at=seen, _parts=parts)
-    return made
+def _make_proxy(proxy_class: Any, trace: InputTrace, parts: dict[str, Any]) -> Any:
+    """Make a proxy record. parts: the proxies of those of its fields that were read."""
+    proxy = object.__new__(proxy_class)
+    proxy.__dict__.update(_looked_at=trace, _parts=parts)
+    return proxy
 
 
 @cache
-def _watched_class(kind: Any) -> Any:
-    """A kind of record whose fields are read from the record that it stands for, but for those that were replaced."""
+def _make_proxy_class(kind: Any) -> Any:
+    """Make a record class whose fields are read from the traced record, except those that were replaced."""
     names = frozenset(kind.__record_fields__)
 
     def read(self: Any, name: str) -> Any:
@@ -150,14 +149,14 @@ def _watched_class(kind: Any) -> Any:
             seen = own["_looked_at"]
             part = seen.parts.get(name)
             if part is None:
-                part = seen.parts[name] = LookedAt(getattr(seen.value, name))
-            parts[name] = watched(part)
+                part = seen.parts[name] = InputTrace(getattr(seen.value, name))
+            parts[name] = make_tracing_proxy(part)
         return parts[name]
 
     def copy(self: Any) -> Any:
         """What `replace` puts its changes into: what it leaves has not been looked at."""
         own = object.__getattribute__(self, "__dict__")
-        made = _standing_for(type(self), own["_looked_at"], own["_parts"])
+        made = _make_proxy(type(self), own["_looked_at"], own["_parts"])
         made.__dict__.update({name: value for name, value in own.items() if name in names})
         return made
 
@@ -165,7 +164,7 @@ def _watched_class(kind: Any) -> Any:
 
 
 def holds_no_input(value: Any) -> bool:
-    """Whether a result consists of numbers, words and records of its own, and of nothing behind which others hide."""
+    """Whether a result consists of numbers, words and records of its own, and contains no proxy of the input."""
     if isinstance(value, Mapping):
         return all(map(holds_no_input, value.values()))
     if isinstance(value, list | tuple | set | frozenset):
@@ -176,7 +175,7 @@ def holds_no_input(value: Any) -> bool:
 
 
 def lock(value: Any) -> None:
-    """Keep the arrays of a result from being written to."""
+    """Make the arrays of a result read-only."""
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
     elif isinstance(value, Mapping | list | tuple):

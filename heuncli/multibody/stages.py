@@ -1,6 +1,6 @@
-"""A computation as stages: functions of records that change nothing, so that their results may be kept.
+"""A computation in stages: functions of records without side effects, so that their results may be cached.
 
-Here nothing is kept; kept_stages.py is for variants of a scene.
+Here nothing is cached; stage_cache.py does that for the variants of a scene.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ T = TypeVar("T")
 
 
 class Stages:
-    """Runs stages, and keeps nothing."""
+    """Runs stages without a cache."""
 
-    def run(self, stage: Callable[..., T], *given: Any, of: str = "", by: Callable[[], T] | None = None) -> T:
-        """The result of a stage; of: which one, of a stage that is run for several things by their names.
+    def run(self, stage: Callable[..., T], *inputs: Any, key: str = "", fallback: Callable[[], T] | None = None) -> T:
+        """Return the result of a stage. key: which one, of a stage that is run for several objects by name.
 
-        by: how the same is made of stages, where some of what it is made of may be kept when it is not.
+        fallback: computes the same from smaller stages, some of which may be cached when the stage itself is not
         """
-        return stage(*given) if by is None else by()
+        return stage(*inputs) if fallback is None else fallback()
 
 
-ANEW = Stages()
+NO_CACHE = Stages()

@@ -1,8 +1,8 @@
 """Results of a run: the JSON of manual/results.md, with arrays in place of lists.
 
-Arrays are float64 and run over the instants first: (n_t,), (n_t, 3), (n_t, 3, 3); runs of cuts (n_t, n_cuts).
-`nan` in an array means that the laws of rigid bodies leave the component open (`null` in JSON). A block that does not
-apply, or was not asked for, is absent (an empty dict or None). Knows nothing of where numbers come from.
+Arrays are float64 with the instants first: (n_t,), (n_t, 3), (n_t, 3, 3); runs of cuts (n_t, n_cuts). `nan` in an array
+means that rigid-body mechanics leaves the component indeterminate (`null` in JSON). A block that does not apply, or was
+not requested, is absent (an empty dict or None). This module does not depend on where the numbers come from.
 """
 
 from __future__ import annotations
@@ -30,15 +30,19 @@ class Status(TypedDict):
     message: str
 
 
-class CertainSum(TypedDict):
-    """A sum of open components, each by its factor, which is known: (n_t,); a factor is a number, or one an instant."""
+class DeterminateSum(TypedDict):
+    """A determinate sum of indeterminate components, each times its factor: (n_t,); a factor is a number, or one per
+    instant.
+    """
 
     terms: Mapping[str, float | Array]
     value: Array
 
 
-class Estimate(TypedDict, total=False):
-    """Estimated errors over the whole run, by kind: of the scene's size, and of the largest of each kind; 0: none."""
+class ErrorEstimate(TypedDict, total=False):
+    """Estimated errors over the whole run, by kind: relative to the scene's size, and to the largest of each kind; 0:
+    none.
+    """
 
     motion: float
     reactions: float
@@ -49,21 +53,21 @@ class Estimate(TypedDict, total=False):
 
 
 class Accuracy(TypedDict, total=False):
-    """How well the equations are solved; horizon: None where there is none.
+    """How accurately the equations are solved; horizon: None where there is none.
 
-    unknown: instants beside singular poses at which rounding reaches some numbers, which are nan there.
+    unknown: instants near singular poses at which rounding makes some numbers unknown, which are nan there
     """
 
     energy_drift: float
     constraint_gap: float
     balance_residual: float
     horizon: float | None
-    estimate: Estimate
+    estimate: ErrorEstimate
     unknown: list[float]
 
 
 class BodyBlock(TypedDict):
-    """Motion of a body: of its origin, its attitude (columns: its axes), its centre of mass; world axes."""
+    """Motion of a body: its origin, its attitude (columns: its axes), its centre of mass; world axes."""
 
     position: Array
     velocity: Array
@@ -82,7 +86,9 @@ class BodyBlock(TypedDict):
 class JointBlock(TypedDict, total=False):
     """Reaction of a joint ON `to`, moment about `point`; axial, radial, tilting where it has an axis.
 
-    open: components that are open at some instant (`force.z`); chosen: those that a split gives. shares: by cause.
+    open: components that are indeterminate at some instant (`force.z`)
+    chosen: those that a split determines
+    shares: by cause
     """
 
     point: Array
@@ -102,7 +108,7 @@ class JointBlock(TypedDict, total=False):
 
 
 class ForceBlock(TypedDict, total=False):
-    """An applied load: its value as in the spec, length or angle and rate of what it acts between, power put in."""
+    """An applied load: its value as in the spec, the length or angle and rate between its ends, and its power."""
 
     value: Array
     length: Array
@@ -116,7 +122,7 @@ class ForceBlock(TypedDict, total=False):
 
 
 class Work(TypedDict, total=False):
-    """What the run took."""
+    """The effort of the run."""
 
     kernel: str
     steps: int
@@ -126,9 +132,9 @@ class Work(TypedDict, total=False):
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Everything a run reports; field names and the nesting below them are those of manual/results.md.
+    """All results of a run; field names and the nesting below them are those of manual/results.md.
 
-    What stands in a block, in which shape and unit, says heuncli/results/results_schema.py.
+    The contents of a block, with shapes and units, are in heuncli/results/results_schema.py.
     """
 
     title: str
@@ -151,38 +157,44 @@ class Results:
     system_vector: Block = field(default_factory=dict)
     impulses: list[Block] = field(default_factory=list)
     events: Block = field(default_factory=dict)
-    certain_sums: list[CertainSum] = field(default_factory=list)
+    certain_sums: list[DeterminateSum] = field(default_factory=list)
     accuracy: Accuracy = field(default_factory=Accuracy)
     work: Work = field(default_factory=Work)
     warnings: tuple[str, ...] = ()
 
     @property
     def horizon(self) -> float | None:
-        """The first instant [s] from which on nothing is claimed; None where there is none."""
+        """The first instant [s] from which on results are not reliable; None if there is none."""
         return self.accuracy.get("horizon")
 
     def relative_error(self, kind: str) -> float:
-        """The estimated error of a kind, of its own largest, up to the horizon; not below that of rounding."""
-        error = self.accuracy.get("estimate", Estimate()).get(kind)
+        """Return the estimated error of a kind, relative to its largest value, up to the horizon; at least that of
+        rounding.
+        """
+        error = self.accuracy.get("estimate", ErrorEstimate()).get(kind)
         if not isinstance(error, float) or not math.isfinite(error):
             return tolerances.WRITTEN
         if self.horizon is not None:
             error = min(error, tolerances.CLAIMED)
         return max(error, tolerances.WRITTEN)
 
-    def errors_of_places(self, size: float) -> dict[tuple[str, str], float]:
-        """The errors of places and angles by kind and unit, in a scene of some size [m]; of large angles of these."""
+    def position_errors(self, size: float) -> dict[tuple[str, str], float]:
+        """Return the errors of positions and angles by kind and unit, in a scene of a size [m]; large angles have
+        larger errors.
+        """
         blocks = (*self.coordinates.values(), *self.forces.values())
         angles = [np.abs(np.asarray(block["angle"])) for block in blocks if "angle" in block]
-        turned = max((float(a.max(initial=0.0, where=np.isfinite(a))) for a in angles), default=0.0)
+        largest_angle = max((float(a.max(initial=0.0, where=np.isfinite(a))) for a in angles), default=0.0)
         relative = self.relative_error("motion")
         if self.horizon is not None and self.time[0] >= self.horizon:
             relative = math.inf
-        return {("motion", "m"): relative * size, ("motion", "rad"): relative * max(turned, 1.0)}
+        return {("motion", "m"): relative * size, ("motion", "rad"): relative * max(largest_angle, 1.0)}
 
 
-class Place(NamedTuple):
-    """A place in a run of cuts: distance s [m], side of what acts there, and which of the asked cuts it is, if any."""
+class CutPosition(NamedTuple):
+    """A position in a run of cuts: distance s [m], side of a load there, and the index of the requested cut, if it is
+    one.
+    """
 
     s: float
     side: str | None
@@ -192,8 +204,11 @@ class Place(NamedTuple):
 class Extremes(NamedTuple):
     """Lowest and highest value of each of n groups of columns over a run, (n,), with the instant and the column.
 
-    `searched`: whether the instants between the samples were looked at, `complete`: all that promised more. A group
-    that is nan throughout stays nan. places: of the lowest and highest of each run of cuts, the last groups.
+    is_searched: whether the instants between the samples were searched
+    is_complete: whether all promising ones were
+    places: of the lowest and highest of each run of cuts, the last groups
+
+    A group that is nan throughout stays nan.
     """
 
     low: Array
@@ -204,21 +219,22 @@ class Extremes(NamedTuple):
     high_column: Indices
     searched: bool
     complete: bool = True
-    places: tuple[tuple[Place, Place], ...] = ()
+    places: tuple[tuple[CutPosition, CutPosition], ...] = ()
 
-    def part(self, groups: slice) -> Extremes:
-        """Those of some of the groups."""
+    def select(self, groups: slice) -> Extremes:
+        """Return the extremes of some groups."""
         return Extremes(
             self.low[groups], self.low_at[groups], self.low_column[groups],
-            self.high[groups], self.high_at[groups], self.high_column[groups], self.searched, self.complete,
+            self.high[groups], self.high_at[groups], self.high_column[groups], self.is_searched, self.is_complete,
         )  # fmt: skip
 
 
 class Magnitudes(NamedTuple):
-    """The largest over a run, by unit, of what its numbers are summed from; size and reach [m] of the scene.
+    """The largest terms over a run, by unit, from which its numbers are summed; size and reach [m] of the scene.
 
-    A number far below its unit's is rounding of the sum, or of a difference. errors: estimated by a check run, by kind
-    (of `accuracy.estimate`) and unit.
+    A number far below that of its unit is rounding of the sum, or of a difference.
+
+    errors: estimated by a check run, by kind (of `accuracy.estimate`) and unit
     """
 
     by_unit: Mapping[str, float]
@@ -226,10 +242,14 @@ class Magnitudes(NamedTuple):
     reach: float
     errors: Mapping[tuple[str, str], float]
 
-    def lost(self) -> dict[str, float]:
-        """What is lost by rounding, by unit; far from the origin places, and so levers, have fewer digits."""
-        lost = {unit: tolerances.WRITTEN * scale for unit, scale in self.by_unit.items()}
-        far = tolerances.GAP_ROUNDING * self.reach
+    def rounding_errors(self) -> dict[str, float]:
+        """Return the rounding error, by unit; far from the origin positions, and so levers, have fewer digits."""
+        errors = {unit: tolerances.WRITTEN * scale for unit, scale in self.by_unit.items()}
+        position_rounding = tolerances.GAP_ROUNDING * self.reach
         levers = {"N·m": "N", "N·m·s": "N·s"}
-        far_moments = {unit: max(lost[unit], far * self.by_unit[on]) for unit, on in levers.items() if unit in lost}
-        return lost | {"m": max(lost["m"], far)} | far_moments
+        far_moments = {
+            unit: max(errors[unit], position_rounding * self.by_unit[force])
+            for unit, force in levers.items()
+            if unit in errors
+        }
+        return errors | {"m": max(errors["m"], position_rounding)} | far_moments

@@ -1,7 +1,7 @@
 """Paths into the results, as in the JSON: `joints.elbow.force.z`, `impulses.0.foundation.force.z`.
 
-Places in lists are numbers, or x, y, z on axes of space. Where a number runs over the instants the path stops short of
-the instant, or names it as the first place.
+Elements of lists are selected by numbers, or by x, y, z on axes of space. A path of a number at each instant stops
+before the instant, or selects it as the first index.
 """
 
 from __future__ import annotations
@@ -13,32 +13,33 @@ import numpy as np
 
 from heuncli.base.errors import Finding, Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import begin_file, nearest
-from heuncli.results.cut_rows import row_at
+from heuncli.base.nearest import find_similar, reset_effort
+from heuncli.results.cut_rows import find_cut_row
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import (
-    BLOWS,
     CUT,
+    IMPULSES,
     INDEX,
     INSTANT,
     SPACE,
     Axis,
     Quantity,
     Shape,
+    find_quantity,
+    find_unknown_key,
     is_no_number,
-    leading_key,
-    quantity,
-    unknown_key,
+    split_leading_key,
 )  # fmt: skip
-from heuncli.results.run_places import NO_RUN, marked, names_a_cut, path_of, words_of
+from heuncli.results.run_places import NO_RUN, find_position_word, is_cut_word, join_path, split_path
 
-MOST_NAMES = 12  # of the known names an error lists
+MAX_NAMES = 12  # of the known names an error lists
 
 
-class Numbers(NamedTuple):
-    """What a path leads to: `values` with the instants first if `timed`, and the other axes as the schema has them.
+class PathValues(NamedTuple):
+    """The values at a path: with the instants first if `is_timed`, and the other axes as in the schema.
 
-    instant: the number of the instant that the path names; keys: the words of the path that name the quantity.
+    instant: index of the instant that the path selects
+    keys: the words of the path that name the quantity
     """
 
     values: Array
@@ -48,161 +49,177 @@ class Numbers(NamedTuple):
     keys: tuple[str, ...] = ()
 
     @property
-    def of_vectors(self) -> bool:
-        """Whether the last axis is that of a vector's components; a run of three cuts is none."""
+    def is_vector(self) -> bool:
+        """Whether the last axis is that of a vector's components; a run of three cuts is not a vector."""
         return self.axes[-1:] == (SPACE,)
 
     @property
-    def bent(self) -> bool:
-        """Whether it is of a section and no polynomial of its loads: stresses, and where the reduction line lies."""
+    def is_nonlinear(self) -> bool:
+        """Whether it belongs to a section and is no polynomial of its loads: stresses, and the position of the
+        reduction line.
+        """
         return self.keys[:1] == ("sections",) and self.keys[2:3] in (("stress",), ("line",))
 
 
-def find(results: Results, path: str) -> Numbers:
-    """The numbers at a path; nan is open. Raises SpecError [unknown-path] with what is known at the place it fails."""
+def find_values(results: Results, path: str) -> PathValues:
+    """Return the values at a path; nan is indeterminate. Raises SpecError [unknown-path] with the known names where it
+    fails.
+    """
     try:
-        return _found(results, path)
+        return _resolve(results, path)
     except SpecError as error:
-        from heuncli.results.path_hints import meant  # only on the way to an error
+        from heuncli.results.path_hints import find_similar_path  # only on the way to an error
 
-        begin_file()  # the spec's own problems are behind
+        reset_effort()  # the spec's own problems are behind
         (problem,) = error.problems
-        likely = meant(path, lambda words: _leads(results, words)) if problem.code == "unknown-path" else None
-        if likely is None:
+        similar = (
+            find_similar_path(path, lambda words: _has_values(results, words))
+            if problem.code == "unknown-path"
+            else None
+        )
+        if similar is None:
             raise
-        raise SpecError(problem._replace(hint=f"did you mean {likely}?")) from None
+        raise SpecError(problem._replace(hint=f"did you mean {similar}?")) from None
 
 
-def _leads(results: Results, words: Sequence[str]) -> bool:
-    """Whether there is a number at a path."""
+def _has_values(results: Results, words: Sequence[str]) -> bool:
+    """Whether a path leads to values."""
     try:
-        _found(results, path_of(words))
+        _resolve(results, join_path(words))
     except SpecError:
         return False
     return True
 
 
-def _found(results: Results, path: str) -> Numbers:
-    keys, node, rest = _walk(results, path)
+def _resolve(results: Results, path: str) -> PathValues:
+    keys, node, rest = _follow_keys(results, path)
     if is_no_number(keys):
-        raise _unknown(path, keys, "", [])
-    values = _numbers(path, keys, node)
-    row = quantity(keys)
-    # a blow has one instant, and no axis for it
-    timed = row is not None and row.timed and keys[0] != "impulses" and isinstance(node, np.ndarray)
-    axes = _axes(results, keys, row, values.ndim, timed)
+        raise _unknown_path_error(path, keys, "", [])
+    values = _to_array(path, keys, node)
+    row = find_quantity(keys)
+    # an impulse has one instant, and no axis for it
+    is_timed = row is not None and row.is_timed and keys[0] != "impulses" and isinstance(node, np.ndarray)
+    axes = _find_axes(results, keys, row, values.ndim, is_timed)
     if CUT in axes:
-        values, axes, rest = _at_a_cut(results, path, keys, values, axes, rest)
+        values, axes, rest = _select_cut(results, path, keys, values, axes, rest)
     if len(rest) > len(axes):
-        raise _unknown(path, keys, rest[len(axes)], [])
+        raise _unknown_path_error(path, keys, rest[len(axes)], [])
     instant = None
-    if timed and len(rest) == len(axes):
-        timed, instant = False, _index(path, keys, rest[0], axes[0], len(values))
-    elif timed:
+    if is_timed and len(rest) == len(axes):
+        is_timed, instant = False, _parse_index(path, keys, rest[0], axes[0], len(values))
+    elif is_timed:
         for word in rest:
-            values = values[:, _index(path, keys, word, axes[1], values.shape[1])]
+            values = values[:, _parse_index(path, keys, word, axes[1], values.shape[1])]
             axes = (axes[0], *axes[2:])
-        return Numbers(values, True, axes[1:], keys=tuple(keys))
+        return PathValues(values, True, axes[1:], keys=tuple(keys))
     for word in rest:
-        values = np.asarray(values[_index(path, keys, word, axes[0], len(values))])
+        values = np.asarray(values[_parse_index(path, keys, word, axes[0], len(values))])
         axes = axes[1:]
-    return Numbers(values, False, axes, instant, tuple(keys))
+    return PathValues(values, False, axes, instant, tuple(keys))
 
 
-def _walk(results: Results, path: str) -> tuple[list[str], Any, list[str]]:
-    """The keys that a path names, what stands there, and the places behind them."""
+def _follow_keys(results: Results, path: str) -> tuple[list[str], Any, list[str]]:
+    """Return the keys that a path names, the value there, and the remaining words."""
     node: Any = vars(results)
     keys: list[str] = []
-    rest = words_of(path)
+    rest = split_path(path)
     while rest and isinstance(node, (dict, list, tuple)):
         if isinstance(node, dict):
-            key, behind = leading_key(node, rest)
+            key, behind = split_leading_key(node, rest)
             if key is None:
-                raise _unknown(path, keys, unknown_key(node, rest), sorted(node))
+                raise _unknown_path_error(path, keys, find_unknown_key(node, rest), sorted(node))
             node, rest = node[key], behind
             keys.append(key)
         else:
-            at = _index(path, keys, rest[0], INDEX, len(node))
-            node, rest = node[at], rest[1:]
-            keys.append(str(at))
+            index = _parse_index(path, keys, rest[0], INDEX, len(node))
+            node, rest = node[index], rest[1:]
+            keys.append(str(index))
     if isinstance(node, (dict, str)) or (node is None and rest):
-        known = sorted(node) if isinstance(node, dict) else []
-        raise _unknown(path, keys, rest[0] if rest else "", known)
+        names = sorted(node) if isinstance(node, dict) else []
+        raise _unknown_path_error(path, keys, rest[0] if rest else "", names)
     return keys, node, rest
 
 
-def _axes(results: Results, keys: Sequence[str], row: Quantity | None, dimensions: int, timed: bool) -> Shape:
-    """The axes of what stands under the keys, the instants among them if it runs over them."""
+def _find_axes(results: Results, keys: Sequence[str], row: Quantity | None, dimensions: int, is_timed: bool) -> Shape:
+    """Return the axes of the value at these keys, the instants included if it has them."""
     if row is None or not row.units:
         return (INDEX,) * dimensions
-    return ((INSTANT,) if timed else ()) + row.axes(run=_is_run(results, keys))
+    return ((INSTANT,) if is_timed else ()) + row.instant_axes(run=_is_in_cut_run(results, keys))
 
 
-def _is_run(results: Results, keys: Sequence[str]) -> bool:
-    """Whether the keys lead into a run of cuts, of the whole motion or of one blow."""
-    return "s" in section_of(results, keys)
+def _is_in_cut_run(results: Results, keys: Sequence[str]) -> bool:
+    """Whether the keys lead into a run of cuts, of the whole motion or of one impulse."""
+    return "s" in find_section(results, keys)
 
 
-def section_of(results: Results, keys: Sequence[str]) -> Block:
-    """The section into which the keys lead, of the whole motion or of one blow; empty where they lead into none."""
+def find_section(results: Results, keys: Sequence[str]) -> Block:
+    """Return the section into which the keys lead, of the whole motion or of one impulse; empty if there is none."""
     sections = results.sections
-    if keys[0] == BLOWS:
+    if keys[0] == IMPULSES:
         sections, keys = results.impulses[int(keys[1])].get("sections", {}), keys[2:]
     section: Block = sections[keys[1]] if keys[0] == "sections" else {}
     return section
 
 
-def _at_a_cut(
+def _select_cut(
     results: Results, path: str, keys: Sequence[str], values: Array, axes: Shape, rest: list[str]
 ) -> tuple[Array, Shape, list[str]]:
-    """The values, axes and words that are left where one of the words names a place along the run of cuts.
+    """Select a cut if one of the words names a position along the run; return the remaining values, axes and words.
 
-    A place with its @ may stand behind a component, too; the number of a cut stands in its own place.
+    A position with its @ may also follow a component; the index of a cut must be at its own place.
     """
-    k, word = axes.index(CUT), marked(rest)
-    left = rest.copy()
+    k, word = axes.index(CUT), find_position_word(rest)
+    remaining = rest.copy()
     if word is not None:
-        left.remove(word)
+        remaining.remove(word)
     elif rest:
-        word = left.pop(k if len(rest) == len(axes) else 0)
-    if word is None or not names_a_cut(word):
+        word = remaining.pop(k if len(rest) == len(axes) else 0)
+    if word is None or not is_cut_word(word):
         return values, axes, rest
-    section = section_of(results, keys)
+    section = find_section(results, keys)
     try:
-        row = row_at(word, section["s"], section.get("side") or [None] * len(section["s"]), np.moveaxis(values, k, -1))
+        row = find_cut_row(
+            word, section["s"], section.get("side") or [None] * len(section["s"]), np.moveaxis(values, k, -1)
+        )
     except Finding as finding:
         raise SpecError(Problem(finding.code, f"{path}: {finding.message}", hint=finding.hint)) from None
-    return np.take(values, row, axis=k), axes[:k] + axes[k + 1 :], left
+    return np.take(values, row, axis=k), axes[:k] + axes[k + 1 :], remaining
 
 
-def _index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> int:
-    index = axis.index_of(word, size)
+def _parse_index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> int:
+    index = axis.find_index(word, size)
     if index is None:
-        known = [*axis.letters] or ["0" if size == 1 else f"0 ... {size - 1}"] if size else []
-        raise _unknown(path, keys, word, known, None if size else "there is none in this run")
+        allowed = [*axis.letters] or ["0" if size == 1 else f"0 ... {size - 1}"] if size else []
+        raise _unknown_path_error(path, keys, word, allowed, None if size else "there is none in this run")
     return index
 
 
-def _numbers(path: str, keys: Sequence[str], node: Any) -> Array:
+def _to_array(path: str, keys: Sequence[str], node: Any) -> Array:
     try:
         return np.asarray(np.nan if node is None else node, dtype=np.float64)
     except (TypeError, ValueError):
-        raise _unknown(path, keys, "", []) from None
+        raise _unknown_path_error(path, keys, "", []) from None
 
 
-def _unknown(path: str, keys: Sequence[str], word: str, known: Collection[str], empty: str | None = None) -> SpecError:
-    names = list(known)
-    at = ".".join(keys) or "the results"
-    what = f"{at} has no '{word}'" if word else f"{at} is not a number"
-    listed = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
-    hint = NO_RUN if word.startswith("@") else empty if empty is not None else _hint(".".join(keys), word, names)
-    return SpecError(Problem("unknown-path", f"{path}: {what}" + (f"; known: {listed}" if names else ""), hint=hint))
+def _unknown_path_error(
+    path: str, keys: Sequence[str], word: str, known_names: Collection[str], empty: str | None = None
+) -> SpecError:
+    names = list(known_names)
+    parent = ".".join(keys) or "the results"
+    what = f"{parent} has no '{word}'" if word else f"{parent} is not a number"
+    name_list = ", ".join(names[:MAX_NAMES]) + (", ..." if len(names) > MAX_NAMES else "")
+    hint = NO_RUN if word.startswith("@") else empty if empty is not None else _path_hint(".".join(keys), word, names)
+    return SpecError(Problem("unknown-path", f"{path}: {what}" + (f"; known: {name_list}" if names else ""), hint=hint))
 
 
-def _hint(at: str, word: str, known: Sequence[str]) -> str:
-    """Where a path leads on, or that it ends before the word."""
-    if near := nearest(word, known):
+def _path_hint(parent: str, word: str, known_names: Sequence[str]) -> str:
+    """Suggest how a path continues, or that it ends before the word."""
+    if near := find_similar(word, known_names):
         return f"did you mean {near}?"
-    if known:
-        return f"a path that leads on: {at}.{known[0].partition(' ')[0]}" if at else f"it begins with {known[0]}, say"
+    if known_names:
+        return (
+            f"a path that leads on: {parent}.{known_names[0].partition(' ')[0]}"
+            if parent
+            else f"it begins with {known_names[0]}, say"
+        )
     return f"leave .{word} out: the path ends before it" if word else "name a number, as energy.kinetic"

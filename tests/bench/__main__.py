@@ -33,7 +33,7 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.tables.export import to_csv, to_json
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.workflow import solve
 from tests.bench.auto import table
 from tests.bench.balance import balanced
@@ -75,7 +75,7 @@ def median_ms(f: Callable[[], Any], repeats: int = 15) -> float:
 
 def error(name: str, scene: PreparedScene, runner: Runner, times: Any, states: Any) -> float:
     """Largest distance of a centre of mass from the reference at the end [m]."""
-    found = runner.recovered(times[-1:], states[-1:]).bodies[0]
+    found = runner.evaluate(times[-1:], states[-1:]).bodies[0]
     worst = 0.0
     for i, body in enumerate(scene.mechanism.bodies):
         k = scene.layout.place[i]
@@ -93,7 +93,7 @@ def motion() -> None:
         spec = load(str(SCENES / f"{name}.yaml"))
         setup = set_up(spec)
         scene, runners = setup.scene, {"": Runner(setup.scene.layout)}
-        if setup.runner.moving.layout is not scene.layout:
+        if setup.runner.integrated_scene.layout is not scene.layout:
             runners[" reduced"] = setup.runner
         times = np.array(spec.analysis.times)
         for how, runner in runners.items():
@@ -101,7 +101,7 @@ def motion() -> None:
                 one_motion(name, how, scene, runner, times, goal)
         study = solve(spec)
         seconds, size = study.results.work["seconds"], study.setup.scene.layout.size
-        off = error(name, study.setup.scene, study.setup.runner, times, study.history.recovered.states)
+        off = error(name, study.setup.scene, study.setup.runner, times, study.history.solutions.states)
         print(
             f"{name:8s} as asked, to {spec.analysis.tolerance:.0e} of {size:.3g} m: "
             f"{1e3 * seconds['integrate']:.3f} ms, "
@@ -114,12 +114,12 @@ def one_motion(name: str, how: str, scene: PreparedScene, runner: Runner, times:
     """The loosest tolerance that reaches the goal [m], and what it costs."""
     repeats = 15 if KERNEL == "compiled" else 1
     for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 29)):
-        run = runner.trajectory(MotionTask(times, tolerance))
+        run = runner.run(MotionTask(times, tolerance))
         off = error(name, scene, runner, times, run.states)
         if off <= goal:
             break
-    alone = median_ms(partial(runner.trajectory, MotionTask(times, tolerance)), repeats)
-    check = median_ms(partial(runner.trajectory, MotionTask(times, tolerance / 30.0)), repeats)
+    alone = median_ms(partial(runner.run, MotionTask(times, tolerance)), repeats)
+    check = median_ms(partial(runner.run, MotionTask(times, tolerance / 30.0)), repeats)
     print(
         f"{name + how:8s} to {goal:.0e} m: error {off:.1e} m, {alone:7.3f} ms alone, "
         f"{1 + check / alone:.2f} times that with the check run; "
@@ -137,9 +137,9 @@ def charted() -> None:
         times = np.array(spec.analysis.times)
         points = runs[name[0] if name != "crank" else "k"] = []
         for tolerance in (10.0 ** (-0.5 * k) for k in range(8, 27)):
-            run = runner.trajectory(MotionTask(times, tolerance))
+            run = runner.run(MotionTask(times, tolerance))
             off = max(error(name, scene, runner, times, run.states), 1e-14)
-            points.append((median_ms(partial(runner.trajectory, MotionTask(times, tolerance)), 7), off))
+            points.append((median_ms(partial(runner.run, MotionTask(times, tolerance)), 7), off))
     print("d double, t top, c chain10, k crank: error at the end against time of integration")
     print(chart(runs))
 
@@ -150,15 +150,15 @@ def chains() -> None:
     for n in (10, 100, 1000):
         spec = load("chain.yaml", chain(n, duration=0.05))
         runner = set_up(spec).runner
-        run = runner.trajectory(MotionTask([0.05], 1e-6))
-        cost[n] = median_ms(partial(runner.trajectory, MotionTask([0.05], 1e-6)), 15) / run.evaluations / n
+        run = runner.run(MotionTask([0.05], 1e-6))
+        cost[n] = median_ms(partial(runner.run, MotionTask([0.05], 1e-6)), 15) / run.evaluations / n
         print(f"chain of {n:5d}: {1e6 * cost[n]:.0f} ns a body and evaluation, {cost[n] / cost[10]:.2f} times 10's")
     begun = time.perf_counter()
     spec = load("chain.yaml", chain(10_000, duration=0.05))
     read = time.perf_counter()
     scene = set_up(spec).scene
     built = time.perf_counter()
-    run = Runner(scene.layout).trajectory(MotionTask([0.05], 1e-6))
+    run = Runner(scene.layout).run(MotionTask([0.05], 1e-6))
     print(
         f"chain of 10000: read {read - begun:.2f} s, assembled and laid out {built - read:.2f} s, "
         f"0.05 s of motion in {run.seconds:.2f} s, {run.steps} steps"
@@ -189,7 +189,7 @@ def process() -> None:
 def export() -> None:
     """JSON and CSV, microseconds a number."""
     spec = load(str(SCENES / "chain10.yaml"), overrides={"analysis.samples": "2001"})
-    results, scene = solve(spec).results, labels_of(spec)
+    results, scene = solve(spec).results, make_labels(spec)
     for name, write in (("JSON", to_json), ("CSV", lambda found: to_csv(found, scene))):
         text = write(results)
         numbers = text.count(",") + 1 if name == "JSON" else text.count("\n")

@@ -18,14 +18,14 @@ import numpy as np
 
 from heuncli.base.errors import HeunError
 from heuncli.base.method_rows import DEFAULT, METHODS
-from heuncli.motion.integration.check.distance import Marks, motion_error
-from heuncli.motion.integration.check.estimate import recovered_at
-from heuncli.motion.integration.check.instants import interleaved
+from heuncli.motion.integration.check.distance import MotionPoints, motion_error
+from heuncli.motion.integration.check.estimate import evaluate_run
+from heuncli.motion.integration.check.instants import interleave
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
@@ -60,17 +60,17 @@ class Scene(NamedTuple):
             request = MotionTask(
                 self.exact.times, local, method, self.jumps, most_steps=most // max(len(method.nodes) - 1, 1) + 10
             )
-            run = self.runner.trajectory(request)
+            run = self.runner.run(request)
             return run.evaluations, self.error(run)
         return most, math.inf
 
     def error(self, run: Trajectory) -> float:
         """Largest distance of any point from the reference, of the scene's size."""
         n = min(len(run.times), len(self.exact.times))
-        both = interleaved(self.exact.times[:n], [run.states[:n], self.exact.states[:n]])
+        both = interleave(self.exact.times[:n], [run.states[:n], self.exact.states[:n]])
         layout = self.runner.layout
-        found = recovered_at(self.runner, self.exact, *both, self.jumps)
-        twice = motion_error(Marks(layout), found.bodies, 2, layout.size)
+        found = evaluate_run(self.runner, self.exact, *both, self.jumps)
+        twice = motion_error(MotionPoints(layout), found.bodies, 2, layout.size)
         return 0.5 * float(twice.max())
 
 
@@ -89,14 +89,14 @@ def prepared(name: str, text: str | None) -> Scene | None:
     setup = set_up(spec)
     if any(condition.ends for condition in spec.analysis.conditions):
         return None  # where it ends is no matter of the method
-    if setup.method is None or setup.method.determined:
+    if setup.method is None or setup.method.is_determined:
         return None
     times = np.array(spec.analysis.times)
-    jumps = discontinuities_of(setup.scene.mechanism, float(times[-1]))
-    method = method_of("Radau9" if name in STIFF_SCENES else DEFAULT)
+    jumps = find_discontinuities(setup.scene.mechanism, float(times[-1]))
+    method = load_method_by_name("Radau9" if name in STIFF_SCENES else DEFAULT)
     for local in (FINEST * 10.0**k for k in range(4)):
         with suppress(HeunError):
-            exact = setup.runner.trajectory(MotionTask(times, local, discontinuities=jumps, method=method))
+            exact = setup.runner.run(MotionTask(times, local, discontinuities=jumps, method=method))
             return Scene(name, setup, jumps, exact)
     return None
 
@@ -105,7 +105,7 @@ def tuned(scene: Scene, method: Method, asked: float, most: float) -> float:
     """The fewest evaluations by which a method keeps an error, as its tolerance, or its step, gets smaller."""
     last = float(scene.exact.times[-1])
     steps = (last * 2.0 ** (-0.5 * k) for k in range(4, 50))
-    for local in steps if method.fixed else (10.0 ** (-0.5 * k) for k in range(2, 29)):
+    for local in steps if method.has_fixed_step else (10.0 ** (-0.5 * k) for k in range(2, 29)):
         taken, off = scene.run(method, local, most)
         if off <= asked:
             return taken
@@ -116,11 +116,11 @@ def tuned(scene: Scene, method: Method, asked: float, most: float) -> float:
 
 def as_asked(scene: Scene, spec: Spec, method: Method, asked: float, most: float) -> float:
     """Evaluations of the run that is told by a method at a tolerance; none where its estimate or its error is above."""
-    if method.fixed or not math.isfinite(scene.run(method, asked, most)[1]):
+    if method.has_fixed_step or not math.isfinite(scene.run(method, asked, most)[1]):
         return math.inf
     with suppress(HeunError):
-        study = solve(spec, Options(tolerance=asked, method=method.name, wanted=frozenset({"motion"})))
-        checked = study.history.checked
+        study = solve(spec, Options(tolerance=asked, method=method.name, requested_reports=frozenset({"motion"})))
+        checked = study.history.checked_run
         if checked is not None and checked.motion <= asked and scene.error(checked.run) <= asked:
             return checked.run.evaluations
     return math.inf
@@ -148,17 +148,17 @@ def line(scene: Scene, text: str | None, asked: float) -> float:
     """One of them; the ratio to the best method at the tolerance asked for."""
     spec = load(str(ROOT / scene.name), text)
     try:
-        study = solve(spec, Options(tolerance=asked, wanted=frozenset({"motion"})))
+        study = solve(spec, Options(tolerance=asked, requested_reports=frozenset({"motion"})))
     except HeunError as error:
         print(f"{scene.name:28} {asked:6.0e}  {error.problems[0].code}")
         return 0.0
-    checked = study.history.checked
+    checked = study.history.checked_run
     assert checked is not None
     taken, own = checked.run.evaluations, checked.run.method.name
     most = MOST * taken
-    found = {name: tuned(scene, method_of(name), asked, most) for name in LISTED}
+    found = {name: tuned(scene, load_method_by_name(name), asked, most) for name in LISTED}
     best = min(found, key=lambda one: found[one])
-    given = {name: as_asked(scene, spec, method_of(name), asked, most) for name in LISTED}
+    given = {name: as_asked(scene, spec, load_method_by_name(name), asked, most) for name in LISTED}
     first = min(given, key=lambda one: given[one])
     short = scene.name.removeprefix("tests/bench/")
     print(

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.analyses.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.analyses.balancing.asked import BalanceOptions, WeightRequest
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
 
@@ -19,7 +19,7 @@ SIXTH = 6.0 * 2.0 * 0.05 * RATE**2 * 7.437903279419574e-5  # N: 6 m r ω² A6, r
 def balanced(median_ms: Callable[[Callable[[], Any], int], float]) -> None:
     """Print both times; median_ms: of a call that is repeated so often [ms]."""
     spec = load(str(ENGINE))
-    weight = BalanceOptions(weights=(AskedWeight("crank", "main", None),))
+    weight = BalanceOptions(weights=(WeightRequest("crank", "main", None),))
     sixth = next(row.size for row in balance(spec).orders["force"] if row.order == 6.0)
     alone, weighted = median_ms(lambda: balance(spec), 5), median_ms(lambda: balance(spec, weight), 5)
     off = abs(sixth / SIXTH - 1.0)

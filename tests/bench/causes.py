@@ -9,7 +9,7 @@ from typing import Any
 
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.workflow import solve
 
@@ -41,9 +41,9 @@ def chain(n: int, cuts: int, loop: bool) -> str:
 
 def recovery(study: Study, causes: bool) -> dict[str, Any]:
     """The blocks of a run recovered anew from its states."""
-    found = study.history.recovered
-    again = study.setup.runner.recovered(found.times, found.states, causes=causes)
-    return blocks(recover(study.setup, again, False), REPORTS | ({"shares"} if causes else set()))
+    found = study.history.solutions
+    again = study.setup.runner.evaluate(found.times, found.states, causes=causes)
+    return make_blocks(recover(study.setup, again, False), REPORTS | ({"shares"} if causes else set()))
 
 
 def least_ms(f: Callable[[], Any], repeats: int) -> float:

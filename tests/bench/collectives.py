@@ -8,9 +8,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from heuncli.output.snapshots.collectives import collectives
+from heuncli.output.snapshots.collectives import count_collectives
 from heuncli.scene.file_format.load import load
-from heuncli.study.load_cycles.counted import Counting, LoadHistory, counted
+from heuncli.study.load_cycles.counted import Counting, LoadHistory, make_collective
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
@@ -36,12 +36,12 @@ def collective_times() -> None:
     print(f"\n{'collective':44s}{'instants':>10s}{'cycles':>10s}{'[ms]':>8s}")
     for name, values in histories().items():
         history = LoadHistory(name, "N", np.arange(SAMPLES, dtype=np.float64), values, 1e-9)
-        one, ms = timed(lambda history=history: counted(history, ASKED))
-        print(f"{'a million samples: ' + name:44s}{SAMPLES:10d}{one.total:10.0f}{ms:8.1f}")
+        one, ms = timed(lambda history=history: make_collective(history, ASKED))
+        print(f"{'a million samples: ' + name:44s}{SAMPLES:10d}{one.total_cycles:10.0f}{ms:8.1f}")
     for name, paths in MOTIONS:
         study = solve(load(str(SPECS / f"{name}.yaml")), Options())
-        found, ms = timed(lambda study=study, paths=paths: collectives(study, paths.split(","), ASKED))
-        total, instants = sum(one.total for one in found), len(found[0].history.times)
+        found, ms = timed(lambda study=study, paths=paths: count_collectives(study, paths.split(","), ASKED))
+        total, instants = sum(one.total_cycles for one in found), len(found[0].history.times)
         print(f"{name + ' ' + paths:44s}{instants:10d}{total:10.1f}{ms:8.1f}")
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from heuncli.analyses.lagrange.over import over
-from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
-from heuncli.app.commands.lagrange.options import range_of
+from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
+from heuncli.app.commands.lagrange.options import parse_range
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT
@@ -20,10 +20,10 @@ def equations(median_ms: Callable[[Callable[[], Any], int], float]) -> None:
     for name in SPECS:
         spec = load(str(ROOT / "specs" / f"{name}.yaml"))
         state = spec._replace(analysis=spec.analysis._replace(type="state", times=(0.0,), duration=None, conditions=()))
-        own = median_ms(lambda state=state: lagrange(state, LagrangeQuestion()), 9)  # type: ignore[misc]
+        own = median_ms(lambda state=state: solve_lagrange(state, LagrangeOptions()), 9)  # type: ignore[misc]
         run = median_ms(lambda state=state: solve(state), 9)  # type: ignore[misc]
         print(f"{name}: lagrange {own:.1f} ms, the results of its state {run:.1f} ms")
     spec = load(str(ROOT / "specs" / "slider_crank.yaml"))
-    asked = range_of("main.angle=0:360deg/73", spec)
-    found = median_ms(lambda: over(spec, asked), 9)
+    asked = parse_range("main.angle=0:360deg/73", spec)
+    found = median_ms(lambda: find_inertia_curve(spec, asked), 9)
     print(f"slider-crank: lagrange over 73 values of a turn {found:.1f} ms")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.analyses.load_cases.gathered import gathered
+from heuncli.analyses.load_cases.gathered import assemble_load_cases
 from heuncli.output.fe_decks.naming import DeckNames
 from heuncli.output.fe_decks.registry import DECKS
 from heuncli.scene.file_format.load import load
@@ -31,7 +31,7 @@ def load_cases() -> None:
     """Print them."""
     for name, body, at in CASES:
         spec = load(SPECS / f"{name}.yaml")
-        run = least_ms(lambda spec=spec: solve(spec, Options(wanted=frozenset({"joints", "sections"}))))  # type: ignore[misc]
+        run = least_ms(lambda spec=spec: solve(spec, Options(requested_reports=frozenset({"joints", "sections"}))))  # type: ignore[misc]
         asked = parse(at)
         took = min(_export(spec, body, asked) for _ in range(TIMES))
         print(f"export loads {name:8} {at:28} run {run:6.1f} ms, cases and all decks {took:5.1f} ms more")
@@ -39,12 +39,12 @@ def load_cases() -> None:
 
 def _export(spec: Any, body: str, asked: Any) -> float:
     """The cases of a run that is fresh, and a deck of each form that needs no mesh [ms]."""
-    study = solve(spec, Options(wanted=frozenset({"joints", "sections"})))
+    study = solve(spec, Options(requested_reports=frozenset({"joints", "sections"})))
 
     def written() -> None:
-        cases = gathered(study, body, asked)
+        cases = assemble_load_cases(study, body, asked)
         for form in ("csv", "nastran", "ansys", "abaqus"):
-            "".join(DECKS[form].written(cases, NAMES))
+            "".join(DECKS[form].iter_text(cases, NAMES))
 
     return once_ms(written)
 

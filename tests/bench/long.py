@@ -18,9 +18,9 @@ from scipy.special import ellipk, ellipkinc
 
 from heuncli.base.errors import HeunError, LimitError, SolveError
 from heuncli.base.method_rows import METHODS
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.results.results import Array
@@ -64,23 +64,23 @@ class Known(NamedTuple):
 
     text: str
     period: float
-    off: Callable[[Recovered], tuple[Array, Array]]
-    phase: Callable[[Recovered], Array]
+    off: Callable[[Evaluation], tuple[Array, Array]]
+    phase: Callable[[Evaluation], Array]
 
 
-def pendulum_angle(found: Recovered) -> tuple[Array, Array]:
+def pendulum_angle(found: Evaluation) -> tuple[Array, Array]:
     """Angle and rate about y."""
     R = found.bodies["R"][:, 0]
     return np.arctan2(R[:, 0, 2], R[:, 0, 0]), found.bodies["omega"][:, 0, 1]
 
 
-def pendulum_off(found: Recovered) -> tuple[Array, Array]:
+def pendulum_off(found: Evaluation) -> tuple[Array, Array]:
     """Energy off the start's, of what it swings through; a pendulum keeps no momentum."""
     angle, rate = pendulum_angle(found)
     return np.abs(0.5 * rate**2 - 9.81 * np.cos(angle)) / 9.81, np.zeros(len(angle))
 
 
-def pendulum_phase(found: Recovered) -> Array:
+def pendulum_phase(found: Evaluation) -> Array:
     """sin(a/2) = k sn u, a' = 2 w k cn u with k = sin 45 deg; u/4K is the phase."""
     angle, rate = pendulum_angle(found)
     k = math.sqrt(0.5)
@@ -88,12 +88,12 @@ def pendulum_phase(found: Recovered) -> Array:
     return np.asarray(ellipkinc(amplitude, 0.5) / (4.0 * ellipk(0.5)))
 
 
-def body_rates(found: Recovered) -> Array:
+def body_rates(found: Evaluation) -> Array:
     """Angular velocity in body axes, (n_t, 3)."""
     return np.asarray(np.einsum("tji,tj->ti", found.bodies["R"][:, 0], found.bodies["omega"][:, 0]))
 
 
-def top_off(found: Recovered) -> tuple[Array, Array]:
+def top_off(found: Evaluation) -> tuple[Array, Array]:
     """Energy and moment of momentum off the start's, of their size."""
     spin = body_rates(found)
     energy = 0.5 * np.sum(INERTIA * spin**2, axis=1)
@@ -103,7 +103,7 @@ def top_off(found: Recovered) -> tuple[Array, Array]:
     return np.abs(energy / 2.22 - 1.0), off
 
 
-def top_phase(found: Recovered) -> Array:
+def top_phase(found: Evaluation) -> Array:
     """The rates are (.9 cn u, .9 sn u, 1.1 dn u); u/4K is the phase."""
     spin = body_rates(found)
     amplitude = np.arctan2(spin[:, 1], spin[:, 0])
@@ -134,9 +134,9 @@ def errors(known: Known, runner: Runner, method: Method, local: float, periods: 
     """A run over whole periods."""
     times = known.period * np.arange(periods + 1)
     begun = time.process_time()
-    run = runner.trajectory(MotionTask(times, local, method=method))
+    run = runner.run(MotionTask(times, local, method=method))
     seconds = time.process_time() - begun
-    found = runner.recovered(run.times, run.states)
+    found = runner.evaluate(run.times, run.states)
     energy, momentum = known.off(found)
     phase = np.unwrap(known.phase(found), period=1.0)
     return Errors(energy[1:], momentum[1:], np.abs(phase[1:] - phase[0]), seconds / periods, run.evaluations / periods)
@@ -147,7 +147,7 @@ def pace(known: Known, runner: Runner, method: Method, evaluations: float) -> fl
 
     Of a method that takes more at any step that it bears, a step below the longest of these.
     """
-    least, most = (known.period / 1e4, known.period) if method.fixed else (1e-14, 0.3)
+    least, most = (known.period / 1e4, known.period) if method.has_fixed_step else (1e-14, 0.3)
     low, high = math.log(least), math.log(most)
     best = (math.inf, high)
     for _ in range(14):
@@ -181,7 +181,7 @@ def long(periods: int, only: Sequence[str] = ()) -> None:
         print(f"\n{name}, {periods:,} periods, {EVALUATIONS} evaluations a period; phase off, in periods, after")
         print(f"{'':19}" + "".join(f"{n:>9,}" for n in decades) + "   energy  moment'm     local   evals  us a period")
         letters: dict[str, list[tuple[float, float]]] = {}
-        for letter, method in zip("abcdefghijklmnop", map(method_of, LISTED), strict=False):
+        for letter, method in zip("abcdefghijklmnop", map(load_method_by_name, LISTED), strict=False):
             if only and not any(part in method.name for part in only):
                 continue
             local = pace(known, runner, method, EVALUATIONS)

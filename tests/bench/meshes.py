@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.meshes.reading import mesh_of, soup_of
+from heuncli.scene.meshes.reading import read_closed_mesh, read_soup
 from heuncli.scene.shapes.figure_kinds import CuttingPlanes
-from heuncli.scene.shapes.figures import figure_of
-from heuncli.scene.shapes.forms import form
+from heuncli.scene.shapes.figures import find_figure
+from heuncli.scene.shapes.forms import make_composite_solid
 from tests.bench.load_cases import least_ms
 from tests.shared import triangles as t
 
@@ -29,12 +29,14 @@ def meshes() -> None:
     ring = t.torus(500, 100)
     for name, written in WRITERS.items():
         content = written(ring)
-        read = least_ms(lambda content=content, name=name: soup_of(content, name))  # type: ignore[misc]
-        whole = least_ms(lambda content=content, name=name: mesh_of(content, name))  # type: ignore[misc]
+        read = least_ms(lambda content=content, name=name: read_soup(content, name))  # type: ignore[misc]
+        whole = least_ms(lambda content=content, name=name: read_closed_mesh(content, name))  # type: ignore[misc]
         print(f"{name:12} {len(content) / 1e6:5.1f} MB  read {read:6.1f} ms, with all checks {whole:6.1f} ms")
     for n, m in AROUND:
-        mesh = mesh_of(t.binary_stl(t.torus(n, m)), "a.stl")
-        f = form([Shape("mesh", density=1.0, mesh=mesh, scale=1.0, at=(0.0, 0.0, 0.0), rotation=IDENTITY)])
+        mesh = read_closed_mesh(t.binary_stl(t.torus(n, m)), "a.stl")
+        f = make_composite_solid(
+            [Shape("mesh", density=1.0, mesh=mesh, scale=1.0, at=(0.0, 0.0, 0.0), rotation=IDENTITY)]
+        )
         for normal in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.48, 0.6, 0.64)):
             print(f"ring {n} x {m}, {PLANES} planes across {normal}: {_cuts(f, np.array(normal))}")
 
@@ -45,5 +47,5 @@ def _cuts(f: Any, normal: Any) -> str:
     e1 = np.array([0.0, 1.0, 0.0]) if normal[1] == 0.0 else np.array([0.8, 0.0, -0.6])
     pieces = least_ms(lambda: f.pieces(normal, d, side))
     sections = least_ms(lambda: f.cross_sections(normal, d, side))
-    outlines = least_ms(lambda: figure_of(f.parts[0], CuttingPlanes(normal, e1, d, d)))
+    outlines = least_ms(lambda: find_figure(f.parts[0], CuttingPlanes(normal, e1, d, d)))
     return f"pieces {pieces:5.1f} ms, where they are cut {sections:5.1f} ms, properties of outlines {outlines:5.1f} ms"

@@ -19,7 +19,7 @@ from heuncli.kernel.choose import KERNEL
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import EVERYTHING, asked_by
+from heuncli.study.model.selection import EVERYTHING, select_paths
 from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from tests.bench.reducible import cluster, engine, pendulums, spun, truss
@@ -75,11 +75,11 @@ def reduced(repeats: int = 7) -> None:
 def cost(row: Row, reduce: bool, repeats: int) -> Cost:
     """Medians of processor time: what else the machine does counts less so."""
     spec: Spec = load("scene.yaml", row.text())
-    asked = asked_by(row.asked, spec) if row.asked else EVERYTHING
-    setup = set_up(spec, reduce=reduce, asked=asked)
+    asked = select_paths(row.asked, spec) if row.asked else EVERYTHING
+    setup = set_up(spec, reduce=reduce, selection=asked)
     assert setup.method is not None
-    run = partial(setup.runner.trajectory, np.array(spec.analysis.times), spec.analysis.tolerance, method=setup.method)
-    whole = partial(solve, spec, Options(wanted=asked.reports, entries=asked.entries, reduce=reduce))
+    run = partial(setup.runner.run, np.array(spec.analysis.times), spec.analysis.tolerance, method=setup.method)
+    whole = partial(solve, spec, Options(requested_reports=asked.reports, entries=asked.entries, reduce=reduce))
     return Cost(median_ms(run, repeats), median_ms(whole, repeats))
 
 

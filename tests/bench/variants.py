@@ -7,10 +7,10 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from heuncli.analyses.variants.prepared import Variants
+from heuncli.analyses.variants.prepared import VariantSolver
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, value
+from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.bench.finds import finds
@@ -54,8 +54,10 @@ def variants() -> None:
     print(f"{'':28s}{'fresh':>10s}{'door':>8s}{'read':>8s}{'fresh':>10s}{'door':>8s}{'read':>8s}")
     for case in CASES:
         joint = next(iter(load(case.path).joints), None)
-        one = Options(wanted=frozenset({"joints"}), entries=frozenset({("joints", joint)} if joint else ()))
-        figures = [ms for options in (Options(wanted=frozenset(REPORTS)), one) for ms in costs(case, options)]
+        one = Options(requested_reports=frozenset({"joints"}), entries=frozenset({("joints", joint)} if joint else ()))
+        figures = [
+            ms for options in (Options(requested_reports=frozenset(REPORTS)), one) for ms in costs(case, options)
+        ]
         columns = "".join(f"{ms:{10 if k % 3 == 0 else 8}.2f}" for k, ms in enumerate(figures))
         print(f"{case.path.stem + ' ' + case.what:28s}{columns}")
     print(f"\n{'one measure of each, searched between the samples':58s}{'median':>8s}{'mean':>8s} [ms]")
@@ -68,19 +70,19 @@ def variants() -> None:
 
 def of_measure(case: Case, asked: MeasureRequest) -> list[float]:
     """Processor time of each of some variants with one measure, as `heun run --set ... --measure` has it [ms]."""
-    prepared = Variants(case.path, measures=[asked.path])
+    prepared = VariantSolver(case.path, measures=[asked.path])
     found = []
     for k in range(MEASURES):
         values = {case.key: repr(case.value * (1.0 + 0.2 * k / MEASURES))}
         begun = time.process_time()
-        value(asked, prepared.solve(values))
+        measure_value(asked, prepared.solve(values))
         found.append(1e3 * (time.process_time() - begun))
     return found
 
 
 def costs(case: Case, options: Options) -> tuple[float, float, float]:
     """Median processor time of a variant [ms]: fresh, by the door, and of that the reading; in turn."""
-    prepared = Variants(case.path, options=options)
+    prepared = VariantSolver(case.path, options=options)
     found: dict[str, list[float]] = {"fresh": [], "door": [], "read": []}
     for k in range(REPEATS):
         values = {case.key: repr(case.value * (1.0 + 1e-3 * (k + 1)))}

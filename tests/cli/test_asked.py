@@ -17,16 +17,16 @@ import pytest
 from heuncli.kernel.choose import KERNEL
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.results.results import Results
-from heuncli.results.results_paths import find
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.measure import MeasureRequest, value
+from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.ask.study import Study
 from heuncli.study.compose import blocks, recovery, results
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.model.needed_parts import restricted
+from heuncli.study.model.needed_parts import restrict_spec
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import asked_by
+from heuncli.study.model.selection import select_paths
 from heuncli.study.solve import load_errors
 from heuncli.study.workflow import describe, solve
 from tests.shared.command import SPEC_TEXTS as SPECS_OF
@@ -65,12 +65,12 @@ bodies:
 
 def asked(spec: Spec, paths: Iterable[str], **options: Any) -> Study:
     """A study of what some paths need."""
-    what = asked_by(paths, spec)
-    return solve(spec, Options(wanted=what.reports, entries=what.entries, **options))
+    what = select_paths(paths, spec)
+    return solve(spec, Options(requested_reports=what.reports, entries=what.entries, **options))
 
 
 def numbers(results: Results, path: str) -> Any:
-    return find(results, path).values
+    return find_values(results, path).values
 
 
 def test_a_pendulum_beside_a_hundred_costs_what_it_costs_alone() -> None:
@@ -157,7 +157,7 @@ def test_whatever_follows_whatever(seed: int) -> None:
 
 def follows_the_whole(spec: Spec, bodies: set[str]) -> None:
     """The reaction of p0 needs these bodies, and is then that of the whole scene."""
-    assert set(restricted(spec, asked_by(["joints.p0.force"], spec)).bodies) == bodies
+    assert set(restrict_spec(spec, select_paths(["joints.p0.force"], spec)).bodies) == bodies
     runs = (asked(spec, ["joints.p0.force"], reduce=reduce).results for reduce in (True, False))
     part, whole = (numbers(results, "joints.p0.force") for results in runs)
     assert np.abs(part - whole).max() < SMALL * np.abs(whole).max()
@@ -215,7 +215,7 @@ def whole_by_laws() -> Results:
 def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> None:
     """Laws of a load's own line, joint or shift, of a table, of another part's coordinate or point."""
     part = asked(load("scene.yaml", LAWS), [path]).results
-    a, b = numbers(part, path), find(whole_by_laws, path).values
+    a, b = numbers(part, path), find_values(whole_by_laws, path).values
     assert a.shape == b.shape and np.abs(a - b).max() <= 10.0 * SMALL * max(float(np.abs(b).max()), 1.0)
 
 
@@ -245,7 +245,7 @@ def test_a_share_of_a_force_elsewhere_is_nothing() -> None:
 @pytest.mark.parametrize("report", ["foundation", "energy", "motion", "impulses"])
 def test_what_is_about_all_bodies_needs_all(report: str) -> None:
     spec = pendulums(3)
-    assert restricted(spec, Options(wanted=frozenset({report})).asked).bodies == spec.bodies
+    assert restrict_spec(spec, Options(requested_reports=frozenset({report})).selection).bodies == spec.bodies
 
 
 def test_a_rope_elsewhere_does_not_end_the_run() -> None:
@@ -281,7 +281,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
             monkeypatch.setattr(module, name, forbidden)
     study = asked(spec, ["sections.root.M1"])
     assert [cuts.name for cuts in study.setup.cuts] == ["root"]
-    assert value(MeasureRequest("abs", "sections.root.N"), study).value > 0.0
+    assert measure_value(MeasureRequest("abs", "sections.root.N"), study).value > 0.0
     assert study.results.accuracy["balance_residual"] < 1e-9
     assert study.results.accuracy["estimate"].keys() == {"motion", "sections"}
 
@@ -291,7 +291,7 @@ def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Recovery, "decided", property(forbidden))
     monkeypatch.setattr(load_errors, "joint_loads", forbidden)
     study = asked(spec, ["coordinates.rocker.angle"])
-    assert value(MeasureRequest("max", "coordinates.rocker.angle"), study).value > 0.0
+    assert measure_value(MeasureRequest("max", "coordinates.rocker.angle"), study).value > 0.0
     assert study.results.accuracy["balance_residual"] < 1e-9
 
 

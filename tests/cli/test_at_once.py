@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.app.cli.line_width import line_width
+from heuncli.app.cli.line_width import find_line_width
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.shell import shell
 
@@ -25,7 +25,7 @@ def test_the_help_is_what_typer_makes_of_the_registry(columns: int) -> None:
 
 def answer(*words: str, code: str = "pass", **environment: str) -> str:
     """What is answered at once in a process of its own; nothing where it is left to the rest."""
-    call = f"import sys; from heuncli.app.cli import at_once; {code}; sys.exit(not at_once.answered(sys.argv[1:]))"
+    call = f"import sys; from heuncli.app.cli import at_once; {code}; sys.exit(not fast_path.try_answer(sys.argv[1:]))"
     line = [sys.executable, "-c", call, *words]
     return subprocess.run(line, capture_output=True, text=True, env={**os.environ, **environment}, check=False).stdout
 
@@ -60,7 +60,7 @@ def test_the_width_of_a_line_is_the_one_that_python_finds(
             terminal.setenv("COLUMNS", given)
         terminal.setattr("os.get_terminal_size", found)
         terminal.setattr("sys.__stdout__", sys.stdin)
-        line, ours = line_width(), shutil.get_terminal_size().columns
+        line, ours = find_line_width(), shutil.get_terminal_size().columns
     assert line == ours
 
 

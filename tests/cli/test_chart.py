@@ -13,8 +13,8 @@ from typing import Any, cast
 
 import pytest
 
-from heuncli.analyses.charting.results import COMPLETED, ChartedRun, ChartRow
-from heuncli.analyses.charting.runs import ChartRuns, TimedRun
+from heuncli.analyses.charting.results import COMPLETED, ChartRow, ChartRun
+from heuncli.analyses.charting.runs import ChartRunner, TimedRun
 from heuncli.output.drawing import matplotlib_file
 from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
@@ -138,9 +138,9 @@ def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
 
 
 def test_beyond_the_time_limit_rows_are_told_not_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    from heuncli.analyses.charting.motion import ChartedMotion
+    from heuncli.analyses.charting.motion import MotionProblem
 
-    monkeypatch.setattr(ChartedMotion, "late", True)
+    monkeypatch.setattr(MotionProblem, "late", True)
     found = json.loads(heun("chart", "swinging.yaml", *FEW, "--time-limit", "60", "--format", "json").stdout)
     assert {run["status"] for run in found["runs"]} == {"not run"} and len(found["runs"]) == 2
     assert all(run["code"] == "time-limit" and run["seconds"] is None for run in found["runs"])
@@ -171,7 +171,7 @@ def test_no_run_is_timed_again_beyond_the_limit(monkeypatch: pytest.MonkeyPatch)
         motion.late = len(again) == 2
         return 0.01
 
-    runs = ChartRuns(cast(Any, motion), cast(Any, SimpleNamespace(seconds=1.0)), lambda done, of, what: None)
+    runs = ChartRunner(cast(Any, motion), cast(Any, SimpleNamespace(seconds=1.0)), lambda done, of, what: None)
     rows = [ChartRow("RK4", "quaternion", True, 1e-3)] * 4
-    monkeypatch.setattr(runs, "one", lambda row: TimedRun(ChartedRun(row, COMPLETED, 0.01), run, [0.01]))
-    assert len(runs.all(rows)) == 4 and len(again) == 2
+    monkeypatch.setattr(runs, "one", lambda row: TimedRun(ChartRun(row, COMPLETED, 0.01), run, [0.01]))
+    assert len(runs.run_all(rows)) == 4 and len(again) == 2

@@ -10,11 +10,11 @@ import pytest
 import xmlschema
 from junitparser import Error, Failure, JUnitXml, Skipped
 
-from heuncli.app.commands.check.checked import Checked
-from heuncli.app.commands.check.junit import junit_text
+from heuncli.app.commands.check.checked import CheckResult
+from heuncli.app.commands.check.junit import render_junit
 from heuncli.base.errors import Problem
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.workflow_lines import MOST, Annotation, lines
+from heuncli.output.tables.workflow_lines import MAX_OF_KIND, Annotation, iter_lines
 from tests.shared.command import HANGING, Heun
 
 SCHEMA = xmlschema.XMLSchema(str(Path(__file__).with_name("junit.xsd")))
@@ -67,8 +67,10 @@ def test_what_was_not_solved_skips_its_expectations(heun: Heun, folder: Path) ->
 
 
 def test_whatever_stands_in_names_and_words_stays_xml() -> None:
-    outcomes = (Outcome("expect", WILD, WILD, expected=WILD), Outcome("golden", WILD, None))
-    text = junit_text([Checked(WILD, outcomes), Checked("b", problems=(Problem("bug", WILD),), error=70)], [WILD], True)
+    outcomes = (Outcome("expect", WILD, WILD, expected_text=WILD), Outcome("golden", WILD, None))
+    text = render_junit(
+        [CheckResult(WILD, outcomes), CheckResult("b", problems=(Problem("bug", WILD),), error=70)], [WILD], True
+    )
     SCHEMA.validate(text)
     first = next(iter(JUnitXml.fromstring(text.encode())))
     assert "\\x1b[31m<&\"'> ü" in [*first][1].name
@@ -76,7 +78,7 @@ def test_whatever_stands_in_names_and_words_stays_xml() -> None:
 
 @pytest.mark.parametrize("kind", ["error", "warning"])
 def test_a_workflow_reads_back_what_was_said(kind: str) -> None:
-    (line,) = lines([Annotation(kind, WILD, WILD, "a,b:c%.yaml", 3, 5)])
+    (line,) = iter_lines([Annotation(kind, WILD, WILD, "a,b:c%.yaml", 3, 5)])
     assert line.endswith("\n")
     found, properties, message = parsed(line[:-1])
     assert (found, properties["file"], properties["line"], properties["col"]) == (kind, "a,b:c%.yaml", "3", "5")
@@ -85,11 +87,11 @@ def test_a_workflow_reads_back_what_was_said(kind: str) -> None:
 
 
 def test_a_step_shows_nine_of_a_kind_and_how_many_more_there_are() -> None:
-    many = [Annotation(kind, "t", "m", "f") for kind in ("error", "warning") for _ in range(MOST + 4)]
-    made = [parsed(line.rstrip("\n")) for line in lines(many)]
+    many = [Annotation(kind, "t", "m", "f") for kind in ("error", "warning") for _ in range(MAX_OF_KIND + 4)]
+    made = [parsed(line.rstrip("\n")) for line in iter_lines(many)]
     for kind in ("error", "warning"):
         own = [message for found, _, message in made if found == kind]
-        assert len(own) == MOST + 1
+        assert len(own) == MAX_OF_KIND + 1
         assert own[-1].startswith("4 more")
 
 

@@ -63,7 +63,7 @@ def forever(*_: Any, **__: Any) -> Any:
 @as_own
 def rung(*_: Any, **__: Any) -> Any:
     """What takes too long, and where the alarm rings at once, however far the limit is."""
-    signal.setitimer(signal.ITIMER_REAL, 0.001, alarm.NEXT_RING)
+    signal.setitimer(signal.ITIMER_REAL, 0.001, alarm.ALARM_INTERVAL)
     forever()
 
 
@@ -76,13 +76,17 @@ def foreign(*_: Any, **__: Any) -> Any:
 @pytest.mark.parametrize(
     ("slow", "words", "phase"),
     [
-        ("heuncli.scene.file_format.load.read", "run hanging.yaml", "while the spec was read"),
-        ("heuncli.scene.file_format.load.read", "validate hanging.yaml", "while the spec was read"),
+        ("heuncli.scene.file_format.load.read_source", "run hanging.yaml", "while the spec was read"),
+        ("heuncli.scene.file_format.load.read_source", "validate hanging.yaml", "while the spec was read"),
         ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the scene was set up"),
         ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the scene was set up"),
         ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the scene was set up"),
         ("heuncli.loads.equilibrium.search.slopes", "run rest.yaml", "on the way to the rest pose"),
-        ("heuncli.scene.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
+        (
+            "heuncli.scene.expressions.discontinuities._find_switch_changes",
+            "run driven.yaml",
+            "while jumps in time were searched",
+        ),
         (
             "heuncli.motion.integration.check.estimate.instants_of",
             "run swinging.yaml",
@@ -95,7 +99,7 @@ def foreign(*_: Any, **__: Any) -> Any:
         ),
         ("heuncli.study.compose.recovery.body_states", "run swinging.yaml", "while loads were computed"),
         (
-            "heuncli.study.search.extremes.highest",
+            "heuncli.study.search.extremes.find_best",
             "run swinging.yaml",
             "while extremes between the samples were searched",
         ),
@@ -139,7 +143,7 @@ def test_an_alarm_that_an_object_swallows_on_its_way_out_says_nothing(capsys: py
         forever()
 
     with pytest.raises(LimitError, match="was reached"):
-        alarm.limited(work, 0.05, grace=0.0)
+        alarm.run_with_limit(work, 0.05, grace=0.0)
     assert capsys.readouterr().err == ""
 
 
@@ -160,7 +164,7 @@ def test_the_alarm_rings_in_heuns_own_code_alone() -> None:
         finished.append("work")
 
     with pytest.raises(LimitError, match="was reached"):
-        alarm.limited(work, 0.05, grace=0.0)
+        alarm.run_with_limit(work, 0.05, grace=0.0)
     assert finished == ["library"]
 
 
@@ -173,11 +177,11 @@ def test_what_is_cleared_away_behind_an_alarm_is_not_interrupted() -> None:
         try:
             forever()
         finally:
-            time.sleep(3.0 * alarm.REPEAT)
+            time.sleep(3.0 * alarm.EXCEPTION_INTERVAL)
             cleared.append("all")
 
     with pytest.raises(LimitError, match="was reached"):
-        alarm.limited(work, 0.05, grace=0.0)
+        alarm.run_with_limit(work, 0.05, grace=0.0)
     assert cleared == ["all"]
 
 
@@ -190,7 +194,7 @@ def test_an_exception_that_a_library_makes_of_the_alarm_is_the_limit() -> None:
             raise RuntimeError(f"a validator could not be built: {error}") from None
 
     with pytest.raises(LimitError, match=r"the time limit of 0\.05 s was reached"):
-        alarm.limited(work, 0.05, grace=0.0)
+        alarm.run_with_limit(work, 0.05, grace=0.0)
 
 
 def ended_hard(folder: Path, work: Callable[[], object]) -> tuple[int, str]:
@@ -199,7 +203,7 @@ def ended_hard(folder: Path, work: Callable[[], object]) -> tuple[int, str]:
     if child == 0:
         os.dup2(os.open(folder / "err", os.O_WRONLY | os.O_CREAT), 2)
         alarm.HARD_END = 0.2
-        alarm.limited(work, 0.05, grace=0.0)
+        alarm.run_with_limit(work, 0.05, grace=0.0)
         os._exit(0)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), (folder / "err").read_text()
 
@@ -214,7 +218,7 @@ def test_work_that_does_not_stop_ends_the_process(folder: Path, forking: bool) -
         foreign()
 
     def work() -> None:
-        with alarm.unwatched() if forking else contextlib.nullcontext():
+        with alarm.pause_watch() if forking else contextlib.nullcontext():
             files.write(written(), str(folder / "out.json"))
 
     code, err = ended_hard(folder, work)
@@ -306,7 +310,7 @@ def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pyt
 def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a file that is written whole or not at all the limit holds until its last piece is made."""
     (folder / "out.json").write_text("old")
-    monkeypatch.setattr("heuncli.output.tables.export._text", rung)
+    monkeypatch.setattr("heuncli.output.tables.export._format_json", rung)
     done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "60")
     assert (done.returncode, done.stdout) == (4, "")
     assert "while the results were written down" in done.stderr
@@ -343,10 +347,10 @@ def test_states_are_recovered_alike_in_short_calls(monkeypatch: pytest.MonkeyPat
     """One state to a call of the kernel, or all."""
     study = solve(load(str(SPECS / f"{name}.yaml")))
     runner, times = study.setup.runner, study.results.time[::20]
-    states = study.history.recovered.states[::20]
-    whole = runner.recovered(times, states, hold_rows=hold_rows)
+    states = study.history.solutions.states[::20]
+    whole = runner.evaluate(times, states, hold_rows=hold_rows)
     monkeypatch.setattr(evaluator, "AT_ONCE", 1)
-    single = runner.recovered(times, states, hold_rows=hold_rows)
+    single = runner.evaluate(times, states, hold_rows=hold_rows)
     for field in ("alpha", "a"):
         np.testing.assert_allclose(single.bodies[field], whole.bodies[field], rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(single.pivot, whole.pivot, rtol=1e-9)

@@ -78,7 +78,7 @@ def test_what_holds(item: Any) -> None:
 )
 def test_what_does_not_hold_says_why(item: Any, why: str) -> None:
     case = compare(STUDY, item)
-    assert not case.passed
+    assert not case.is_met
     assert why in (case.failure or "")
 
 
@@ -100,28 +100,28 @@ def test_beyond_the_horizon_nothing_holds_by_luck(item: Any) -> None:
     """The number is there, and in the JSON, and is not what can be relied on."""
     case = compare(LOST, item)
     assert case.failure == "from t = 1.25 s on nothing is claimed"
-    assert case.found is None
+    assert case.found_values is None
 
 
 def test_before_the_horizon_expectations_hold() -> None:
-    assert compare(LOST, expectation(FX, FX_AT_1, at=1.0)).passed
-    assert compare(LOST, expectation("joints.pivot.force.10.x", FX_AT_1)).passed
-    assert compare(LOST, expectation("model.freedoms", 4.0)).passed
+    assert compare(LOST, expectation(FX, FX_AT_1, at=1.0)).is_met
+    assert compare(LOST, expectation("joints.pivot.force.10.x", FX_AT_1)).is_met
+    assert compare(LOST, expectation("model.freedoms", 4.0)).is_met
 
 
 def test_open_is_expected_as_null() -> None:
     force = pendulum(STUDY.times).joints["pivot"]["force"].copy()
     force[:, 2] = np.nan
     study = FakeStudy(STUDY.times[:1], {"joints": {"pivot": {"force": force[:1]}}})
-    assert compare(study, expectation("joints.pivot.force.z", None)).passed
-    assert compare(study, expectation("joints.pivot.force", (0.0, 0.0, None))).passed
+    assert compare(study, expectation("joints.pivot.force.z", None)).is_met
+    assert compare(study, expectation("joints.pivot.force", (0.0, 0.0, None))).is_met
     assert compare(study, expectation("joints.pivot.force.z", 1.0)).failure == "open"
-    assert not compare(study, expectation("joints.pivot.force", None)).passed
+    assert not compare(study, expectation("joints.pivot.force", None)).is_met
 
 
 def test_one_instant_needs_no_at() -> None:
     study = FakeStudy(np.array([1.0]))
-    assert compare(study, expectation(FX, FX_AT_1)).passed
+    assert compare(study, expectation(FX, FX_AT_1)).is_met
 
 
 BOUNDS = [
@@ -176,10 +176,10 @@ def test_no_bound_is_met_by_what_is_open_or_beyond_the_horizon() -> None:
     force[3:5, 2] = np.nan
     study = FakeStudy(STUDY.times[:1], {"joints": {"pivot": {"force": force[3:4]}}})
     assert compare(study, expectation("joints.pivot.force.z", None, below=1e9)).failure == "open at t = 0 s"
-    assert compare(study, expectation("joints.pivot.force.x", None, below=1e9)).passed
+    assert compare(study, expectation("joints.pivot.force.x", None, below=1e9)).is_met
     lost = compare(LOST, expectation(FX, None, below=1e9))
-    assert (lost.failure, lost.found) == ("from t = 1.25 s on nothing is claimed", None)
-    assert compare(LOST, expectation(FX, None, below=3.0, at=1.0)).passed
+    assert (lost.failure, lost.found_values) == ("from t = 1.25 s on nothing is claimed", None)
+    assert compare(LOST, expectation(FX, None, below=3.0, at=1.0)).is_met
 
 
 def test_several_problems_at_once_fail_one_expectation(monkeypatch: pytest.MonkeyPatch) -> None:

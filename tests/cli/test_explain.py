@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.explain.codes import codes_of
+from heuncli.app.commands.explain.codes import parse_codes
 from heuncli.app.commands.explain.command import PAGES
 from heuncli.results.results_schema import NAMES, ROWS, Quantity
 from tests.shared.command import Heun
@@ -99,7 +99,7 @@ def codes_in_the_text() -> set[str]:
 @pytest.mark.heavy
 def test_every_code_is_explained(heun: Heun) -> None:
     """None is left out, and none is told of that is given nowhere."""
-    codes = codes_of(TEXTS["codes"])
+    codes = parse_codes(TEXTS["codes"])
     given = codes_in_the_text()
     assert {"bad-option", "not-golden", "unknown-case", "no-rest-pose", "time-limit", "bug"} <= given | codes.keys()
     assert given - codes.keys() == set()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.check.folders import Found, PassedBy, specs_below
+from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs
 from tests.shared.command import SPEC_TEXTS, Heun
 
 EXPECTING = SPEC_TEXTS["expecting"]
@@ -77,8 +77,8 @@ def test_folders_that_meet_again_and_again_are_looked_into_once(tmp_path: Path) 
         (tmp_path / f"level{i}" / "right").symlink_to(f"../level{i + 1}")
     (tmp_path / "level40").mkdir()
     (tmp_path / "level40" / "spec.yaml").touch()
-    passed_by: list[PassedBy] = []
-    assert len(list(specs_below(str(tmp_path / "level0"), passed_by))) == 1
+    passed_by: list[SkippedFolder] = []
+    assert len(list(find_specs(str(tmp_path / "level0"), passed_by))) == 1
     assert len(passed_by) == 40
 
 
@@ -104,11 +104,11 @@ def test_folders_beyond_the_longest_path(tmp_path: Path, monkeypatch: pytest.Mon
         Path("x" * 200).mkdir()
         os.chdir("x" * 200)
     os.chdir(tmp_path)
-    (found,) = specs_below(".", [])
+    (found,) = find_specs(".", [])
     assert found.problem is not None
     assert "File name too long" in found.problem.message
 
 
 @pytest.mark.parametrize("name", ["none", "x" * 300, "file/x", "a\0b", "", "-"])
 def test_what_is_no_folder_is_a_file_to_be_told_of(name: str) -> None:
-    assert list(specs_below(name, [])) == [Found(name)]
+    assert list(find_specs(name, [])) == [FoundSpec(name)]

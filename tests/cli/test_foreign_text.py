@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.app.cli.output import as_bytes
-from heuncli.base.foreign_text import escaped, shown
-from heuncli.base.wrapping import wrapped
+from heuncli.app.cli.output import encode_text
+from heuncli.base.foreign_text import escape, escape_all
+from heuncli.base.wrapping import wrap_text
 from tests.shared.command import HANGING, Heun
 
 EVIL = "a\nheun: fine \x1b[31m\x07\x08\r\x9b31m\x7f\u202e\u2066\u200b\u2028\U000e0041b"
@@ -27,16 +27,16 @@ def quoted(text: str) -> str:
 
 def unseen(text: str) -> str:
     """What must not stand in an output, but for the ends of its lines."""
-    return "".join(letter for letter in text if letter != "\n" and shown(letter) != letter)
+    return "".join(letter for letter in text if letter != "\n" and escape(letter) != letter)
 
 
 @pytest.mark.parametrize("letter", list(EVIL[1:2] + "\x1b\x00\n\udcff\ufeff\U000e0041"))
 def test_what_is_unseen_is_escaped_as_json_does(letter: str) -> None:
-    assert json.loads(f'"{escaped(letter)}"') == letter
+    assert json.loads(f'"{escape_all(letter)}"') == letter
 
 
 def test_what_is_seen_stays() -> None:
-    assert shown("é ü ω·N·m → – ° 漢 \u00a0 C:\\x 😀") == "é ü ω·N·m → – ° 漢 \u00a0 C:\\x 😀"
+    assert escape("é ü ω·N·m → – ° 漢 \u00a0 C:\\x 😀") == "é ü ω·N·m → – ° 漢 \u00a0 C:\\x 😀"
 
 
 @pytest.mark.parametrize("form", [*((name,) for name in COMMANDS), ("run", "--format", "json"),
@@ -134,12 +134,12 @@ def test_two_names_stay_two_whatever_the_locale(
 
 
 def test_a_terminal_that_lacks_a_letter_shows_its_number() -> None:
-    assert as_bytes("é → ü 😀", "latin-1") == b"\xe9 \\u2192 \xfc \\ud83d\\ude00"
+    assert encode_text("é → ü 😀", "latin-1") == b"\xe9 \\u2192 \xfc \\ud83d\\ude00"
 
 
 @pytest.mark.parametrize("width", [-5, 0, 1, 3, 10, 1000])
 def test_words_are_wrapped_at_any_width(width: int) -> None:
-    lines = wrapped("  what from exerts on to (drive apart), in world axes", width)
+    lines = wrap_text("  what from exerts on to (drive apart), in world axes", width)
     assert " ".join(" ".join(lines).split()) == "what from exerts on to (drive apart), in world axes"
 
 

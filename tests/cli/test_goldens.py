@@ -14,10 +14,10 @@ from typing import Any
 import pytest
 
 from heuncli.base import files
-from heuncli.output.snapshots.changes import changes
-from heuncli.output.snapshots.keep import keep
-from heuncli.output.snapshots.kept import KeptNumber, KeptRun, read_kept, text_of
-from heuncli.output.snapshots.selection import told_by_default
+from heuncli.output.snapshots.changes import find_changes
+from heuncli.output.snapshots.keep import take_run_snapshot
+from heuncli.output.snapshots.kept import NumberSnapshot, RunSnapshot, format_golden_file, read_golden_file
+from heuncli.output.snapshots.selection import find_default_reports
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -28,16 +28,16 @@ WORDS = ("first", "last", "least", "greatest", "constant")
 
 
 @cache
-def run_of(name: str, **options: Any) -> KeptRun:
+def run_of(name: str, **options: Any) -> RunSnapshot:
     """The numbers of a spec of specs/; not to be changed, they are those of all tests."""
     spec = load(str(ROOT / "specs" / f"{name}.yaml"))
-    wanted = told_by_default(spec)
-    return keep(solve(spec, Options(wanted=wanted, **options)), wanted)
+    wanted = find_default_reports(spec)
+    return take_run_snapshot(solve(spec, Options(requested_reports=wanted, **options)), wanted)
 
 
-def moved(number: KeptNumber, share: float) -> dict[str, KeptNumber]:
+def moved(number: NumberSnapshot, share: float) -> dict[str, NumberSnapshot]:
     """The number with each of its words in turn moved by a share of what two runs of its error may differ by."""
-    others: dict[str, KeptNumber] = {}
+    others: dict[str, NumberSnapshot] = {}
     if number.error == 0.0:
         return others
     for word in WORDS:
@@ -60,7 +60,7 @@ def moved(number: KeptNumber, share: float) -> dict[str, KeptNumber]:
     return others
 
 
-def all_moved(run: KeptRun, share: float) -> Iterator[tuple[str, list[str], KeptRun]]:
+def all_moved(run: RunSnapshot, share: float) -> Iterator[tuple[str, list[str], RunSnapshot]]:
     """A word, the paths that have it, and the run with that word of all of them moved."""
     others = {path: moved(number, share) for path, number in run.numbers.items()}
     for word in sorted({word for words in others.values() for word in words}):
@@ -68,7 +68,7 @@ def all_moved(run: KeptRun, share: float) -> Iterator[tuple[str, list[str], Kept
         yield word, sorted(numbers), run.model_copy(update={"numbers": run.numbers | numbers})
 
 
-def with_number(run: KeptRun, path: str, number: KeptNumber) -> KeptRun:
+def with_number(run: RunSnapshot, path: str, number: NumberSnapshot) -> RunSnapshot:
     return run.model_copy(update={"numbers": run.numbers | {path: number}})
 
 
@@ -77,7 +77,7 @@ def with_number(run: KeptRun, path: str, number: KeptNumber) -> KeptRun:
 def test_each_number_moved_by_three_times_what_is_allowed_fails(name: str) -> None:
     run = run_of(name)
     for word, paths, other in all_moved(run, 3.0):
-        assert paths and [change.path for change in changes(run, other)] == paths, word
+        assert paths and [change.path for change in find_changes(run, other)] == paths, word
 
 
 @pytest.mark.heavy  # of numbers that are there
@@ -85,14 +85,16 @@ def test_each_number_moved_by_three_times_what_is_allowed_fails(name: str) -> No
 def test_each_number_moved_by_a_third_of_what_is_allowed_passes(name: str) -> None:
     run = run_of(name)
     for word, _, other in all_moved(run, 0.3):
-        assert changes(run, other) == [], word
+        assert find_changes(run, other) == [], word
 
 
 @pytest.mark.heavy  # of numbers
 @pytest.mark.parametrize("name", ["double", "slider_crank", "hammered_four_bar", "four_bar"])
 def test_a_run_of_the_whole_scene_passes(name: str) -> None:
     """Two models of one scene differ by no more than both state."""
-    assert [change for change in changes(run_of(name), run_of(name, reduce=False)) if "model." not in change.path] == []
+    assert [
+        change for change in find_changes(run_of(name), run_of(name, reduce=False)) if "model." not in change.path
+    ] == []
 
 
 def test_what_one_of_them_lacks_is_told_by_name() -> None:
@@ -105,20 +107,20 @@ def test_what_one_of_them_lacks_is_told_by_name() -> None:
         "became open": run.model_copy(update={"open": [*run.open, path]}),
     }
     for word, other in others.items():
-        (change,) = changes(run, other)
+        (change,) = find_changes(run, other)
         assert change.path == path
-        assert word in change.why
-        (back,) = changes(other, run)
+        assert word in change.reason
+        (back,) = find_changes(other, run)
         assert back.path == path
     assert "model.freedoms" in {
-        c.path for c in changes(run, run.model_copy(update={"model": run.model | {"freedoms": 9}}))
+        c.path for c in find_changes(run, run.model_copy(update={"model": run.model | {"freedoms": 9}}))
     }
 
 
 def test_a_file_reads_back_as_it_was_and_has_one_number_a_line(heun: Heun, folder: Path) -> None:
     assert heun("check", "swinging.yaml", "--golden", "g", "--update", "--force").returncode == 0
     text = (folder / "g" / "swinging.json").read_text()
-    assert text_of(read_kept(text)) == text
+    assert format_golden_file(read_golden_file(text)) == text
     assert all(line.count(",") <= 1 for line in text.splitlines())
     assert json.dumps(json.loads(text), indent=1, sort_keys=True, ensure_ascii=False) + "\n" == text
 

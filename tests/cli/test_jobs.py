@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import Answer, Asker
+from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult
 from heuncli.app.cli import jobs
 from heuncli.app.commands.check import command
 from heuncli.base.errors import LimitError
@@ -44,14 +44,14 @@ def test_what_is_told_does_not_depend_on_the_number_of_processes(heun: Heun, man
 
 @pytest.mark.heavy
 def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    at_work = command.check
+    at_work = command.check_spec
 
     def dying(task, request, jobs):  # type: ignore[no-untyped-def]
         if task.found.path.endswith("04.yaml"):
             os.kill(os.getpid(), signal.SIGKILL)
         return at_work(task, request, jobs)
 
-    monkeypatch.setattr(command, "check", dying)
+    monkeypatch.setattr(command, "check_spec", dying)
     done = heun("check", "many", "--jobs", "3", "--format", "json")
     assert done.returncode == 70
     assert "many/04.yaml: the process that checked it was killed by signal 9, twice [bug]" in done.stderr
@@ -83,9 +83,9 @@ def test_numbers_that_mean_nothing(heun: Heun, words: tuple[str, str]) -> None:
 
 
 def test_as_many_processes_as_processors_where_there_is_enough_to_do() -> None:
-    assert jobs.how_many(None, jobs.WORTH - 1) == 1
-    assert jobs.how_many(None, jobs.WORTH) == min(jobs.processors(), jobs.WORTH)
-    assert jobs.how_many(9, 3) == 3
+    assert jobs.choose_job_count(None, jobs.MIN_ITEMS - 1) == 1
+    assert jobs.choose_job_count(None, jobs.MIN_ITEMS) == min(jobs.count_processors(), jobs.MIN_ITEMS)
+    assert jobs.choose_job_count(9, 3) == 3
 
 
 def at_work_in(group: int) -> list[str]:
@@ -133,7 +133,11 @@ def test_what_a_process_was_at_that_dies_is_tried_once_more(tmp_path: Path, jobs
         (tmp_path / f"{number}").touch(exist_ok=False)
         return f"{number} answered"
 
-    found = list(jobs.each(work, range(9), jobs_, lambda number, died: f"{number} {died.how}", apart=True))
+    found = list(
+        jobs.run_in_order(
+            work, range(9), jobs_, lambda number, died: f"{number} {died.description}", separate_process=True
+        )
+    )
     assert found[5] == "5 killed by signal 9" and found[7] == f"7 ended with exit code {LimitError.exit_code}"
     assert [text for number, text in enumerate(found) if number not in (5, 7)] == [
         f"{number} answered" for number in (0, 1, 2, 3, 4, 6, 8)
@@ -145,15 +149,15 @@ def test_a_process_of_a_search_that_dies_costs_no_variant(
 ) -> None:
     words = ("tune", "hanging.yaml", "m=1:2kg", "--minimise", "joints.pivot.force.z", "--evaluations", "8")
     undisturbed = heun(*words, "--jobs", "2")
-    answer = Asker.answer
+    answer = VariantEvaluator.answer
 
-    def dying(self: Asker, values: Mapping[str, str]) -> Answer:
+    def dying(self: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
         if not (folder / "tried").exists():
             (folder / "tried").touch()
             os.kill(os.getpid(), signal.SIGKILL)
         return answer(self, values)
 
-    monkeypatch.setattr(Asker, "answer", dying)
+    monkeypatch.setattr(VariantEvaluator, "answer", dying)
     assert heun(*words, "--jobs", "2") == undisturbed
     assert undisturbed.returncode == 0 and (folder / "tried").exists()
 

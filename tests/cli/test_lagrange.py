@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.commands.lagrange.forms import KEYS
 from heuncli.base.errors import HeunError
 from heuncli.scene.file_format.load import load
@@ -236,7 +236,7 @@ def test_coordinates_that_all_stand(heun: Heun) -> None:
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_spec_has_its_equations(path: Path) -> None:
     try:
-        found = lagrange(load(str(path), checking=False), LagrangeQuestion())
+        found = solve_lagrange(load(str(path), checking=False), LagrangeOptions())
     except HeunError as error:
         assert path.stem in NOTHING_FREE, error
         return

@@ -15,7 +15,7 @@ STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
 
 
 def number(words: str) -> float:
-    return float(measure.write([measure.parse(words)], STUDY, "table"))
+    return float(measure.format_measures([measure.parse_measure(words)], STUDY, "table"))
 
 
 @pytest.mark.parametrize(
@@ -44,13 +44,13 @@ def test_the_forms(words: str, value: float) -> None:
 
 
 def test_all_digits_are_printed() -> None:
-    text = measure.write([measure.parse("final energy.kinetic")], STUDY, "table")
+    text = measure.format_measures([measure.parse_measure("final energy.kinetic")], STUDY, "table")
     assert float(text) == STUDY.results.energy["kinetic"][-1]
     assert text.endswith("\n")
 
 
 def test_json_tells_the_instant_too() -> None:
-    text = measure.write([measure.parse("max joints.pivot.force.x")], STUDY, "json")
+    text = measure.format_measures([measure.parse_measure("max joints.pivot.force.x")], STUDY, "json")
     block = json.loads(text)
     assert block["measure"] == "max joints.pivot.force.x"
     assert block["value"] == pytest.approx(3.0)
@@ -59,7 +59,7 @@ def test_json_tells_the_instant_too() -> None:
 
 def test_what_is_open_reads_open() -> None:
     study = FakeStudy(STUDY.times, {"energy": {"kinetic": np.full(1, np.nan)}})
-    assert measure.write([measure.parse("final energy.kinetic")], study, "table") == "open\n"
+    assert measure.format_measures([measure.parse_measure("final energy.kinetic")], study, "table") == "open\n"
 
 
 LOST = FakeStudy(STUDY.times, {"accuracy": {**ACCURATE, "horizon": 1.25}})
@@ -79,10 +79,12 @@ LOST = FakeStudy(STUDY.times, {"accuracy": {**ACCURATE, "horizon": 1.25}})
 )
 def test_beyond_the_horizon_nothing_is_told(words: str) -> None:
     """Of a run that goes on beyond its horizon the largest is not known, for it may lie there."""
-    assert measure.write([measure.parse(words)], LOST, "table") == "?\n"
-    block = json.loads(measure.write([measure.parse(words)], LOST, "json"))
+    assert measure.format_measures([measure.parse_measure(words)], LOST, "table") == "?\n"
+    block = json.loads(measure.format_measures([measure.parse_measure(words)], LOST, "json"))
     assert (block["value"], block["at"], block["horizon"]) == (None, None, 1.25)
-    assert measure.warnings([measure.parse(words)], LOST)[0].endswith("from t = 1.25 s on nothing is claimed")
+    assert measure.find_warnings([measure.parse_measure(words)], LOST)[0].endswith(
+        "from t = 1.25 s on nothing is claimed"
+    )
 
 
 @pytest.mark.parametrize(
@@ -96,9 +98,9 @@ def test_beyond_the_horizon_nothing_is_told(words: str) -> None:
     ],
 )
 def test_before_the_horizon_all_is_told(words: str) -> None:
-    text = measure.write([measure.parse(words)], LOST, "table")
-    assert text == measure.write([measure.parse(words)], STUDY, "table")
-    assert measure.warnings([measure.parse(words)], LOST) == []
+    text = measure.format_measures([measure.parse_measure(words)], LOST, "table")
+    assert text == measure.format_measures([measure.parse_measure(words)], STUDY, "table")
+    assert measure.find_warnings([measure.parse_measure(words)], LOST) == []
 
 
 @pytest.mark.parametrize(
@@ -106,7 +108,7 @@ def test_before_the_horizon_all_is_told(words: str) -> None:
 )
 def test_other_words_are_refused_with_the_forms(words: str) -> None:
     with pytest.raises(HeunError, match="expected \\[max"):
-        measure.parse(words)
+        measure.parse_measure(words)
 
 
 @pytest.mark.parametrize(
@@ -127,28 +129,28 @@ def test_what_is_not_one_number_is_refused(words: str, why: str) -> None:
 
 
 def test_several_are_a_line_each_in_their_order_and_a_list_in_json() -> None:
-    several = measure.parse_all(["model.freedoms", "max joints.pivot.force.x", "at 0.5 energy.kinetic"])
-    lines = measure.write(several, STUDY, "table").splitlines()
-    assert lines == [measure.write([one], STUDY, "table").strip() for one in several]
-    blocks = json.loads(measure.write(several, STUDY, "json"))
-    assert blocks == [json.loads(measure.write([one], STUDY, "json")) for one in several]
+    several = measure.parse_measures(["model.freedoms", "max joints.pivot.force.x", "at 0.5 energy.kinetic"])
+    lines = measure.format_measures(several, STUDY, "table").splitlines()
+    assert lines == [measure.format_measures([one], STUDY, "table").strip() for one in several]
+    blocks = json.loads(measure.format_measures(several, STUDY, "json"))
+    assert blocks == [json.loads(measure.format_measures([one], STUDY, "json")) for one in several]
 
 
 def test_of_several_each_is_known_or_not_by_itself() -> None:
-    several = measure.parse_all(["at 1.2 joints.pivot.force.x", "final joints.pivot.force.x"])
-    lines = measure.write(several, LOST, "table").splitlines()
+    several = measure.parse_measures(["at 1.2 joints.pivot.force.x", "final joints.pivot.force.x"])
+    lines = measure.format_measures(several, LOST, "table").splitlines()
     assert float(lines[0]) == pytest.approx(3.0 * np.sin(2.4), rel=1e-12)
     assert lines[1] == "?"
-    assert len(measure.warnings(several, LOST)) == 1
+    assert len(measure.find_warnings(several, LOST)) == 1
 
 
 def test_of_several_all_that_are_wrong_are_told() -> None:
     with pytest.raises(HeunError) as caught:
-        measure.parse_all(["most x", "model.freedoms", "at x y"])
+        measure.parse_measures(["most x", "model.freedoms", "at x y"])
     assert len(caught.value.problems) == 2
     with pytest.raises(HeunError) as caught:
-        several = measure.parse_all(["energy.kinetic", "model.freedoms", "final sections.along.M1"])
-        measure.write(several, STUDY, "table")
+        several = measure.parse_measures(["energy.kinetic", "model.freedoms", "final sections.along.M1"])
+        measure.format_measures(several, STUDY, "table")
     assert len(caught.value.problems) == 2
     assert caught.value.exit_code == 2
 
@@ -169,5 +171,5 @@ def test_of_several_all_that_are_wrong_are_told() -> None:
 )
 def test_other_words_get_the_form_that_was_meant(text: str, said: str) -> None:
     with pytest.raises(HeunError) as caught:
-        measure.parse(text)
+        measure.parse_measure(text)
     assert caught.value.problems[0].hint == said

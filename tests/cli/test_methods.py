@@ -8,8 +8,8 @@ import pytest
 
 from heuncli.base.method_rows import METHODS
 from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.scene.file_format.methods import meant, unfit
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.scene.file_format.methods import iter_method_problems, method_hint
 from heuncli.scene.file_format.words import METHOD_WORDS
 from tests.shared.command import SPEC_TEXTS, Heun
 
@@ -34,11 +34,11 @@ def test_what_is_listed_is_what_is_run() -> None:
     """The rows, which the spec reads, against the coefficients, which the kernel takes."""
     held = {"quaternion": QUATERNION, "rodrigues": GLOBAL, "recentred": RECENTRED}
     for row in METHODS:
-        method = method_of(row.name)
+        method = load_method_by_name(row.name)
         assert (method.name, method.order, method.attitude) == (row.name, row.order, held[row.attitude])
-        assert row.steps == ("fixed" if method.fixed else "adaptive")
-        assert row.kind == ("SciPy" if method.foreign else "implicit" if method.implicit else "explicit")
-        assert (method.foreign or row.name) == row.name.removeprefix("SciPy-")
+        assert row.steps == ("fixed" if method.has_fixed_step else "adaptive")
+        assert row.kind == ("SciPy" if method.scipy_name else "implicit" if method.implicit else "explicit")
+        assert (method.scipy_name or row.name) == row.name.removeprefix("SciPy-")
 
 
 def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
@@ -90,8 +90,8 @@ def test_words_of_other_programs_lead_to_methods() -> None:
     known = {row.name for row in METHODS} | {"auto"}
     for word, name in METHOD_WORDS.items():
         assert word == word.lower() and name in known, word
-        assert meant(word) == f"here that is method: {name}"
-        assert [one.code for one in unfit(word, None, 1.0)] == ["unknown-method"]
+        assert method_hint(word) == f"here that is method: {name}"
+        assert [one.code for one in iter_method_problems(word, None, 1.0)] == ["unknown-method"]
 
 
 @pytest.mark.parametrize(

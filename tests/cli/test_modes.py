@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import HeunError
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
@@ -83,7 +83,7 @@ NEAR_A_ROOT = with_force("{type: torque, joint: rail, value: '-10*sqrt(rail.trav
 )
 def test_refused(text: str, code: str, said: str) -> None:
     with pytest.raises(HeunError) as caught:
-        modes(load("scene.yaml", text))
+        compute_spec_modes(load("scene.yaml", text))
     assert caught.value.problems[0].code == code and said in caught.value.problems[0].message
     assert caught.value.exit_code == 3
 
@@ -100,7 +100,7 @@ def test_refused(text: str, code: str, said: str) -> None:
 )
 def test_smooth_enough(text: str) -> None:
     """What bends in its second derivative only has a slope."""
-    assert len(modes(load("scene.yaml", text)).modes) == 2
+    assert len(compute_spec_modes(load("scene.yaml", text)).modes) == 2
 
 
 def test_a_stretched_chain_is_refused() -> None:
@@ -117,7 +117,7 @@ joints:
   b: {{type: pin, axis: [0, 0, 1], from: ground.B, to: right.b}}
 """
     with pytest.raises(HeunError) as caught:
-        modes(load("scene.yaml", scene))
+        compute_spec_modes(load("scene.yaml", scene))
     assert "give way to the first order only" in caught.value.problems[0].message
 
 
@@ -180,14 +180,14 @@ def test_a_motion_is_looked_at_about_the_pose_that_rests() -> None:
     """Drawn askew and let go, or looked for: the same pose, hanging, and the same frequencies as drawn so."""
     spring = "forces: {k: {type: spring, from: ground.W, to: cart.c, stiffness: 90, length: 1}}\n"
     drawn = SCENE.replace("b: [0, 0, -1]}}", "b: [0, 0, -1]}, orientation: {axis: [0, 1, 0], angle: 0.4}}") + spring
-    hangs = modes(load("scene.yaml", SCENE + spring + ASKED))
+    hangs = compute_spec_modes(load("scene.yaml", SCENE + spring + ASKED))
     for analysis in ("analysis: {duration: 1, samples: 2}\n", "analysis: {type: rest}\n"):
-        found = modes(load("scene.yaml", drawn + analysis))
-        assert found.at == "rest"
+        found = compute_spec_modes(load("scene.yaml", drawn + analysis))
+        assert found.reference == "rest"
         for mode, wanted in zip(found.modes, hangs.modes, strict=True):
             assert abs(mode.frequency - wanted.frequency) <= 1e-12 * wanted.frequency
     with pytest.raises(HeunError) as caught:
-        modes(load("scene.yaml", drawn + ASKED))
+        compute_spec_modes(load("scene.yaml", drawn + ASKED))
     assert caught.value.problems[0].code == "not-at-rest" and "type: rest" in str(caught.value.problems[0].hint)
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.published.files import names
-from heuncli.app.commands.new.command import kinds
+from heuncli.analyses.published.files import list_names
+from heuncli.app.commands.new.command import list_kinds
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 
@@ -26,13 +26,13 @@ KINDS = (
 
 
 def test_the_kinds_are_listed(heun: Heun) -> None:
-    assert tuple(kinds()) == KINDS
+    assert tuple(list_kinds()) == KINDS
     lines = heun("new").stdout.splitlines()
     gap = lines.index("")
     assert [line.split()[0] for line in lines[:gap]] == [*KINDS]
     assert "heun check --references" in lines[gap + 1]
-    assert [line.split()[0] for line in lines[gap + 2 :]] == [*names()]
-    assert not {*KINDS} & {*names()}
+    assert [line.split()[0] for line in lines[gap + 2 :]] == [*list_names()]
+    assert not {*KINDS} & {*list_names()}
     assert max(map(len, lines)) <= 120
 
 

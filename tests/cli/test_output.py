@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.app.cli.output import emit
 from heuncli.base.errors import OutputError
-from heuncli.base.files import ReaderGone, place_of
+from heuncli.base.files import ReaderGoneError, find_target
 from tests.shared.command import Heun
 
 
@@ -166,15 +166,15 @@ def test_rights_are_asked_for_before_the_work(
     (tmp_path / "file").write_text("old")
     monkeypatch.setattr(os, "access", lambda path, _: Path(path) != tmp_path / denied)
     with pytest.raises(OutputError, match=told):
-        place_of("file")
+        find_target("file")
 
 
 def test_a_file_that_another_makes_while_it_is_looked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Not there at the first look, there at the next."""
-    monkeypatch.setattr("heuncli.base.files._state", lambda name: None)
+    monkeypatch.setattr("heuncli.base.files._file_state", lambda name: None)
     (tmp_path / "made").write_text("by another")
-    place = place_of(str(tmp_path / "made"))
-    assert place.ordinary
+    place = find_target(str(tmp_path / "made"))
+    assert place.is_replaceable
     assert place.state is not None
 
 
@@ -217,7 +217,7 @@ def test_a_descriptor_that_takes_none_for_a_while(tmp_path: Path) -> None:
 def test_a_reader_of_a_pipe_that_goes_away(tmp_path: Path) -> None:
     out, number = os.pipe()
     os.close(out)
-    with pytest.raises(ReaderGone):
+    with pytest.raises(ReaderGoneError):
         emit("x", f"/dev/fd/{number}")
     os.close(number)
 

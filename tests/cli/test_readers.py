@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from heuncli.app.cli import app, plain
-from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS
 from tests.shared.loaded_modules import loaded_by
 
@@ -25,7 +25,7 @@ def random_line(seed: int) -> list[str]:
     draw = random.Random(seed)
     command = draw.choice(COMMANDS)
     line = []
-    for row in fields_of(command.request):
+    for row in list_fields(command.request):
         if not row.option.words:
             many = row.type == tuple[str, ...]
             line += [[draw.choice(["a.yaml", "-", "dir/b.yaml"])] for _ in range(draw.randint(1, 3) if many else 1)]

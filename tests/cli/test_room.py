@@ -12,10 +12,10 @@ import pytest
 
 from heuncli.base import memory_left
 from heuncli.motion.integration.run.step_records import GrowingRows
-from heuncli.motion.integration.trajectory import Kept
+from heuncli.motion.integration.trajectory import StepRecords
 from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.scene.file_format.load import load
-from heuncli.study.model.memory_estimate import in_words, numbers_by_block, two_digits
+from heuncli.study.model.memory_estimate import format_bytes, iter_numbers_by_block, truncate_to_two_digits
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
 from heuncli.study.model.setup import set_up
@@ -69,8 +69,8 @@ def test_the_estimate_counts_what_is_told(name: str, shares: bool) -> None:
     """No less, and no more than a few times as much: not every joint has all that a joint may have."""
     asked = Selection(frozenset((*REPORTS, SHARES) if shares else REPORTS))
     spec = load(str(SPECS / f"{name}.yaml"))
-    estimated = dict(numbers_by_block(set_up(spec, asked=asked)))
-    results = solve(spec, Options(wanted=asked.reports)).results
+    estimated = dict(iter_numbers_by_block(set_up(spec, selection=asked)))
+    results = solve(spec, Options(requested_reports=asked.reports)).results
     for block in REPORT_OF:
         there = counted(getattr(results, block), len(results.time)) / len(results.time)
         assert there <= estimated.get(block, 0) <= 4.0 * there + 40.0, block
@@ -86,8 +86,8 @@ def counted(block: Any, instants: int) -> int:
     ("size", "text"), [(3e5, "0.3 MB"), (8.34e6, "8.3 MB"), (8.39e7, "83 MB"), (7.4e8, "740 MB"), (1.43e12, "1,400 GB")]
 )
 def test_sizes_in_words(size: float, text: str) -> None:
-    assert in_words(size) == text
-    assert two_digits(1675.9) == 1600.0
+    assert format_bytes(size) == text
+    assert truncate_to_two_digits(1675.9) == 1600.0
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="no limit on addresses")
@@ -127,6 +127,6 @@ def test_rows_that_grow() -> None:
     np.testing.assert_array_equal(grown.rows, whole)
     grown.thin()
     np.testing.assert_array_equal(grown.rows, whole[::2])
-    kept = Kept(np.array([0, 2, 4]), whole[:3]).with_others({2: whole[7], 5: whole[8]})
+    kept = StepRecords(np.array([0, 2, 4]), whole[:3]).merge({2: whole[7], 5: whole[8]})
     assert kept.steps.tolist() == [0, 2, 4, 5]
     np.testing.assert_array_equal(kept.records, whole[[0, 7, 2, 8]])

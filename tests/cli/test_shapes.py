@@ -19,13 +19,13 @@ import numpy as np
 import pytest
 
 from heuncli.output.tables.export import to_csv
-from heuncli.results.results_paths import find
-from heuncli.results.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitudes, quantity
+from heuncli.results.results_paths import find_values
+from heuncli.results.results_schema import CUT, IMPULSES, REPORTS, SHARES, find_quantity, independent_axes
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, value
+from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, measure_value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 
@@ -63,7 +63,7 @@ def text(bodies: int, cuts: int, instants: int) -> str:
 
 @cache
 def study_of(count: tuple[int, int, int]) -> Study:
-    return solve(load("x.yaml", text(*count)), Options(wanted=frozenset({*REPORTS, SHARES})))
+    return solve(load("x.yaml", text(*count)), Options(requested_reports=frozenset({*REPORTS, SHARES})))
 
 
 def leaves(block: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
@@ -79,7 +79,7 @@ def numbers_of(study: Study) -> Iterator[tuple[str, Any]]:
     """The paths of all quantities of a run, with what stands there."""
     whole = {f.name: getattr(study.results, f.name) for f in fields(study.results)}
     for keys, part in leaves(whole):
-        row = quantity(keys)
+        row = find_quantity(keys)
         if row is not None and row.units:
             yield ".".join(keys), part
 
@@ -88,9 +88,9 @@ def numbers_of(study: Study) -> Iterator[tuple[str, Any]]:
 def test_every_array_has_the_axes_of_the_schema(count: tuple[int, int, int]) -> None:
     _, cuts, instants = count
     for path, part in numbers_of(study_of(count)):
-        there = find(study_of(count).results, path)
+        there = find_values(study_of(count).results, path)
         sizes = tuple(cuts if axis is CUT else axis.size for axis in there.axes)
-        shape = (instants, *sizes) if there.timed else sizes
+        shape = (instants, *sizes) if there.is_timed else sizes
         got = np.shape(np.nan if part is None else part)
         assert len(got) == len(shape) and all(b in (a, None) for a, b in zip(got, shape, strict=True)), path
 
@@ -98,7 +98,7 @@ def test_every_array_has_the_axes_of_the_schema(count: tuple[int, int, int]) -> 
 def extreme(study: Study, how: str, path: str) -> float | str:
     """What --measure tells, or that it refuses."""
     try:
-        return value(MeasureRequest(how, path), study).value  # type: ignore[arg-type]
+        return measure_value(MeasureRequest(how, path), study).value  # type: ignore[arg-type]
     except NotOneNumber as error:
         return re.sub(r"\d+", "N", error.problems[0].message)
 
@@ -122,27 +122,27 @@ def test_an_extreme_does_not_depend_on_how_many_cuts_and_instants_are_asked_for(
 @each
 def test_at_an_instant_a_list_of_three_cuts_is_no_vector(count: tuple[int, int, int]) -> None:
     for path in ("sections.s.M2", "sections.s.force", "joints.j0.force", "bodies.b0.rotation", "bodies.b0.quaternion"):
-        there = find(study_of(count).results, path)
-        if not there.axes or (there.of_vectors and len(there.axes) == 1):
-            assert isinstance(value(MeasureRequest("final", path), study_of(count)).value, float)
+        there = find_values(study_of(count).results, path)
+        if not there.axes or (there.is_vector and len(there.axes) == 1):
+            assert isinstance(measure_value(MeasureRequest("final", path), study_of(count)).value, float)
         else:
             with pytest.raises(NotOneNumber, match="say which") as caught:
-                value(MeasureRequest("final", path), study_of(count))
+                measure_value(MeasureRequest("final", path), study_of(count))
             one = str(caught.value.problems[0].hint).rpartition(": ")[2]
-            assert isinstance(value(MeasureRequest("final", one), study_of(count)).value, float)
+            assert isinstance(measure_value(MeasureRequest("final", one), study_of(count)).value, float)
 
 
 @each
 def test_csv_names_every_number_by_its_path(count: tuple[int, int, int]) -> None:
     study = study_of(count)
-    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, labels_of(study.spec)))))
-    told = [row for row in rows if row["kind"] not in (BLOWS, "event", "events") and row["quantity"] != "side"]
+    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, make_labels(study.spec)))))
+    told = [row for row in rows if row["kind"] not in (IMPULSES, "event", "events") and row["quantity"] != "side"]
     assert len(told) > 150
     for row in told:
         share = f"shares.{row['cause']}" if row["cause"] else ""
         parts = (row["kind"], row["name"], share, row["quantity"], row["component"])
-        there = find(study.results, ".".join(part for part in parts if part))
-        at = np.flatnonzero(study.results.time == float(row["time"])) if there.timed else [()]
+        there = find_values(study.results, ".".join(part for part in parts if part))
+        at = np.flatnonzero(study.results.time == float(row["time"])) if there.is_timed else [()]
         assert not there.axes
         assert (repr(float(there.values[at[0]] + 0.0)) if row["value"] else "nan") == (row["value"] or "nan"), row
 
@@ -154,12 +154,12 @@ def test_expectations_of_lists_go_by_the_schema(heun: Heun, cuts: int) -> None:
     at = float(study.results.time[1])
     lines = []
     for path, how, is_ in [
-        ("sections.s.M1", f"at: {at!r}", find(study.results, "sections.s.M1").values[1].tolist()),
+        ("sections.s.M1", f"at: {at!r}", find_values(study.results, "sections.s.M1").values[1].tolist()),
         ("sections.s.N", "peak: abs", extreme(study, "abs", "sections.s.N")),
         ("sections.s.force", "peak: abs", extreme(study, "abs", "sections.s.force")),
         ("joints.j0.force", "peak: abs", extreme(study, "abs", "joints.j0.force")),
         ("joints.j0.force.x", "peak: min", extreme(study, "min", "joints.j0.force.x")),
-        ("sections.s.M1.1", f"at: {at!r}", float(find(study.results, "sections.s.M1.1").values[1])),
+        ("sections.s.M1.1", f"at: {at!r}", float(find_values(study.results, "sections.s.M1.1").values[1])),
     ]:
         lines.append(f"  - {{of: {path}, {how}, is: {is_}}}\n")
     top = max(extreme(study, how, "sections.s.M1") for how in ("max", "min"))  # type: ignore[type-var]
@@ -179,7 +179,7 @@ def test_one_entry_alone_has_the_same_shape(heun: Heun, cuts: int) -> None:
 
 @pytest.mark.parametrize("path", ["bodies.b0.quaternion", "bodies.b0.rotation"])
 def test_an_attitude_has_no_extreme_and_no_limit(heun: Heun, path: str) -> None:
-    assert beside_magnitudes(find(study_of((1, 3, 3)).results, path).axes)
+    assert independent_axes(find_values(study_of((1, 3, 3)).results, path).axes)
     scene = text(1, 3, 3)
     done = heun("run", "-", "--measure", f"max {path}", text=scene)
     assert (done.returncode, "say which" in done.stderr) == (2, True)

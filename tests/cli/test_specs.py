@@ -16,14 +16,14 @@ import numpy as np
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.output.tables.export import present, to_csv, to_json
-from heuncli.results.results_paths import find
+from heuncli.output.tables.export import collect_blocks, to_csv, to_json
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
-from heuncli.study.quantities.series import walk
+from heuncli.study.quantities.labels import make_labels
+from heuncli.study.quantities.series import iter_series
 from heuncli.study.workflow import solve
 
 FOLDER = Path(__file__).parents[2] / "specs"
@@ -50,7 +50,7 @@ def path_of(name: str) -> str:
 @cache
 def study_of(name: str) -> Study:
     spec = load(path_of(name))
-    return solve(spec, Options(wanted=EVERYTHING | ({"shares", "events"} & set(spec.report or ()))))
+    return solve(spec, Options(requested_reports=EVERYTHING | ({"shares", "events"} & set(spec.report or ()))))
 
 
 @each
@@ -66,7 +66,7 @@ def test_it_is_as_it_expects(name: str) -> None:
     study = study_of(name)
     cases = [compare(study, item) for item in study.spec.expect]
     assert cases
-    assert [f"{case.of} {case.when}: {case.failure}" for case in cases if not case.passed] == []
+    assert [f"{case.path} {case.when}: {case.failure}" for case in cases if not case.is_met] == []
 
 
 @each
@@ -97,8 +97,8 @@ def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None
 def test_its_json_says_the_same(name: str) -> None:
     results = study_of(name).results
     parsed = json.loads(to_json(results))
-    assert list(parsed) == ["heun", *present(results)]
-    same(parsed, present(results), name)
+    assert list(parsed) == ["heun", *collect_blocks(results)]
+    same(parsed, collect_blocks(results), name)
 
 
 def same(read: Any, written: Any, where: str) -> None:
@@ -121,7 +121,7 @@ def same(read: Any, written: Any, where: str) -> None:
 @each
 def test_its_csv_says_the_same(name: str) -> None:
     study = study_of(name)
-    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, labels_of(study.spec)))))
+    rows = list(csv.DictReader(io.StringIO(to_csv(study.results, make_labels(study.spec)))))
     assert {row["unit"] for row in rows if row["kind"] == "joints" and row["quantity"] == "force"} <= {"N"}
     rows = [row for row in rows if not row.get("cause")]
     for joint, part in study.results.joints.items():
@@ -137,12 +137,12 @@ def test_every_result_may_be_expected(name: str) -> None:
     """When a spec is read every path into the results is known, with the shape and the dimension that are found."""
     results = study_of(name).results
     items: list[dict[str, Any]] = []
-    for series in walk(results, labels_of(study_of(name).spec)):
+    for series in iter_series(results, make_labels(study_of(name).spec)):
         if series.quantity == "side":  # words
             continue
-        found = find(results, series.path)
-        shape = found.values.shape[1:] if found.timed else found.values.shape
-        at = {"at": float(results.time[0])} if found.timed else {}
+        found = find_values(results, series.path)
+        shape = found.values.shape[1:] if found.is_timed else found.values.shape
+        at = {"at": float(results.time[0])} if found.is_timed else {}
         items.append({"of": series.path, "is": np.zeros(shape).tolist(), **at})
         unit = "" if series.unit == "1" else f" {series.unit}"
         component = "".join(f".{part}" for part in series.components[-1:] if part)
@@ -164,7 +164,7 @@ def test_an_expectation_that_fails_is_told(tmp_path: Path, capsys: pytest.Captur
 def test_expectations_follow_the_parameters(capsys: pytest.CaptureFixture[str]) -> None:
     spec = load(path_of("chimney"), overrides={"tilt": "60 deg", "L": "20"})
     study = solve(spec)
-    assert all(compare(study, item).passed for item in spec.expect)
+    assert all(compare(study, item).is_met for item in spec.expect)
     assert spec.expect[0].is_ == pytest.approx(1000 * 9.81 * 20 * np.sin(np.pi / 3) / 27, rel=1e-15)
 
 

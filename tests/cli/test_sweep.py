@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import Asker
+from heuncli.analyses.variants.asking import VariantEvaluator
 from heuncli.app.commands.sweep import workers
 from heuncli.base import memory_left
 from tests.shared.command import Done, Heun
@@ -83,7 +83,7 @@ REFUSED = {
 def test_what_is_refused_before_anything_runs(
     heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
-    monkeypatch.setattr(workers, "answered", None)
+    monkeypatch.setattr(workers, "solve_batch", None)
     given = [words] if " qq" in words else words.split()
     done = sweep(heun, *given)
     assert (done.returncode, done.stdout) == (2, "")
@@ -223,12 +223,12 @@ def test_what_is_wrong_with_a_table_has_its_place(heun: Heun, scene: Path, text:
 
 
 def test_a_bug_in_one_variant_stops_no_other(heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    answer = Asker.answer
+    answer = VariantEvaluator.answer
 
-    def failing(self: Asker, values: dict[str, str]) -> object:
+    def failing(self: VariantEvaluator, values: dict[str, str]) -> object:
         return answer(self, values) if values["m"] != "2.0 kg" else 1 / 0
 
-    monkeypatch.setattr(Asker, "answer", failing)
+    monkeypatch.setattr(VariantEvaluator, "answer", failing)
     done = sweep(heun, "m=1,2,3kg")
     assert done.returncode == 70
     found = list(csv.DictReader(io.StringIO(done.stdout)))

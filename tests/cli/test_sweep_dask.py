@@ -15,16 +15,16 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import Answer, Asker, Recipe
-from heuncli.analyses.variants.axes import axis_of
-from heuncli.analyses.variants.plans import Plan, plan_of
+from heuncli.analyses.variants.asking import Recipe, VariantEvaluator, VariantResult
+from heuncli.analyses.variants.axes import parse_axis_values
+from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.sweep.cluster import flow as cluster
 from heuncli.app.commands.sweep.cluster import lots as cluster_lots
 from heuncli.app.commands.sweep.cluster.door import ClusterGone
-from heuncli.app.commands.sweep.cluster.flow import WORKER_DIED, answers_of
+from heuncli.app.commands.sweep.cluster.flow import WORKER_DIED, solve_variants
 from heuncli.output.snapshots import measure
-from heuncli.scene.file_format.source import text_in
+from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 from heuncli.version import VERSION
 from tests.shared.command import TURNED, Heun
@@ -65,28 +65,28 @@ def recipe(folder: Path) -> Recipe:
     """A scene that is solved in some milliseconds."""
     (folder / "swinging.yaml").write_text(SWINGING)
     path = str(folder / "swinging.yaml")
-    return Recipe(path, text_in(path), tuple(measure.parse_all((FORCE, "final energy.kinetic"))), Options(), {})
+    return Recipe(path, read_text(path), tuple(measure.parse_measures((FORCE, "final energy.kinetic"))), Options(), {})
 
 
 def plan(*words: str) -> Plan:
-    return plan_of([axis_of(word) for word in words or AXES])
+    return make_axes_plan([parse_axis_values(word) for word in words or AXES])
 
 
-def here(recipe: Recipe, of: Plan) -> dict[int, Answer]:
+def here(recipe: Recipe, of: Plan) -> dict[int, VariantResult]:
     """The answers of this process."""
-    asker = Asker(recipe)
-    return {number: asker.answer(of.values(number)) for number in of.numbers()}
+    asker = VariantEvaluator(recipe)
+    return {number: asker.answer(of.find_values(number)) for number in of.iter_numbers()}
 
 
-def there(recipe: Recipe, of: Plan, address: str, told: list[str] | None = None) -> Iterator[tuple[int, Answer]]:
+def there(recipe: Recipe, of: Plan, address: str, told: list[str] | None = None) -> Iterator[tuple[int, VariantResult]]:
     """The answers of the cluster."""
     tell = (told if told is not None else []).append
-    return answers_of(recipe, of, of.numbers(), address, of.size, tell)
+    return solve_variants(recipe, of, of.iter_numbers(), address, of.size, tell)
 
 
-def gathered(found: Iterator[tuple[int, Answer]]) -> dict[int, Answer]:
+def gathered(found: Iterator[tuple[int, VariantResult]]) -> dict[int, VariantResult]:
     """The answers by their numbers, of which none may come twice."""
-    answers: dict[int, Answer] = {}
+    answers: dict[int, VariantResult] = {}
     for number, answer in found:
         assert number not in answers
         answers[number] = answer
@@ -116,7 +116,7 @@ def test_a_worker_that_is_killed_costs_nothing(
     monkeypatch.setattr("heuncli.app.commands.sweep.cluster.members.SECONDS", 0.2)
     monkeypatch.setattr(cluster_lots, "SECONDS", 0.2)
     dask.with_workers(2)
-    answers: dict[int, Answer] = {}
+    answers: dict[int, VariantResult] = {}
     for number, answer in there(recipe, plan(), dask.address):
         assert number not in answers
         answers[number] = answer
@@ -131,7 +131,9 @@ def test_what_is_done_stands_when_the_scheduler_goes(tmp_path: Path, recipe: Rec
     try:
         tell = lambda line: told.append(line) or dask.work()  # noqa: E731
         with pytest.raises(ClusterGone) as gone:
-            for number, answer in answers_of(recipe, plan(), plan().numbers(), dask.address, plan().size, tell):
+            for number, answer in solve_variants(
+                recipe, plan(), plan().iter_numbers(), dask.address, plan().size, tell
+            ):
                 answers[number] = answer
                 dask.scheduler.kill()
     finally:

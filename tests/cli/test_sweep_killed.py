@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import pytest
 
-from heuncli.analyses.variants.asking import Asker
+from heuncli.analyses.variants.asking import VariantEvaluator
 from heuncli.app.commands.sweep import workers
 from tests.shared.command import Heun
 from tests.shared.sweeps import (
@@ -117,16 +117,16 @@ def test_a_variant_that_ends_its_process_is_tried_once_more(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The others of its batch are none the worse; it is tried again by the next call, for the store has no answer."""
-    answer = Asker.answer
+    answer = VariantEvaluator.answer
 
-    def deadly(self: Asker, values: dict[str, str]) -> object:
+    def deadly(self: VariantEvaluator, values: dict[str, str]) -> object:
         if values["m"] == "3.0":
             signal.raise_signal(signal.SIGKILL)
         return answer(self, values)
 
     words = ("sweep", "hanging.yaml", "m=1:5/5", "--measure", "joints.pivot.force.z", "--format", "csv")
     undisturbed = heun(*words)
-    monkeypatch.setattr(Asker, "answer", deadly)
+    monkeypatch.setattr(VariantEvaluator, "answer", deadly)
     monkeypatch.setattr(workers.Batches, "next", in_one(workers.Batches.next))
     done = heun(*words, "--store", "s.sqlite", "--jobs", "2")
     assert done.returncode == 0
@@ -134,7 +134,7 @@ def test_a_variant_that_ends_its_process_is_tried_once_more(
     lines, expected = done.stdout.splitlines(), undisturbed.stdout.splitlines()
     assert 'worker-died,"the process that solved it was killed by signal 9, twice"' in lines[3]
     assert lines[:3] + lines[4:] == expected[:3] + expected[4:]
-    monkeypatch.setattr(Asker, "answer", answer)
+    monkeypatch.setattr(VariantEvaluator, "answer", answer)
     assert heun(*words, "--store", "s.sqlite") == undisturbed
 
 

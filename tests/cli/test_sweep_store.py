@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.analyses.sweep_store.store.store import Store
-from heuncli.analyses.variants.asking import Answer, Asker, Measured
+from heuncli.analyses.variants.asking import MeasureValue, VariantEvaluator, VariantResult
 from heuncli.base.errors import OutputError
 from tests.shared import triangles
 from tests.shared.command import HANGING, Done, Heun
@@ -28,13 +28,13 @@ STORED = ("--store", "s.sqlite")
 def solved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[dict[str, str]]]:
     """The variants that were solved since it was emptied, in this process."""
     found: list[dict[str, str]] = []
-    answer = Asker.answer
+    answer = VariantEvaluator.answer
 
-    def counted(self: Asker, values: dict[str, str]) -> object:
+    def counted(self: VariantEvaluator, values: dict[str, str]) -> object:
         found.append(dict(values))
         return answer(self, values)
 
-    monkeypatch.setattr(Asker, "answer", counted)
+    monkeypatch.setattr(VariantEvaluator, "answer", counted)
     monkeypatch.delattr("os.fork")
     yield found
 
@@ -263,7 +263,7 @@ def test_without_a_store_the_folder_of_temporary_files_may_be_full() -> None:
         store.connection.execute("PRAGMA max_page_count = 30")
         with pytest.raises(OutputError, match="the folder of temporary files: the disk is full") as error:
             for number in range(10_000):
-                store.keep(1, number, number.to_bytes(32, "big"), ("1.0",), Answer((Measured(1.0),)))
+                store.add_result(1, number, number.to_bytes(32, "big"), ("1.0",), VariantResult((MeasureValue(1.0),)))
         assert error.value.exit_code == 5
         assert 0 < store.connection.execute("SELECT count(*) FROM answers").fetchone()[0] < 10_000
 
@@ -286,4 +286,4 @@ def begin(name: str, begins: Barrier) -> None:
     """Open a store when all others do; the exit code is 1 where that fails."""
     begins.wait()
     with Store(name) as store:
-        store.keep(1, os.getpid(), os.urandom(32), ("1.0",), Answer((Measured(1.0),)))
+        store.add_result(1, os.getpid(), os.urandom(32), ("1.0",), VariantResult((MeasureValue(1.0),)))

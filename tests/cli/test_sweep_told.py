@@ -18,15 +18,15 @@ import pyarrow.parquet as pq
 import pytest
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure, SweptRow
-from heuncli.analyses.variants.asking import Answer, Measured
-from heuncli.analyses.variants.axes import Drawn, ParameterAxis, axis_of
-from heuncli.analyses.variants.draws import draws_of
-from heuncli.analyses.variants.plans import Plan, plan_of
+from heuncli.analyses.variants.asking import MeasureValue, VariantResult
+from heuncli.analyses.variants.axes import ParameterAxis, RandomVariable, parse_axis_values
+from heuncli.analyses.variants.draws import make_draws
+from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.commands.sweep.telling import as_parquet, told
-from heuncli.app.commands.sweep.telling.page import tables
-from heuncli.app.commands.sweep.telling.told import Telling
-from heuncli.output.tables.text_table import plain
-from heuncli.study.quantities.table_units import Units, asked
+from heuncli.app.commands.sweep.telling.page import make_tables
+from heuncli.app.commands.sweep.telling.told import SweepOutput
+from heuncli.output.tables.text_table import format_plain
+from heuncli.study.quantities.table_units import Units, parse_units
 from tests.shared.command import Heun
 
 LEVER = """\
@@ -171,23 +171,27 @@ def head_of(plan: Plan, *units: str) -> SweepHead:
 def rows_of(plan: Plan, *values: list[float | None], error: float = 1e-6) -> list[SweptRow]:
     """Rows with these values of each measure."""
     return [
-        SweptRow(k, plan.values(k), Answer(tuple(Measured(v, None if v is None else error, 0.1 * k) for v in found)))
+        SweptRow(
+            k,
+            plan.find_values(k),
+            VariantResult(tuple(MeasureValue(v, None if v is None else error, 0.1 * k) for v in found)),
+        )
         for k, found in enumerate(zip(*values, strict=True))
     ]
 
 
 def text_of(head: SweepHead, rows: list[SweptRow], units: Units | None = None, every: bool = False) -> str:
-    return "\n".join(plain(table) for table in tables(head, rows, units or Units(), every))
+    return "\n".join(format_plain(table) for table in make_tables(head, rows, units or Units(), every))
 
 
 def axis(word: str) -> ParameterAxis:
-    found = axis_of(word)
+    found = parse_axis_values(word)
     assert isinstance(found, ParameterAxis)
     return found
 
 
 def test_the_table_marks_least_and_greatest_and_draws_the_course() -> None:
-    plan = plan_of([axis("n=1:8/8rpm")])
+    plan = make_axes_plan([axis("n=1:8/8rpm")])
     text = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]))
     lines = text.splitlines()
     assert lines[0] == "SWEEP  A title: 8 variants"
@@ -198,7 +202,7 @@ def test_the_table_marks_least_and_greatest_and_draws_the_course() -> None:
 
 
 def test_what_cannot_be_told_apart_is_marked_alike() -> None:
-    plan = plan_of([axis("n=1,2,3,4")])
+    plan = make_axes_plan([axis("n=1,2,3,4")])
     lines = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 2.0, 1.5])).splitlines()
     assert [line.split()[3:] for line in lines[2:6]] == [["least"], ["least"], ["greatest"], []]
     assert "1.0    n = 1 or 1 more  2.0       n = 3" in "\n".join(lines)
@@ -208,10 +212,10 @@ def test_what_cannot_be_told_apart_is_marked_alike() -> None:
 
 
 def test_no_more_digits_than_the_error_supports_and_in_the_units_asked_for() -> None:
-    plan = plan_of([axis("n=1,2")])
+    plan = make_axes_plan([axis("n=1,2")])
     rows = rows_of(plan, [1234.56789, 0.004], error=0.02)
     assert "1234.6" in text_of(head_of(plan, "N"), rows) and "1234.57" not in text_of(head_of(plan, "N"), rows)
-    lines = text_of(head_of(plan, "N"), rows, asked("kN")).splitlines()
+    lines = text_of(head_of(plan, "N"), rows, parse_units("kN")).splitlines()
     assert "m0 [kN]" in lines[1] and lines[2].split()[1] == "1.2346"
     assert lines[3].split()[1] == "0"  # below its error, beside a larger one
     alone = text_of(head_of(plan, "N"), rows_of(plan, [0.004, -0.003], error=0.02)).splitlines()
@@ -220,7 +224,7 @@ def test_no_more_digits_than_the_error_supports_and_in_the_units_asked_for() -> 
 
 @pytest.mark.heavy
 def test_a_long_sweep_shows_its_ends_and_its_extremes() -> None:
-    plan = plan_of([axis("n=1:1000/1000"), axis("k=1")])
+    plan = make_axes_plan([axis("n=1:1000/1000"), axis("k=1")])
     values: list[float | None] = [float(k) for k in range(1000)]
     values[500], values[700], values[600] = -1.0, 2000.0, None
     head, rows = head_of(plan, "N"), rows_of(plan, values)
@@ -233,31 +237,31 @@ def test_a_long_sweep_shows_its_ends_and_its_extremes() -> None:
 
 
 def test_several_axes_have_a_line_of_letters_each() -> None:
-    plan = plan_of([axis("L=1,2mm"), axis("n=1:4/4")])
+    plan = make_axes_plan([axis("L=1,2mm"), axis("n=1:4/4")])
     text = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, None, 8.0]))
     assert "▁▂▃▄  L = 1 mm" in text and "▅▆·█  L = 2 mm" in text
-    many = plan_of([axis("L=1:50/50"), axis("n=1:2/2")])
+    many = make_axes_plan([axis("L=1:50/50"), axis("n=1:2/2")])
     text = text_of(head_of(many, "N"), rows_of(many, [float(k) for k in range(100)]))
     assert "m0: 38 lines of letters more: --all" in text
 
 
 def test_words_stand_for_what_is_not_known() -> None:
-    plan = plan_of([axis("n=1,2,3,4")])
-    answers = [Answer((Measured(None, word=word),)) for word in ("open", "beyond", "unknown")]
-    failed = Answer(code="does-not-fit", reason="joint C cannot be closed")
-    rows = [SweptRow(k, plan.values(k), answer) for k, answer in enumerate([*answers, failed])]
+    plan = make_axes_plan([axis("n=1,2,3,4")])
+    answers = [VariantResult((MeasureValue(None, word=word),)) for word in ("open", "beyond", "unknown")]
+    failed = VariantResult(code="does-not-fit", reason="joint C cannot be closed")
+    rows = [SweptRow(k, plan.find_values(k), answer) for k, answer in enumerate([*answers, failed])]
     lines = text_of(head_of(plan, "N"), rows).splitlines()
     assert [line.split()[1] for line in lines[2:5]] == ["open", "?", "?"]
     assert lines[5].split() == ["4", "does-not-fit:", "joint", "C", "cannot", "be", "closed"]
     assert any(line.startswith(("  open: ", "open: ")) for line in lines)
-    text = "".join(told.pieces(head_of(plan, "N"), rows, Telling("csv")))
+    text = "".join(told.iter_pieces(head_of(plan, "N"), rows, SweepOutput("csv")))
     reasons = [row["reason"] for row in csv.DictReader(io.StringIO(text))]
     assert reasons[0].startswith("m0 [N]: open") and "horizon" in reasons[1] and "singular" in reasons[2]
 
 
 def test_a_parameter_that_is_called_as_a_column_is_told_apart() -> None:
-    plan = plan_of([axis("number=1,2kg")])
-    text = "".join(told.pieces(head_of(plan, "N"), rows_of(plan, [1.0, 2.0]), Telling("csv")))
+    plan = make_axes_plan([axis("number=1,2kg")])
+    text = "".join(told.iter_pieces(head_of(plan, "N"), rows_of(plan, [1.0, 2.0]), SweepOutput("csv")))
     assert text.splitlines()[0].startswith("number,number (parameter) [kg],m0 [N],")
 
 
@@ -284,19 +288,19 @@ def test_memory_does_not_grow_with_the_rows(
     form: str, fewer: int, more: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Counts from where the buffers of a form are full; of JSON and Parquet 8 bytes of each row more would be seen."""
-    plan = plan_of([ParameterAxis("n", Texts())])
+    plan = make_axes_plan([ParameterAxis("n", Texts())])
 
     def rows(count: int) -> Iterator[SweptRow]:
-        answer = Answer((Measured(1.5, 1e-9, 0.25),))
-        return (SweptRow(k, plan.values(k), answer) for k in range(count))
+        answer = VariantResult((MeasureValue(1.5, 1e-9, 0.25),))
+        return (SweptRow(k, plan.find_values(k), answer) for k in range(count))
 
     monkeypatch.setattr(as_parquet, "GROUP", 1000)
-    how = Telling(form, str(tmp_path / f"out.{form}"))
-    told.tell(head_of(plan, "N"), rows(1), how)  # what is loaded for it
+    how = SweepOutput(form, str(tmp_path / f"out.{form}"))
+    told.write_sweep(head_of(plan, "N"), rows(1), how)  # what is loaded for it
     peaks = []
     for count in (fewer, more):
         tracemalloc.start()
-        told.tell(head_of(plan, "N"), rows(count), how)
+        told.write_sweep(head_of(plan, "N"), rows(count), how)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.01 * peaks[0] + 20_000, peaks
@@ -306,11 +310,11 @@ def test_memory_does_not_grow_with_the_rows(
 def test_statistics_take_floats_alone(tmp_path: Path) -> None:
     """Of each measure a value and an error, and the number of the variant: 24 bytes."""
     importlib.import_module("scipy.special")  # whose code is no part of it
-    plan = plan_of([], draws=draws_of([Drawn("d", "uniform", 0.0, 1.0, "")], 20_000))
-    answer = Answer((Measured(1.5, 1e-9, 0.25),))
-    rows = (SweptRow(k, plan.values(k), answer) for k in range(20_000))
+    plan = make_axes_plan([], draws=make_draws([RandomVariable("d", "uniform", 0.0, 1.0, "")], 20_000))
+    answer = VariantResult((MeasureValue(1.5, 1e-9, 0.25),))
+    rows = (SweptRow(k, plan.find_values(k), answer) for k in range(20_000))
     tracemalloc.start()
-    told.tell(head_of(plan, "N"), rows, Telling("json", str(tmp_path / "out.json")))
+    told.write_sweep(head_of(plan, "N"), rows, SweepOutput("json", str(tmp_path / "out.json")))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 20_000 * 150, peak
@@ -330,7 +334,7 @@ def test_parquet_goes_to_a_file_and_needs_its_extra(heun: Heun, folder: Path, mo
 
 
 def test_parquet_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
-    plan = plan_of([axis("n=1,2,3")])
+    plan = make_axes_plan([axis("n=1,2,3")])
 
     def rows() -> Iterator[SweptRow]:
         yield from rows_of(plan, [1.0, 2.0, 3.0])[:2]
@@ -338,20 +342,20 @@ def test_parquet_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
 
     (tmp_path / "out.parquet").write_text("old")
     with pytest.raises(KeyboardInterrupt):
-        told.tell(head_of(plan, "N"), rows(), Telling("parquet", str(tmp_path / "out.parquet")))
+        told.write_sweep(head_of(plan, "N"), rows(), SweepOutput("parquet", str(tmp_path / "out.parquet")))
     assert [path.name for path in tmp_path.iterdir()] == ["out.parquet"]
     assert (tmp_path / "out.parquet").read_text() == "old"
 
 
 def test_parquet_has_row_groups(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(as_parquet, "GROUP", 2)
-    plan = plan_of([axis("n=1:5/5")])
+    plan = make_axes_plan([axis("n=1:5/5")])
     path = tmp_path / "out.parquet"
-    told.tell(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, None, 4.0, 5.0]), Telling("parquet", str(path)))
+    told.write_sweep(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, None, 4.0, 5.0]), SweepOutput("parquet", str(path)))
     assert pq.ParquetFile(path).num_row_groups == 3
     assert pq.read_table(path).column("m0 [N]").to_pylist() == [1.0, 2.0, None, 4.0, 5.0]
     empty = tmp_path / "none.parquet"
-    told.tell(head_of(plan, "N"), [], Telling("parquet", str(empty)))
+    told.write_sweep(head_of(plan, "N"), [], SweepOutput("parquet", str(empty)))
     assert pq.read_table(empty).num_rows == 0 and importlib.util.find_spec("pyarrow") is not None
 
 

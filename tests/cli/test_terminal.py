@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from heuncli.app.cli.terminal import LEAST_WIDTH, write
+from heuncli.app.cli.terminal import MIN_WIDTH, render_tables
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from tests.shared.command import Heun
 from tests.shared.shell import ENVIRONMENT
@@ -24,9 +24,9 @@ def test_no_color_is_honoured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "60")
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("NO_COLOR", raising=False)
-    assert "\x1b[1mJOINTS" in write([WIDE])[0]
+    assert "\x1b[1mJOINTS" in render_tables([WIDE])[0]
     monkeypatch.setenv("NO_COLOR", "1")
-    plainly = write([WIDE])[0]
+    plainly = render_tables([WIDE])[0]
     assert "\x1b[3" not in plainly
     assert "pivot" in plainly
 
@@ -36,13 +36,13 @@ def test_no_escape_code_where_none_is_wanted(setting: dict[str, str], monkeypatc
     monkeypatch.setenv("TERM", "xterm")
     for name, value in setting.items():
         monkeypatch.setenv(name, value)
-    assert "\x1b" not in write([WIDE])[0]
+    assert "\x1b" not in render_tables([WIDE])[0]
 
 
 # Not in this process, whose own tests are told in lines of that width.
 OF_ANY_WIDTH = """\
 import os
-from heuncli.app.cli.terminal import width, write
+from heuncli.app.cli.terminal import find_width, render_tables
 from heuncli.output.tables.text_table import TextColumn, TextTable
 wide = TextTable("JOINTS", (TextColumn("joint", "left"), TextColumn("F [N]")), (("pivot", "1.5"),), ())
 for columns in ("0", "1", "-5", "x", "9" * 30):
@@ -56,7 +56,7 @@ def test_whatever_the_width_is_said_to_be() -> None:
     done = subprocess.run(line, capture_output=True, text=True, check=True, stdin=subprocess.DEVNULL, env=ENVIRONMENT)
     found = [line.split() for line in done.stdout.splitlines()]
     assert len(found) == 5
-    assert all(shown == "True" and int(columns) >= LEAST_WIDTH for shown, columns in found)
+    assert all(shown == "True" and int(columns) >= MIN_WIDTH for shown, columns in found)
 
 
 def test_a_usage_error_stays_off_standard_output(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:

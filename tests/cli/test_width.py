@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.output.tables.text_table import WIDTH
+from heuncli.output.tables.text_table import DEFAULT_WIDTH
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 
@@ -20,4 +20,4 @@ def test_no_line_is_wider_than_a_page(spec: Path, capsys: pytest.CaptureFixture[
     assert enter(["run", str(spec), "--by-cause", "--only", EVERYTHING]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines
-    assert [line for line in lines if len(line) > WIDTH] == []
+    assert [line for line in lines if len(line) > DEFAULT_WIDTH] == []

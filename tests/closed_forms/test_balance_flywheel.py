@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.analyses.balancing.asked import AskedWeight, AskedWheel, BalanceOptions
+from heuncli.analyses.balancing.asked import BalanceOptions, FlywheelRequest, WeightRequest
 from heuncli.analyses.balancing.results import Flywheel
 from heuncli.analyses.balancing.study import balance
 from heuncli.base.errors import SolveError
@@ -39,7 +39,7 @@ def wheel(scene: str, **asked: Any) -> Flywheel:
 
 def test_a_shaft_of_constant_inertia() -> None:
     """J (ω_max² - ω_min²)/2 is the work of a half wave; at 1 % the mean in time is that of both extremes to 5e-5/8."""
-    found = wheel(SHAFT.replace("LAW", TORQUE), rate=200.0 * RPM, flywheel=AskedWheel("shaft", 0.01))
+    found = wheel(SHAFT.replace("LAW", TORQUE), rate=200.0 * RPM, flywheel=FlywheelRequest("shaft", 0.01))
     assert found.energy == pytest.approx(SWING, rel=1e-9)
     assert found.textbook + 50.0 == pytest.approx(648.0200646028352, rel=1e-9)
     assert found.fastest - found.slowest == pytest.approx(0.01 * 200.0 * RPM, rel=1e-9)
@@ -49,8 +49,8 @@ def test_a_shaft_of_constant_inertia() -> None:
 
 
 def test_work_that_does_not_come_back_is_evened_out_and_told() -> None:
-    told = balance_of(SHAFT.replace("LAW", f"300 + {TORQUE}"), rate=20.0, flywheel=AskedWheel("", 0.01))
-    plain = wheel(SHAFT.replace("LAW", TORQUE), rate=20.0, flywheel=AskedWheel("", 0.01))
+    told = balance_of(SHAFT.replace("LAW", f"300 + {TORQUE}"), rate=20.0, flywheel=FlywheelRequest("", 0.01))
+    plain = wheel(SHAFT.replace("LAW", TORQUE), rate=20.0, flywheel=FlywheelRequest("", 0.01))
     assert told.flywheel is not None and told.flywheel.even == pytest.approx(-300.0, rel=1e-9)
     assert told.flywheel.added == pytest.approx(plain.added, rel=1e-9)
     assert "an even torque of -300 N·m on shaft" in " ".join(told.notes)
@@ -69,7 +69,7 @@ def test_orders_of_the_loads() -> None:
 
 
 def test_what_runs_evenly_needs_no_wheel() -> None:
-    told = balance_of(SHAFT.replace("LAW", TORQUE), rate=2000.0, flywheel=AskedWheel("", 0.01))
+    told = balance_of(SHAFT.replace("LAW", TORQUE), rate=2000.0, flywheel=FlywheelRequest("", 0.01))
     assert told.flywheel is not None and told.flywheel.added == 0.0 and told.flywheel.present < 0.01
     assert "no flywheel is needed" in " ".join(told.notes)
 
@@ -78,7 +78,7 @@ def test_the_engine_runs_as_a_run_has_it() -> None:
     """Two turns of a free run with the wheel, from the start told, between the extremes told."""
     text = (SPECS / "engine.yaml").read_text()
     engine = load(str(SPECS / "engine.yaml"), checking=False)
-    asked = BalanceOptions(rate=1500.0 * RPM, flywheel=AskedWheel("main", 0.01))
+    asked = BalanceOptions(rate=1500.0 * RPM, flywheel=FlywheelRequest("main", 0.01))
     found = balance(engine, asked).flywheel
     assert found is not None
     assert found.present == pytest.approx(0.0332636676, rel=1e-6)
@@ -101,7 +101,7 @@ def test_the_engine_runs_as_a_run_has_it() -> None:
 )
 def test_loads_that_the_angle_does_not_tell_are_refused(law: str, why: str) -> None:
     with pytest.raises(SolveError, match=why):
-        balance_of(SHAFT.replace("LAW", law), rate=20.0, flywheel=AskedWheel("shaft", 0.01))
+        balance_of(SHAFT.replace("LAW", law), rate=20.0, flywheel=FlywheelRequest("shaft", 0.01))
 
 
 @pytest.mark.parametrize("width", [0.3, 0.003, 1e-4, 1e-8])
@@ -109,7 +109,7 @@ def test_a_punch_counts_in_full_however_short(width: float) -> None:
     """300 J a turn from 1 rad on: ΔE = 300 (1 - b/2π), the mean -300/2π; order k is 300/π sin(kb/2)/(kb/2)."""
     law = f"-{300.0 / width!r} if shaft.angle > 1 and shaft.angle < {1.0 + width!r} else 0"
     told = balance_of(
-        SHAFT.replace("LAW", law), rate=200.0 * RPM, flywheel=AskedWheel("", 0.01), orders=(1.0, 30.0, 5000.0)
+        SHAFT.replace("LAW", law), rate=200.0 * RPM, flywheel=FlywheelRequest("", 0.01), orders=(1.0, 30.0, 5000.0)
     )
     own = told.flywheel
     assert own is not None
@@ -180,5 +180,5 @@ def test_a_load_that_takes_longer_than_the_cycle_is_told(load: str, turns: int, 
 def test_what_a_counterweight_costs_under_a_load_in_time(law: str, back: bool) -> None:
     """The loads of joints are those of one cycle: of another law in time the next one has others."""
     scene = GEARED.replace("LOAD", f'{{type: torque, joint: sb, value: "{law}"}}')
-    told = balance_of(scene, weights=(AskedWeight("a", "o", 0.03),))
+    told = balance_of(scene, weights=(WeightRequest("a", "o", 0.03),))
     assert any(note.startswith("forces.tool is not after a turn") for note in told.notes) != back

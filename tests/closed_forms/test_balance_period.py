@@ -59,7 +59,7 @@ def test_two_shafts_and_an_oscillator() -> None:
     once, twice = orders(found, "moment")
     assert once == pytest.approx(-2.0 * shaken, rel=1e-7)
     assert twice == pytest.approx(240.0 * np.exp(0.3j) / 1j, rel=1e-7)
-    assert found.period is not None and found.period.off < 1e-8 and "torque" not in found.orders
+    assert found.period is not None and found.period.relative_difference < 1e-8 and "torque" not in found.orders
     rms = math.sqrt((abs(first) ** 2 + 80.0**2) / 2 + 240.0**2)
     assert found.residual["force"].rms == pytest.approx(rms, rel=1e-7)
 
@@ -141,4 +141,4 @@ def test_jumps_are_met_and_not_aliased(duty: float, duration: float) -> None:
             assert abs(math.sin(phase)) < 1e-6 / row.amplitude[0] + 1e-9
     assert abs(found.mean["force"][0]) <= found.mean_error["force"] < 1e-7
     assert found.residual["force"].peak == pytest.approx(100.0 * max(duty, 1.0 - duty), rel=1e-9)
-    assert found.period is not None and found.period.off < 1e-9
+    assert found.period is not None and found.period.relative_difference < 1e-9

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.analyses.balancing.asked import BalanceOptions, WeightRequest
 from heuncli.analyses.balancing.results import BalanceResults, Counterbalance
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
@@ -25,20 +25,20 @@ def weights(found: BalanceResults) -> Counterbalance:
 
 
 def crank_weight(scene: dict[str, Any], **asked: Any) -> Counterbalance:
-    return weights(balance_of(scene, weights=(AskedWeight("crank", "main", None),), **asked))
+    return weights(balance_of(scene, weights=(WeightRequest("crank", "main", None),), **asked))
 
 
 def test_half_of_what_goes_to_and_fro_and_all_that_turns() -> None:
     """The slider-crank: 0.9 r turns, 1.9 r goes to and fro, of which half is taken."""
-    asked = BalanceOptions(weights=(AskedWeight("crank", "main", None),))
+    asked = BalanceOptions(weights=(WeightRequest("crank", "main", None),))
     found = weights(balance(load(str(SPECS / "slider_crank.yaml"), checking=False), asked))
     [one] = found.weights
     assert one.product == pytest.approx(0.185, rel=DIGITS) and abs(one.angle) == pytest.approx(math.pi, rel=DIGITS)
     assert one.mass == pytest.approx(1.85, rel=DIGITS) and one.radius == 0.1
-    assert found.before["force"].rms == pytest.approx(2130.181965585094, rel=DIGITS)
-    assert found.after["force"].rms == pytest.approx(1056.018563522430, rel=DIGITS)
+    assert found.loads_without["force"].rms == pytest.approx(2130.181965585094, rel=DIGITS)
+    assert found.loads_with["force"].rms == pytest.approx(1056.018563522430, rel=DIGITS)
     left = found.orders["force"][0]
-    assert left.with_turn == 0.0 and left.against == pytest.approx(950.0, rel=DIGITS)
+    assert left.with_turn == 0.0 and left.against_turn == pytest.approx(950.0, rel=DIGITS)
 
 
 @pytest.mark.parametrize("ratio", [0.2, 0.25, 0.3])
@@ -49,7 +49,7 @@ def test_a_single_cylinder_takes_half_whatever_its_rod(ratio: float) -> None:
     assert one.product == pytest.approx(0.5 * 2.0 * 0.05, rel=1e-11) and abs(one.angle) == pytest.approx(math.pi)
     if ratio == 0.25:
         scale = 2.0 * 0.05 * (2000.0 * RPM) ** 2
-        before, after = found.before["force"], found.after["force"]
+        before, after = found.loads_without["force"], found.loads_with["force"]
         assert before.rms is not None and after.rms is not None and after.peak is not None and before.peak is not None
         assert before.rms / scale == pytest.approx(0.7295702578, abs=1e-10)
         assert after.rms / scale == pytest.approx(0.5312934793, abs=1e-10)
@@ -77,15 +77,15 @@ def berkof_lowen(scene: dict[str, Any]) -> tuple[complex, complex]:
 @pytest.mark.parametrize("seed", range(4))
 def test_any_four_bar_is_balanced_in_force_by_two(seed: int) -> None:
     scene = four_bar(np.random.default_rng(seed))
-    asked = AskedWeight("crank", "A", None), AskedWeight("rocker", "D", None)
+    asked = WeightRequest("crank", "A", None), WeightRequest("rocker", "D", None)
     found = balance_of(scene, weights=asked)
     own = weights(found)
     for weight, wanted in zip(own.weights, berkof_lowen(scene), strict=True):
         assert complex(*weight.vector[:2]) == pytest.approx(wanted, rel=1e-11)
-    before, after = own.before["force"].rms, own.after["force"].rms
+    before, after = own.loads_without["force"].rms, own.loads_with["force"].rms
     assert before is not None and after is not None and after < 1e-11 * before
     assert all(row.verdict != "remains" for row in own.orders["force"])
-    assert own.after["moment"].rms != pytest.approx(own.before["moment"].rms, rel=1e-3)  # the price is told
+    assert own.loads_with["moment"].rms != pytest.approx(own.loads_without["moment"].rms, rel=1e-3)  # the price is told
 
 
 ROTOR = """\
@@ -110,10 +110,10 @@ def test_two_planes_of_a_rotor() -> None:
     """Unbalances of .010, .020 and .015 kg m at 0, 120 and 210 degrees in three planes, taken up in two others."""
     at = {f"{letter}{k}": 0.05 * f(math.radians(angle)) for k, angle in ((2, 120.0), (3, 210.0))
           for letter, f in (("x", math.cos), ("y", math.sin))}  # fmt: skip
-    places = AskedWeight("rotor", "one", 0.05), AskedWeight("rotor", "two", 0.05)
+    places = WeightRequest("rotor", "one", 0.05), WeightRequest("rotor", "two", 0.05)
     found = balance_of(ROTOR.format(**at), weights=places)
     own = weights(found)
-    assert own.minimised == "mix" and not own.several
+    assert own.objective == "mix" and not own.several
     for weight, product, angle in zip(
         own.weights, (0.007492003169567319, 0.01626233208448715), (-113.61379224224, -10.47227852417), strict=True
     ):
@@ -123,7 +123,7 @@ def test_two_planes_of_a_rotor() -> None:
     assert found.residual["force"].rms == pytest.approx(0.01628472839394837 * 100.0, rel=1e-12)
     assert found.residual["moment"].rms == pytest.approx(0.00805426328405709 * 100.0, rel=1e-12)
     for name in ("force", "moment"):
-        after = own.after[name].rms
+        after = own.loads_with[name].rms
         assert after is not None and after < 1e-13 * 100.0
     same = weights(balance_of(ROTOR.format(**at), weights=places, minimise="force"))
     assert same.several  # of the force alone the planes serve as well as each other

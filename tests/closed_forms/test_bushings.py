@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
-from heuncli.scene.shapes.rotations import hat
+from heuncli.scene.shapes.rotations import cross_matrix
 from tests.oracle.values import to_yaml
 from tests.shared.scenes import near, solved
 
@@ -82,7 +82,7 @@ def stiffness() -> np.ndarray[Any, Any]:
         angle = 0.6 * np.sign(at[1])
         c, s = np.cos(angle), np.sin(angle)
         T = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
-        G = np.hstack([np.eye(3), -hat(np.array(at) - CENTER)])  # d = shift + turn x arm
+        G = np.hstack([np.eye(3), -cross_matrix(np.array(at) - CENTER)])  # d = shift + turn x arm
         K += G.T @ T @ np.diag([2e4, 3e4, 9e4]) @ T.T @ G
         K[3:, 3:] += T @ np.diag([30.0, 50.0, 80.0]) @ T.T
     return K
@@ -90,7 +90,7 @@ def stiffness() -> np.ndarray[Any, Any]:
 
 def test_an_engine_on_four_bushings() -> None:
     """Six rigid-body modes, as of the 6 x 6 by hand; with weight on it those about the pose that rests lie beside."""
-    told = modes(load("scene.yaml", to_yaml(engine())))
+    told = compute_spec_modes(load("scene.yaml", to_yaml(engine())))
     M = np.zeros((6, 6))
     M[:3, :3], M[3:, 3:] = MASS * np.eye(3), INERTIA
     wanted = np.sqrt(np.linalg.eigvals(np.linalg.solve(M, stiffness())).real)

@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.analyses.balancing.study import balance
 from heuncli.base.errors import SolveError
-from heuncli.multibody.tree.cam_flanks import flank_of
+from heuncli.multibody.tree.cam_flanks import make_flank
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
@@ -62,7 +62,7 @@ def test_a_roller_is_a_slider_crank() -> None:
 def test_the_flank_of_an_eccentric_disc_is_a_circle(rise: type, contact: str) -> None:
     """All of its places are R from its centre, and it curves so."""
     scene = study(eccentric(lift(rise, 180), contact)).setup.scene
-    own = flank_of(scene.layout, scene.mechanism.couplings[0])
+    own = make_flank(scene.layout, scene.mechanism.couplings[0])
     off = own.places - np.array([E, 0.0, 0.0])
     near(np.sqrt(np.sum(off * off, axis=1)), R, R, 1e-6)
     near(own.radius, R, R, 1e-3)
@@ -95,7 +95,7 @@ def test_a_lobe_narrower_than_its_roller() -> None:
     with pytest.raises(SolveError, match="touches at another angle"):
         solved(text)
     scene = study(text.replace("0.012", "0.008")).setup.scene
-    assert flank_of(scene.layout, scene.mechanism.couplings[0]).radius.min() > 0.004
+    assert make_flank(scene.layout, scene.mechanism.couplings[0]).radius.min() > 0.004
 
 
 def test_a_path_that_turns_back_about_the_axis() -> None:

@@ -13,11 +13,11 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 from heuncli.analyses.charting import runs as chart_runs
-from heuncli.analyses.charting.motion import motion_of
+from heuncli.analyses.charting.motion import make_motion
 from heuncli.analyses.charting.plan import ChartOptions
-from heuncli.analyses.charting.reference import refer
-from heuncli.analyses.charting.results import ChartedRun, ChartResults, ChartRow
-from heuncli.analyses.charting.runs import ChartRuns
+from heuncli.analyses.charting.reference import find_reference
+from heuncli.analyses.charting.results import ChartResults, ChartRow, ChartRun
+from heuncli.analyses.charting.runs import ChartRunner
 from heuncli.analyses.charting.study import chart
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.methods.dop853 import DOP853
@@ -71,13 +71,13 @@ def pendulum() -> ChartResults:
 
 def test_the_errors_of_a_pendulum_are_those_of_the_closed_form(pendulum: ChartResults) -> None:
     """The tip's distance from where it should be, and the pivot's force."""
-    motion = motion_of(load("pendulum.yaml", PENDULUM), None)
+    motion = make_motion(load("pendulum.yaml", PENDULUM), None)
     angle, rate = swing(motion.times)
     wanted = pivot_force(angle, rate)
     size = motion.setup.scene.layout.size
     for run, tolerance in zip(pendulum.runs, TOLERANCES, strict=True):
-        own = motion.setup.runner.trajectory(MotionTask(motion.times, tolerance, method=DOP853))
-        answers = motion.setup.runner.recovered(motion.times, own.states)
+        own = motion.setup.runner.run(MotionTask(motion.times, tolerance, method=DOP853))
+        answers = motion.setup.runner.evaluate(motion.times, own.states)
         off = np.abs(answers.freedoms["q"][:, 0] - angle)
         tip = float(np.max(2.0 * np.sin(off / 2.0))) / size
         assert run.error["motion"] == pytest.approx(max(tip, off.max() / np.abs(angle).max()), rel=1e-3, abs=3e-13)
@@ -95,11 +95,11 @@ def test_sections_stand_where_there_are_some(pendulum: ChartResults) -> None:
 @pytest.mark.parametrize("name", ["double", "top", "chain10", "crank"])
 def test_a_reference_is_as_good_as_it_says(name: str) -> None:
     """The end states of the benchmark scenes are known in quadruple precision, to 1e-13 m."""
-    motion = motion_of(load(str(SCENES / f"{name}.yaml")), None)
-    found = refer(motion)
-    scene, run = motion.setup.scene, found.judge.reference
-    bodies = motion.setup.runner.recovered(run.times[-1:], run.states[-1:]).bodies[0]
-    own = found.reference.own["motion"]
+    motion = make_motion(load(str(SCENES / f"{name}.yaml")), None)
+    found = find_reference(motion)
+    scene, run = motion.setup.scene, found.comparison.reference
+    bodies = motion.setup.runner.evaluate(run.times[-1:], run.states[-1:]).bodies[0]
+    own = found.reference.error["motion"]
     assert own is not None and own < 1e-9
     for i, body in enumerate(scene.mechanism.bodies):
         k = scene.layout.place[i]
@@ -162,60 +162,62 @@ analysis: {duration: 20, samples: 401}
     found = chart(load("chaotic.yaml", scene), ChartOptions(("DOP853",), (1e-6, 1e-12)))
     reference = found.reference
     assert reference.horizon is not None and 12.0 < reference.horizon < 18.0
-    assert 0.4 * reference.horizon < reference.until < reference.horizon and (reference.own["motion"] or 1) <= 1e-8
+    assert (
+        0.4 * reference.horizon < reference.last_time < reference.horizon and (reference.error["motion"] or 1) <= 1e-8
+    )
     assert "nobody can compare" in reference.notes[0]
     coarse, fine = (run.error["motion"] or 0.0 for run in found.runs)
     assert coarse > 1e-3 > fine
 
 
-def row(found: ChartResults, local: float) -> ChartedRun:
+def row(found: ChartResults, local: float) -> ChartRun:
     return next(run for run in found.runs if run.row.local == local)
 
 
 def test_a_row_that_would_take_too_long_is_not_run() -> None:
-    motion = motion_of(load("pendulum.yaml", PENDULUM), None)
-    charting = ChartRuns(motion, refer(motion), lambda done, of, what: None)
+    motion = make_motion(load("pendulum.yaml", PENDULUM), None)
+    charting = ChartRunner(motion, find_reference(motion), lambda done, of, what: None)
     found = charting.one(ChartRow("DOP853", "quaternion", True, 1e-9))
-    assert isinstance(found, ChartedRun) and found.status == "not run" and found.code == "too-long"
+    assert isinstance(found, ChartRun) and found.status == "not run" and found.code == "too-long"
     assert found.reason.startswith("about 4e9 steps") and found.seconds is not None and found.seconds > 1.0
 
 
-def charting_of(text: str) -> ChartRuns:
-    motion = motion_of(load("scene.yaml", text), None)
-    return ChartRuns(motion, refer(motion), lambda done, of, what: None)
+def charting_of(text: str) -> ChartRunner:
+    motion = make_motion(load("scene.yaml", text), None)
+    return ChartRunner(motion, find_reference(motion), lambda done, of, what: None)
 
 
 def test_what_a_coarser_tolerance_did_not_finish_is_not_run_at_a_finer_one() -> None:
     charting = charting_of(PENDULUM)
     charting.limit = -1.0
     first, second = (charting.one(ChartRow("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
-    assert isinstance(first, ChartedRun) and first.code == "unfinished"
-    assert isinstance(second, ChartedRun) and second.code == "too-long" and "0.0001 was not finished" in second.reason
+    assert isinstance(first, ChartRun) and first.code == "unfinished"
+    assert isinstance(second, ChartRun) and second.code == "too-long" and "0.0001 was not finished" in second.reason
 
 
 def test_a_run_may_take_its_time_where_the_machine_does_other_work(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a limit of 40 ms on the clock 80 ms are slept away: no part of it, so that the run is done once more."""
     charting = charting_of(PENDULUM)
-    run, slept = ChartRuns.run, []
+    run, slept = ChartRunner.run, []
 
-    def interrupted(self: ChartRuns, row: ChartRow, runs: Runs) -> Trajectory:
+    def interrupted(self: ChartRunner, row: ChartRow, runs: Runs) -> Trajectory:
         if not slept:
             time.sleep(0.08)
             slept.append(row)
         return run(self, row, runs)
 
-    monkeypatch.setattr(ChartRuns, "run", interrupted)
+    monkeypatch.setattr(ChartRunner, "run", interrupted)
     charting.limit = 0.04
     found = charting.one(ChartRow("DOP853", "quaternion", False, 1e-6))
-    assert slept and not isinstance(found, ChartedRun) and found.charted.status == "completed"
+    assert slept and not isinstance(found, ChartRun) and found.chart_run.status == "completed"
 
 
 def test_no_import_is_in_the_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """What SciPy takes to load, half a second, would else be all of the first row's time."""
     done: list[str] = []
     monkeypatch.setattr(chart_runs, "import_module", lambda name: done.append(name))
-    run = ChartRuns.run
-    monkeypatch.setattr(ChartRuns, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
+    run = ChartRunner.run
+    monkeypatch.setattr(ChartRunner, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
     charting_of(PENDULUM).one(ChartRow("SciPy-BDF", "quaternion", False, 1e-3))
     assert done[:2] == ["scipy.integrate", "run"]
 

@@ -11,8 +11,8 @@ import pytest
 from scipy.special import ellipk, ellipkinc
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.check.changes import Changes
-from heuncli.motion.integration.conditions import Conditions, coordinates_at
+from heuncli.motion.integration.check.changes import ConditionChanges
+from heuncli.motion.integration.conditions import Conditions, evaluate_coordinates
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
@@ -54,10 +54,10 @@ def run(scene: str, analysis: str, more: str = "", **options: Any) -> Study:
     return solve(load("x.yaml", text=f"{scene}analysis: {{{analysis}}}\n{more}"), Options(**options))
 
 
-def met(found: Changes, times: Array, up: bool) -> None:
+def met(found: ConditionChanges, times: Array, up: bool) -> None:
     """The instants, alternately up and down, within their error and to 1e-12 of the run."""
     assert len(found.times) == len(times)
-    assert found.to.tolist() == [up == (k % 2 == 0) for k in range(len(times))]
+    assert found.values.tolist() == [up == (k % 2 == 0) for k in range(len(times))]
     off = np.abs(found.times - times)
     assert (off <= found.error + 4 * math.ulp(float(times[-1]))).all()
     assert off.max() <= 1e-11 * float(times[-1])
@@ -138,7 +138,7 @@ def test_a_ladder_leaves_the_wall_at_two_thirds_of_its_height() -> None:
         near(z[-1], z[0] * 2 / 3, float(z[0]), 1e-9)
         t = study.results.time[-1]
         assert abs(whole.changes["off"].times[0] - t) <= whole.changes["off"].error[0]
-        assert study.changes["until"].to.tolist() == [True]
+        assert study.changes["until"].values.tolist() == [True]
         assert (study.results.joints["wall"]["force"][:-1, 0] > 0).all()
         near(study.results.joints["wall"]["force"][-1, 0], 0.0, 98.1, 1e-8)
 
@@ -168,7 +168,7 @@ def test_a_followed_machine_ends_where_its_crank_is() -> None:
     scene = FALL.replace("initial: {travel: 0, speed: 0}", "")
     more = 'drives: {motor: {joint: guide, travel: "0.5 - 0.5*cos(3*t)"}}\n'
     study = run(scene, 'duration: 3, samples: 4, until: "guide.speed < 0", events: {half: "guide.travel > 0.5"}', more)
-    assert study.history.followed_for is not None
+    assert study.history.followed_duration is not None
     met(study.changes["half"], np.array([math.pi / 6]), up=True)
     assert study.changes["half"].begins is False
     near(study.results.time[-1], math.pi / 3, 3.0, 1e-13)
@@ -333,15 +333,15 @@ def test_conditions_at_random_against_dense_samples(seed: int) -> None:
     texts = [random_condition(random) for _ in range(4)]
     events = ", ".join(f'e{k}: "{text}"' for k, text in enumerate(texts))
     study = run(RANDOM, f"duration: 3, samples: 2, events: {{{events}}}")
-    runner, trajectory = study.setup.runner, study.history.checked.run  # type: ignore[union-attr]
+    runner, trajectory = study.setup.runner, study.history.checked_run.run  # type: ignore[union-attr]
     times = np.linspace(0, 3, 3001)[1:-1]
     conditions = Conditions(runner.layout)
-    coordinates = coordinates_at(runner, times, runner.resample(trajectory, times))
+    coordinates = evaluate_coordinates(runner, times, runner.resample(trajectory, times))
     for k in range(len(texts)):
         found = study.changes[f"e{k}"]
         own = np.array([
-            conditions.free(k, t, 0.0, there) for t, there in zip(times.tolist(), coordinates, strict=True)
+            conditions.evaluate_free(k, t, 0.0, there) for t, there in zip(times.tolist(), coordinates, strict=True)
         ])  # fmt: skip
-        states = np.concatenate([[found.begins], found.to])
+        states = np.concatenate([[found.begins], found.values])
         assert (states[np.searchsorted(found.times, times)] == (own > 0.5)).all(), texts[k]
         assert (found.error < 1e-6).all()

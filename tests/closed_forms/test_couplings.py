@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError, SpecError
-from heuncli.output.tables.heading import heading
+from heuncli.output.tables.heading import make_heading
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.gear_trains import STATE, pair, pin, wheel
@@ -204,7 +204,7 @@ def test_ratio_with_a_constant_moves_what_nothing_holds() -> None:
     with pytest.raises(SolveError) as refused:
         solved(scene)
     (problem,) = refused.value.problems
-    assert problem.code == "does-not-fit" and problem.about == "couplings.r" and "3 rad" in problem.message
+    assert problem.code == "does-not-fit" and problem.entry_path == "couplings.r" and "3 rad" in problem.message
 
 
 def test_ratio_of_an_angle_and_a_travel() -> None:
@@ -274,7 +274,7 @@ def test_modes_of_geared_shafts() -> None:
     scene = pair(teeth=[20, 60])
     scene["joints"]["p"].pop("initial")
     scene["forces"] = {"spring": {"type": "turn_spring", "joint": "w", "stiffness": 50}}
-    (mode,) = modes(load("scene.yaml", to_yaml(scene))).modes
+    (mode,) = compute_spec_modes(load("scene.yaml", to_yaml(scene))).modes
     wanted = math.sqrt(50 / (0.2 + 9 * 0.02))
     assert mode.eigenvalue.imag == pytest.approx(wanted, rel=1e-9)
 
@@ -287,7 +287,7 @@ def test_drives_that_fight_are_refused() -> None:
     with pytest.raises(SolveError) as refused:
         solved(scene)
     (problem,) = refused.value.problems
-    assert problem.code == "rates-do-not-fit" and problem.about == "couplings.mesh"
+    assert problem.code == "rates-do-not-fit" and problem.entry_path == "couplings.mesh"
 
 
 @pytest.mark.parametrize(
@@ -323,7 +323,7 @@ def test_drives_that_part_over_a_coupling_are_named(kind: str, other: str, since
     with pytest.raises(SolveError) as refused:
         solved(scene)
     (problem,) = refused.value.problems
-    assert problem.code == "rates-do-not-fit" and problem.about == "couplings.mesh" and problem.hint
+    assert problem.code == "rates-do-not-fit" and problem.entry_path == "couplings.mesh" and problem.hint
     assert "drives one and two" in problem.message and f"t = {since:g} s" in problem.message
 
 
@@ -396,7 +396,7 @@ def test_a_frame_that_has_to_turn_is_told() -> None:
     near(found.bodies["frame"]["angular_velocity"][0], (0, 0, 11 / 3), 5.0, ROUNDING)
     (sentence,) = found.model["started"]
     assert sentence.startswith("the couplings set in motion frame (3.667 rad/s")
-    assert ("start", sentence) in heading(found)
+    assert ("start", sentence) in make_heading(found)
 
 
 def test_what_moves_though_it_could_have_stayed_is_told() -> None:

@@ -14,9 +14,9 @@ import pytest
 
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.results.results import Array
-from heuncli.scene.expressions.beside import tightest
-from heuncli.scene.expressions.curves import fit
-from heuncli.scene.expressions.paths import cusp, path_beside, path_of
+from heuncli.scene.expressions.beside import find_max_curvature
+from heuncli.scene.expressions.curves import interpolate_points
+from heuncli.scene.expressions.paths import find_cusp, make_path, make_roller_path
 from tests.shared.cams import table
 from tests.shared.scenes import near, solved
 
@@ -341,15 +341,17 @@ def test_what_no_roller_follows(keys: str, message: str | None) -> None:
 def test_the_bounds_of_a_roller_beside_a_path() -> None:
     """How far and how fast its centre gets is never more than is told, nor much less; the tightest place is found."""
     s = np.linspace(0.0, 6.0, 11)
-    path = path_of([fit("t", s.tolist(), f(s).tolist(), "cubic", None, None) for f in (np.array, np.cos)] + [0.2])
+    path = make_path(
+        [interpolate_points("t", s.tolist(), f(s).tolist(), "cubic", None, None) for f in (np.array, np.cos)] + [0.2]
+    )
     close = np.linspace(0.0, 6.0, 20001)
     for normal in ((0.0, 0.0, 2.0), (0.0, 0.0, -1.0)):
-        roller = path_beside(path, 0.4, normal)
-        for found, most in zip(roller.at(close), roller.greatest, strict=True):
+        roller = make_roller_path(path, 0.4, normal)
+        for found, most in zip(roller.evaluate(close), roller.bounds, strict=True):
             assert np.sqrt(np.sum(found * found, axis=1)).max() * 1.5 <= most * 1.5 <= 6.0 * np.abs(found).max()
-        _, slope, bend, _ = roller.track(close)
+        _, slope, bend, _ = roller.evaluate_track(close)
         shares = 0.4 * (np.cross(slope, bend) @ roller.normal) / np.sum(slope * slope, axis=1) ** 1.5
-        where, share = tightest(roller)
+        where, share = find_max_curvature(roller)
         assert shares.max() <= share + 1e-12 <= shares.max() + 1e-6
         assert where == pytest.approx(close[np.argmax(shares)], abs=1e-3)
 
@@ -391,15 +393,15 @@ SHAPES: tuple[Callable[[Array], Array], ...] = (np.cos, np.sin, lambda s: 0.2 * 
 def test_the_nearest_place() -> None:
     """Of points beside a helix, about its axis and beyond its ends; and of one between two turns that lie close."""
     s = np.linspace(0.0, 12.0, 241)
-    path = path_of([fit("t", s.tolist(), f(s).tolist(), "cubic", None, None) for f in SHAPES])
+    path = make_path([interpolate_points("t", s.tolist(), f(s).tolist(), "cubic", None, None) for f in SHAPES])
     at = np.array([0.3, 3.0, 7.123, 11.9])
-    r, slope, _ = path.at(at)
+    r, slope, _ = path.evaluate(at)
     across = np.cross(slope, [0.3, -0.2, 1.0])
-    near(path.nearest(r + 0.05 * across), at, 12.0, 1e-9)
-    near(path.nearest(r), at, 12.0, 1e-12)
-    near(path.nearest(np.array([[3.0, 0.0, -9.0]])), 0.0, 12.0, 1e-12)
-    assert cusp(path) is None
-    bound = path.greatest
+    near(path.find_nearest(r + 0.05 * across), at, 12.0, 1e-9)
+    near(path.find_nearest(r), at, 12.0, 1e-12)
+    near(path.find_nearest(np.array([[3.0, 0.0, -9.0]])), 0.0, 12.0, 1e-12)
+    assert find_cusp(path) is None
+    bound = path.bounds
     close = np.linspace(0.0, 12.0, 5000)
-    for found, most in zip(path.at(close), bound, strict=True):
+    for found, most in zip(path.evaluate(close), bound, strict=True):
         assert np.sqrt(np.sum(found * found, axis=1)).max() <= most * (1.0 + 1e-14)

@@ -7,14 +7,14 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.shapes.forms import Form, form
+from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
 from tests.shared.solids import SOLIDS, axis_of, beyond, difference, planes, unit
 
 X, Y, Z = np.eye(3)
 BEFORE, BEYOND, OPEN = 1.0, -1.0, 0.0
 
 
-def one(f: Form, n: Array, d: float, side: float = OPEN) -> tuple[float, Array, int]:
+def one(f: CompositeSolid, n: Array, d: float, side: float = OPEN) -> tuple[float, Array, int]:
     found = f.cross_sections(n, np.array([d]), np.array([side]))
     return float(found.area[0]), found.centroid[0], int(found.regions[0])
 
@@ -22,7 +22,7 @@ def one(f: Form, n: Array, d: float, side: float = OPEN) -> tuple[float, Array, 
 @pytest.mark.parametrize("name", [name for name in SOLIDS if name != "rod"])
 def test_area_is_how_fast_the_piece_shrinks(name: str) -> None:
     """dm/dd = -density area, d(m x)/dd = -density area centroid; differences over 1e-4 of the body's extent."""
-    f = form([SOLIDS[name]])
+    f = make_composite_solid([SOLIDS[name]])
     for n, d in planes(SOLIDS[name], np.random.default_rng(21), 15)[::3]:
         low, high = f.extent(n)
         d = d[(d > low + 0.02 * (high - low)) & (d < high - 0.02 * (high - low))]
@@ -35,7 +35,9 @@ def test_area_is_how_fast_the_piece_shrinks(name: str) -> None:
 
 
 def test_ellipse() -> None:
-    f = form([Shape("cylinder", from_=(0, 0, -1), to=(0, 0, 1), radius=0.3, inner_radius=0.1, density=1.0)])
+    f = make_composite_solid(
+        [Shape("cylinder", from_=(0, 0, -1), to=(0, 0, 1), radius=0.3, inner_radius=0.1, density=1.0)]
+    )
     n = unit(np.array([0.6, 0.2, 1.0]))
     area, centroid, places = one(f, n, 0.1)
     assert np.isclose(area, np.pi * 0.08 / n[2], rtol=1e-13)
@@ -44,7 +46,7 @@ def test_ellipse() -> None:
 
 
 def test_rectangle_along_a_cylinder() -> None:
-    f = form([Shape("cylinder", from_=(0, 0, -1), to=(0, 0, 3), radius=0.5, density=1.0)])
+    f = make_composite_solid([Shape("cylinder", from_=(0, 0, -1), to=(0, 0, 3), radius=0.5, density=1.0)])
     area, centroid, places = one(f, X, 0.3)
     assert np.isclose(area, 4 * 0.8, rtol=1e-13)
     assert np.allclose(centroid, [0.3, 0, 1], atol=1e-12)
@@ -64,7 +66,9 @@ def test_rectangle_along_a_cylinder() -> None:
     ],
 )
 def test_places_of_a_tube(normal: Array, offset: float, places: int) -> None:
-    f = form([Shape("cylinder", from_=(0, 0, -1), to=(0, 0, 1), radius=0.3, inner_radius=0.2, density=1.0)])
+    f = make_composite_solid(
+        [Shape("cylinder", from_=(0, 0, -1), to=(0, 0, 1), radius=0.3, inner_radius=0.2, density=1.0)]
+    )
     assert one(f, normal, offset)[2] == places
 
 
@@ -99,13 +103,13 @@ def ring(center: tuple[float, float], radius: float, bore: float | None = None) 
 )  # fmt: skip
 def test_places_of_several_shapes(shapes: list[Shape], places: int) -> None:
     for order in (shapes, shapes[::-1]):
-        assert one(form(order), Z, 0.5)[2] == places
+        assert one(make_composite_solid(order), Z, 0.5)[2] == places
 
 
 def test_places_cut_by_cut() -> None:
     """A fork with its stem: one place below, two above."""
     tines = [Shape("box", center=(x, 0, 1.5), size=(0.2, 0.2, 1), density=1.0) for x in (-1, 1)]
-    f = form([*tines, Shape("box", center=(0, 0, 0.5), size=(2.2, 0.2, 1), density=1.0)])
+    f = make_composite_solid([*tines, Shape("box", center=(0, 0, 0.5), size=(2.2, 0.2, 1), density=1.0)])
     found = f.cross_sections(Z, np.array([-0.5, 0.5, 1.5, 2.5]), np.zeros(4))
     assert found.regions.tolist() == [0, 1, 2, 0]
     assert np.allclose(found.area[1:3], [0.44, 0.08])
@@ -115,7 +119,7 @@ def test_places_cut_by_cut() -> None:
 
 def test_end_faces_and_shoulders_are_limits() -> None:
     """A stepped shaft: radius 2 up to z = 1, then 1 up to z = 3."""
-    f = form(
+    f = make_composite_solid(
         [
             Shape("cylinder", from_=(0, 0, 0), to=(0, 0, 1), radius=2.0, density=1.0),
             Shape("cylinder", from_=(0, 0, 1), to=(0, 0, 3), radius=1.0, density=1.0),
@@ -136,7 +140,7 @@ def test_end_faces_and_shoulders_are_limits() -> None:
 
 @pytest.mark.parametrize("name", ["sphere", "cone", "turned box", "tube"])
 def test_at_a_tip_the_centroid_is_the_tip(name: str) -> None:
-    f = form([SOLIDS[name]])
+    f = make_composite_solid([SOLIDS[name]])
     n = unit(np.array([0.3, 0.5, -0.7]))
     low, high = f.extent(n)
     for tip, side in ((low, BEYOND), (high, BEFORE)):
@@ -147,7 +151,7 @@ def test_at_a_tip_the_centroid_is_the_tip(name: str) -> None:
 
 
 def test_rods_only() -> None:
-    f = form(
+    f = make_composite_solid(
         [
             Shape("rod", from_=(0, 0, 0), to=(2, 0, 2), line_density=1.0),
             Shape("rod", from_=(0, 0, 0), to=(0, 0, 2), line_density=5.0),
@@ -159,36 +163,38 @@ def test_rods_only() -> None:
 
 
 def test_a_point_in_the_plane_needs_a_side() -> None:
-    f = form([Shape("point", at=(0, 0, 0.8), mass=2.0), Shape("rod", from_=(0, 0, 0), to=(0, 0, 2), line_density=1.0)])
+    f = make_composite_solid(
+        [Shape("point", at=(0, 0, 0.8), mass=2.0), Shape("rod", from_=(0, 0, 0), to=(0, 0, 2), line_density=1.0)]
+    )
     d = np.array([0.8, 0.8 + 1e-13, 0.8 - 1e-13, 0.8001])
-    assert f.masses_in_plane(Z, d).tolist() == [True, True, True, False]
-    assert not f.rods_in_plane(Z, d).any()
-    rod = f.parts[1].whole()[3, 3] - d / 1.0
+    assert f.has_mass_in_plane(Z, d).tolist() == [True, True, True, False]
+    assert not f.has_rod_in_plane(Z, d).any()
+    rod = f.parts[1].whole_inertia()[3, 3] - d / 1.0
     for n, offsets, beyond_mass in ((Z, d, rod), (-Z, -d, d)):
         for side, part in ((BEFORE, 2.0), (BEYOND, 0.0), (OPEN, 1.0)):
-            mass = f.pieces(n, offsets, np.full(4, side))[:, 3, 3]
+            mass = f.piece_inertias(n, offsets, np.full(4, side))[:, 3, 3]
             assert np.allclose(mass[:3], beyond_mass[:3] + part, atol=1e-12)
         assert np.allclose(mass[3], beyond_mass[3] + (0.0 if n is Z else 2.0), atol=1e-12)
 
 
 def test_a_rod_in_the_plane() -> None:
-    f = form(
+    f = make_composite_solid(
         [
             Shape("rod", from_=(0, 0, 1), to=(1, 1, 1), mass=3.0),
             Shape("sphere", center=(0, 0, 0), radius=0.5, mass=1.0),
         ]
     )
     d = np.array([1.0, 0.5])
-    assert f.rods_in_plane(Z, d).tolist() == [True, False]
-    assert not f.masses_in_plane(Z, d).any()
-    assert not f.rods_in_plane(X, d).any()
+    assert f.has_rod_in_plane(Z, d).tolist() == [True, False]
+    assert not f.has_mass_in_plane(Z, d).any()
+    assert not f.has_rod_in_plane(X, d).any()
     for side, mass in ((BEFORE, 3.0), (BEYOND, 0.0), (OPEN, 1.5)):
-        assert np.isclose(f.pieces(Z, d, np.full(2, side))[0, 3, 3], mass)
+        assert np.isclose(f.piece_inertias(Z, d, np.full(2, side))[0, 3, 3], mass)
 
 
 @pytest.mark.parametrize("side", [BEFORE, BEYOND, OPEN])
 def test_what_lies_in_the_plane_is_counted_once(side: float) -> None:
-    f = form(
+    f = make_composite_solid(
         [
             Shape("point", at=(0.1, 0.2, 0.3), mass=2.0),
             Shape("rod", from_=(1, 0, 0.3), to=(0, 1, 0.3), mass=3.0),
@@ -196,20 +202,20 @@ def test_what_lies_in_the_plane_is_counted_once(side: float) -> None:
         ]
     )
     d, sides = np.array([0.3]), np.array([side])
-    both = f.pieces(Z, d, sides)[0] + f.pieces(-Z, -d, -sides)[0]
-    assert difference(both, f.whole(), f.whole()) < 1e-15
+    both = f.piece_inertias(Z, d, sides)[0] + f.piece_inertias(-Z, -d, -sides)[0]
+    assert difference(both, f.whole_inertia(), f.whole_inertia()) < 1e-15
 
 
 def test_where_a_tolerance_reaches_grows_with_the_body() -> None:
     for size in (1e-3, 1.0, 1e3):
-        f = form([Shape("point", at=(0, 0, size), mass=1.0)])
+        f = make_composite_solid([Shape("point", at=(0, 0, size), mass=1.0)])
         d = size * np.array([1.0, 1.0 + 5e-13, 1.0 + 2e-12])
-        assert f.masses_in_plane(Z, d).tolist() == [True, True, False]
+        assert f.has_mass_in_plane(Z, d).tolist() == [True, True, False]
 
 
 def test_radius_is_at_the_start_and_to_radius_at_the_end() -> None:
     shape = SOLIDS["frustum"]
-    f, axis = form([shape]), axis_of(shape)
+    f, axis = make_composite_solid([shape]), axis_of(shape)
     ends = (shape.from_, BEYOND, 0.2), (shape.to, BEFORE, 0.7)
     for end, side, radius in ends:
         assert np.isclose(one(f, axis, float(axis @ np.array(end)), side)[0], np.pi * radius**2, rtol=1e-10)

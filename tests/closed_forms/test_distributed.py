@@ -55,7 +55,7 @@ def test_the_largest_moment_lies_between_the_cuts() -> None:
     words = "max sections.along.M2"
     text = beam(f"q: {load(0, 6, 0, 7.5)}, end: {{type: couple, on: beam.a, vector: [0, 0, 20]}}", SUPPORTED, count=2)
     x = np.sqrt(52 / 3)
-    told = measure.write(measure.parse_all([words]), study(text), "table")
+    told = measure.format_measures(measure.parse_measures([words]), study(text), "table")
     assert float(told) == pytest.approx(-5 * x**3 / 24 + 65 * x / 6 - 20, rel=1e-13)
 
 

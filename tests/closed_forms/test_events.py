@@ -13,7 +13,7 @@ import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from heuncli.results.results import Array
-from heuncli.study.ask.measure import peak
+from heuncli.study.ask.measure import find_peak
 from tests.shared.one_freedom import Law, One, Passage, around, follows, moved, passes
 from tests.shared.scenes import near, solved, study
 
@@ -220,12 +220,12 @@ drives: {motor: {joint: shaft, angle: "t + 1e-5*exp(-((t - 1)/0.001)**2)"}}
 analysis: {duration: 2, samples: 21}
 """)
     for path, inertia in (("coordinates.shaft.acceleration", 1.0), ("joints.shaft.drive", 2.0)):
-        (low, at, *_), (high, there, *_) = peak(run, path, "min"), peak(run, path, "max")
+        (low, at, *_), (high, there, *_) = find_peak(run, path, "min"), find_peak(run, path, "max")
         near(low, -20.0 * inertia, 20.0 * inertia, 1e-6)
         near(high, 40.0 * math.exp(-1.5) * inertia, 20.0 * inertia, 1e-6)
         near(at, 1.0, 1e-3, 1e-3)
         near(abs(there - 1.0), 1e-3 * math.sqrt(1.5), 1e-3, 1e-3)
-    low, *_ = peak(run, "coordinates.shaft.rate", "min")
+    low, *_ = find_peak(run, "coordinates.shaft.rate", "min")
     near(low, 1.0 - 1e-2 * math.sqrt(2) * math.exp(-0.5), 1.0, 1e-7)
 
 
@@ -385,7 +385,7 @@ def test_loads_are_told_beside_events() -> None:
     near(torque[at], -c * u[at], 40.0, 1e-8)
     near(torque[found.time < 0.49], 0.0, 40.0, 1e-15)
     assert found.run.results.accuracy["estimate"]["foundation"] < 1e-7
-    high, there, *_ = peak(found.run, "forces.stop.value", "max")
+    high, there, *_ = find_peak(found.run, "forces.stop.value", "max")
     near(high, 40.0, 40.0, 1e-8)
     near(there, 0.5, 1.5, 1e-9)
 
@@ -407,6 +407,6 @@ analysis: {times: [0, 1.7, 1.8, 3]}
     estimate = run.results.accuracy["estimate"]
     assert estimate["sections"] < 1e-7
     near(run.results.sections["middle"]["N"], [0.0, -3000.0, -3000.0, 0.0], 3000.0, 1e-9)
-    low, at, *_ = peak(run, "sections.middle.N", "min")
+    low, at, *_ = find_peak(run, "sections.middle.N", "min")
     near(low, -3000.0, 3000.0, 1e-9)
     assert 20 / 12 - 1e-9 <= at <= 20 / 12 + 0.18

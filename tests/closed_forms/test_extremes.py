@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from heuncli.output.snapshots import measure
-from heuncli.output.tables.page import page_of
+from heuncli.output.tables.page import make_page
 from heuncli.results.results_schema import REPORTS
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study
@@ -23,12 +23,14 @@ G = 9.81
 
 def in_table(run: Study, heading: str, label: str) -> list[str]:
     """The cells of a row of the tables with this heading."""
-    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
-    along = page.along if page.has_runs else None
-    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
-    found = run.extremes(searched, frozenset(REPORTS), whole=True)
+    page = make_page(run.results, make_labels(run.spec), run.magnitudes)
+    along = page.run_columns if page.has_runs else None
+    searched = ColumnSearch(page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), along)
+    found = run.search_extremes(searched, frozenset(REPORTS), whole=True)
     one = len(run.results.time) == 1
-    tables = page.instants(run.results, searched=found) if one else page.extremes(found)
+    tables = (
+        page.make_tables_at_instants(run.results, search_result=found) if one else page.make_tables_of_extremes(found)
+    )
     table = next(t for t in tables if t.heading.startswith(heading) and any(row[0] == label for row in t.rows))
     return list(next(row for row in table.rows if row[0] == label))
 
@@ -172,7 +174,7 @@ def test_open_in_part_is_open() -> None:
     """Beyond the last bearing the moment is certain, between the three it is not: nobody knows the largest."""
     run = shaft(5, middle=True)
     assert measured(run, "max abs sections.shaft.M1")["value"] is None
-    assert measure.write([measure.parse("max sections.shaft.moment")], run, "table") == "open\n"
+    assert measure.format_measures([measure.parse_measure("max sections.shaft.moment")], run, "table") == "open\n"
     assert in_table(run, "SECTION shaft", "M1")[2] == "open"
     assert measured(run, "max abs sections.shaft.N")["value"] == 0.0
     assert measured(run, "max abs sections.shaft.M1.3")["value"] > 0.0  # of a cut that is certain

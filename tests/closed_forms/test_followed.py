@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.base.errors import SolveError
 from heuncli.motion.integration.methods.dop853 import DOP853
-from heuncli.motion.integration.methods.followed import FOLLOWED
+from heuncli.motion.integration.methods.followed import DRIVE_DETERMINED
 from heuncli.results.results import Array, Results
 from tests.shared.gear_trains import pair
 from tests.shared.scenes import solved
@@ -67,7 +67,7 @@ def test_a_slider_crank_over_many_turns(times: Array) -> None:
     text = crank(3.0, '{joint: main, angle: "2*pi*t + 0.3"}', f"times: {times.tolist()}")
     found = solved(text)
     angle = 2.0 * np.pi * times + 0.3
-    assert found.model["method"] == FOLLOWED.name
+    assert found.model["method"] == DRIVE_DETERMINED.name
     assert np.abs(found.coordinates["guide"]["travel"] - slider_at(angle, 3.0)).max() < 2e-14
     rod = -np.arcsin(np.sin(angle) / 3.0)
     assert np.abs(np.sin(found.coordinates["small"]["angle"]) - np.sin(-rod)).max() < 2e-14
@@ -80,7 +80,7 @@ def test_a_rod_hardly_longer_than_the_crank(l: float) -> None:
     """The slider comes back just beside the shaft, where another branch lies as near: it is not taken."""
     times = np.linspace(0.0, 3.0, 7)
     found = solved(crank(l, '{joint: main, angle: "2*pi*t"}', f"times: {times.tolist()}"))
-    assert found.model["method"] == FOLLOWED.name
+    assert found.model["method"] == DRIVE_DETERMINED.name
     near = np.sqrt(2.0 * (l - 1.0))  # of the quarter turns: how near, and rounding over it
     assert np.abs(found.coordinates["guide"]["travel"] - slider_at(2.0 * np.pi * times, l)).max() < 1e-14 / near
 
@@ -108,7 +108,7 @@ def test_a_four_bar_stays_on_its_branch(up: bool) -> None:
         "analysis:", "report: [points, motion, joints]\nanalysis:"
     )
     found = solved(text)
-    assert found.model["method"] == FOLLOWED.name
+    assert found.model["method"] == DRIVE_DETERMINED.name
     assert len(set(side_of(found).tolist())) == 1
     B, C = found.points["coupler.B"]["position"], found.points["rocker.C"]["position"]
     assert np.abs(np.linalg.norm(B - C, axis=1) - 3.0).max() < 1e-14 * 7.0  # gaps are closed so far, of the size
@@ -120,7 +120,7 @@ def test_a_turn_between_two_samples_is_counted() -> None:
     turn = "2*pi*t + pi*(1 + tanh((t - 0.5)/1e-3))"
     text = four_bar("0 deg", turn, "times: [0, 0.4, 0.6, 1]", True, lengths)
     found = solved(text)
-    assert found.model["method"] == FOLLOWED.name
+    assert found.model["method"] == DRIVE_DETERMINED.name
     plain = solved(four_bar("0 deg", "2*pi*t", "times: [0, 0.4, 0.6, 1]", True, lengths))
     more = found.coordinates["C"]["angle"] - plain.coordinates["C"]["angle"]
     assert np.abs(more - [0.0, 0.0, 2.0 * np.pi, 2.0 * np.pi]).max() < 1e-12
@@ -135,7 +135,7 @@ def test_the_same_as_integrated(drive: str) -> None:
     if "guide" in drive:
         text = text.replace(AS_DRAWN, RAISED)
     one, other = solved(text), solved(text, reduce=False)
-    assert one.model["method"] == FOLLOWED.name and other.model["method"] == DOP853.name
+    assert one.model["method"] == DRIVE_DETERMINED.name and other.model["method"] == DOP853.name
     for name, block in other.joints.items():
         for quantity in ("force", "moment"):
             size = max(np.abs(x["force"]).max() for x in other.joints.values())
@@ -162,7 +162,7 @@ forces: {load: {type: force, on: left.top, vector: [0, "-10*sin(3*t)", 0]}}
 analysis: {duration: 2, samples: 9}
 """
     found = solved(text)
-    assert found.model["method"] == FOLLOWED.name
+    assert found.model["method"] == DRIVE_DETERMINED.name
     load = 10.0 * np.sin(3.0 * found.time)
     assert np.abs(found.joints["A"]["force"] - np.outer(load, [0.5, 0.5, 0.0])).max() < 1e-13
     assert found.accuracy["energy_drift"] == 0.0
@@ -173,11 +173,11 @@ def test_a_dwell_takes_no_steps() -> None:
     angle = "pi*min(t, 1) + pi*max(t - 99, 0)"
     rest = solved(crank(3.0, f'{{joint: main, angle: "{angle}"}}', "duration: 100, samples: 5"))
     turn = solved(crank(3.0, '{joint: main, angle: "pi*t"}', "duration: 2, samples: 5"))
-    assert rest.model["method"] == FOLLOWED.name
+    assert rest.model["method"] == DRIVE_DETERMINED.name
     assert rest.work["steps"] <= turn.work["steps"] + 4
 
 
-@pytest.mark.parametrize(("b", "method"), [(3.0, DOP853), (3.001, FOLLOWED)])
+@pytest.mark.parametrize(("b", "method"), [(3.0, DOP853), (3.001, DRIVE_DETERMINED)])
 def test_a_singular_pose_is_not_followed_through(b: float, method: object) -> None:
     """A parallelogram folds flat twice a turn, where its branches meet: what moves decides there, and it is told."""
     text = four_bar("60 deg", "pi/3 + 2*pi*t", "duration: 1, samples: 5", True, (1.0, b, 1.0, 3.0))
@@ -211,7 +211,7 @@ def driven_pair(drive: str, **analysis: Any) -> dict[str, Any]:
 def test_gears_at_a_constant_rate_take_one_step() -> None:
     """What they hold is the same in every pose: no turn of theirs needs a step."""
     found = solved(driven_pair("200*pi*t", duration=1, samples=7))
-    assert found.model["method"] == FOLLOWED.name and found.work["steps"] == 1
+    assert found.model["method"] == DRIVE_DETERMINED.name and found.work["steps"] == 1
     assert np.abs(found.coordinates["w"]["angle"] + 200.0 * np.pi * found.time / 3.0).max() < 1e-12
 
 
@@ -220,7 +220,7 @@ def test_a_gear_that_swings_passes_angles_when_it_should(rate: float) -> None:
     """The drive's law alone keeps steps short: where the wheel passes, its closure tells."""
     at = np.pi + np.arcsin(0.3)
     ends = solved(driven_pair(f"sin({rate}*t)", duration=5, until="w.angle > 0.1"))
-    assert ends.model["method"] == FOLLOWED.name
+    assert ends.model["method"] == DRIVE_DETERMINED.name
     assert abs(ends.events["until"]["time"][0] * rate - at) < 1e-10
     assert ends.work["steps"] < 30
     found = solved(driven_pair(f"sin({rate}*t)", duration=5, samples=41))
@@ -240,7 +240,7 @@ def test_a_four_bar_behind_a_gear_stays_on_its_branch(up: bool) -> None:
     geared = geared.replace('{joint: O, angle: "2*pi*t"}', '{joint: M, angle: "-20*pi*t"}')
     geared += "couplings: {gears: {type: gear, of: [M, O], ratio: -10}}\n"
     one, other = solved(text), solved(geared)
-    assert other.model["method"] == FOLLOWED.name
+    assert other.model["method"] == DRIVE_DETERMINED.name
     for name in ("A", "B", "C"):
         for quantity, values in one.coordinates.get(name, {}).items():
             size = max(1.0, float(np.abs(values).max()))

@@ -217,4 +217,4 @@ def test_rates_that_gears_do_not_have_are_refused() -> None:
     with pytest.raises(SolveError) as refused:
         solved(scene)
     (problem,) = refused.value.problems
-    assert problem.code == "rates-do-not-fit" and "mesh" in problem.message and problem.about == "couplings.mesh"
+    assert problem.code == "rates-do-not-fit" and "mesh" in problem.message and problem.entry_path == "couplings.mesh"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import HeunError, SolveError
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -131,7 +131,7 @@ def passes(scene: str, tolerance: float, until: float) -> float | None:
     """The instant of the half turn at which the global chart ends, at a local tolerance; None where it does not."""
     runner = set_up(load("scene.yaml", scene), reduce=False).runner
     try:
-        runner.trajectory(MotionTask([0.0, until], tolerance, method=method_of(GLOBAL)))
+        runner.run(MotionTask([0.0, until], tolerance, method=load_method_by_name(GLOBAL)))
     except SolveError as error:
         assert error.problems[0].code == "half-turn"
         return error.reached
@@ -154,7 +154,7 @@ def test_tops_at_random(seed: int) -> None:
     scene = spinner("[1]", str(omega.tolist()), str(inertia))
     setup = set_up(load("scene.yaml", scene), reduce=False)
     times = np.linspace(0.0, 6.0, 2001)
-    run = setup.runner.trajectory(MotionTask(times, 1e-12))
+    run = setup.runner.run(MotionTask(times, 1e-12))
     at = int(setup.runner.layout.tables["bodies"][0]["attitude_at"])
     w: Array = run.states[:, at]
     crossed = np.flatnonzero(w[1:] * w[:-1] <= 0.0)
@@ -200,8 +200,8 @@ def test_other_instants_are_the_runs_own(method: str) -> None:
     """Asked for with others or alone: the same bits, of the steps, too."""
     runner = set_up(load("double.yaml", double("{duration: 1}"))).runner
     times = np.linspace(0.0, 1.0, 57)
-    few = runner.trajectory(MotionTask(times[::8], 1e-10, method=method_of(method)))
-    many = runner.trajectory(MotionTask(times, 1e-10, method=method_of(method)))
+    few = runner.run(MotionTask(times[::8], 1e-10, method=load_method_by_name(method)))
+    many = runner.run(MotionTask(times, 1e-10, method=load_method_by_name(method)))
     assert np.array_equal(few.ends, many.ends)
     assert np.array_equal(runner.resample(few, times), many.states)
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.over import over
-from heuncli.analyses.lagrange.results import InertiaCourse
-from heuncli.app.commands.lagrange.options import range_of
+from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.results import InertiaCurve
+from heuncli.app.commands.lagrange.options import parse_range
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
-from heuncli.scene.shapes.rotations import hat
+from heuncli.scene.shapes.rotations import cross_matrix
 from tests.oracle.published import START, andrews
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import double, told
@@ -44,11 +44,11 @@ def test_a_double_pendulum() -> None:
     near(found.coriolis, [-0.8912073600614353, -1.002608280069115])
     near(found.coriolis_matrix, [[-0.8912073600614353, -0.2228018400153588], [-0.6684055200460765, 0]])
     near(found.momenta, [2.060131394046122, 0.1735304244025164])
-    near(found.total, [-7.569566298678693, 1.910096969023931])
+    near(found.total_force, [-7.569566298678693, 1.910096969023931])
     near(found.accelerations, [-9.815643162378105, 25.23226541128554])
     near([found.energy, found.reciprocal_energy], [1.371568121132075] * 2)
-    near([one.free for one in found.seen], [1.179021252304088, 0.1853577237258311])
-    near([one.locked for one in found.seen], [2.120262788092244, 1 / 3])
+    near([one.others_free for one in found.apparent_inertias], [1.179021252304088, 0.1853577237258311])
+    near([one.others_locked for one in found.apparent_inertias], [2.120262788092244, 1 / 3])
     assert found.residual <= DIGITS
 
 
@@ -57,13 +57,13 @@ def test_forces_stand_beside_each_other() -> None:
     found = told(double(f"{loads}\nanalysis: {{type: state}}"))
     near(found.forces["push"], [5.057709543862122, 2.763182982008656])
     near(found.forces["rub"], [0.0, 1.4])
-    near(found.total, sum(found.forces.values()))
+    near(found.total_force, sum(found.forces.values()))
 
 
 def test_what_a_section_passes_on() -> None:
     """s' of the outer 0.6 m of rod two: what is applied to it less what its motion takes, along each coordinate."""
     near(told(double()).sections["cut"].s[0], [-1.426414518612498, -0.4933319119650378])
-    blow = told(double("impulses: {hit: {on: b.e, vector: [2, 0, 0]}}\nanalysis: {type: impulse}", (0, 0))).blows[0]
+    blow = told(double("impulses: {hit: {on: b.e, vector: [2, 0, 0]}}\nanalysis: {type: impulse}", (0, 0))).impulses[0]
     near(blow.h, [3.371806362574747, 1.842121988005770])
     near(blow.sections["cut"].s[0], [0.4896150774109775, 0.1229984346168536])
     near(blow.reciprocal_energy, 5.122498738676783)
@@ -78,16 +78,16 @@ TURN = {  # degrees: inertia at the crank, half its slope
 MEAN = 0.01642669572178526
 
 
-def course(name: str = "slider_crank", words: str = "main.angle=0:360deg/73") -> InertiaCourse:
+def course(name: str = "slider_crank", words: str = "main.angle=0:360deg/73") -> InertiaCurve:
     spec = load(str(ROOT / "specs" / f"{name}.yaml"))
-    return over(spec, range_of(words, spec))
+    return find_inertia_curve(spec, parse_range(words, spec))
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "slider_crank_pins"])
 def test_the_inertia_of_a_slider_crank_over_its_turn(name: str) -> None:
     """Also where supports are redundant: they do no virtual work."""
     found = course(name)
-    assert found.driven and len(found.values) == 73
+    assert found.is_driven and len(found.values) == 73
     for degrees, (inertia, slope) in TURN.items():
         k = degrees // 5
         near([found.values[k], found.epsilon[k], found.half[k]], [math.radians(degrees), inertia, slope], 1.0)
@@ -115,7 +115,7 @@ def test_a_crank_that_is_let_go_against_a_force() -> None:
     text = text.replace("axis: [0, 0, 1]}\n  big", "axis: [0, 0, 1], initial: {angle: phi, rate: w}}\n  big")
     found = told(text + "forces: {F: {type: force, on: slider.pin, vector: [1000, 0, 0]}}\nanalysis: {type: state}\n")
     near([found.epsilon[0, 0], found.coriolis[0]], [0.02588649693056331, 0.8314275544747639], 1.0)
-    near(found.total, [-99.93586644862434])
+    near(found.total_force, [-99.93586644862434])
     near(found.accelerations, [-3892.658565328187])
 
 
@@ -127,7 +127,7 @@ def test_a_dead_centre_tells_nothing() -> None:
 
 def test_a_top_by_its_rodrigues_vector() -> None:
     k, rate = np.array([0.1, 0.2, 0.3]), np.array([0.4, -0.5, 0.6])
-    omega = 2.0 / (1.0 + k @ k) * (np.eye(3) + hat(k)) @ rate
+    omega = 2.0 / (1.0 + k @ k) * (np.eye(3) + cross_matrix(k)) @ rate
     q = (np.array([1.0, *k]) / np.sqrt(1.0 + k @ k)).tolist()
     top = f"mass: 2, center: [0, 0, 0.3], inertia: [1.82, 2.32, 3], orientation: {{quaternion: {q}}}"
     scene = f"""
@@ -150,7 +150,7 @@ analysis: {{type: state}}
     near(found.momenta, [3.441058787319175, -4.742997845490920, 6.149584487534626])
     near(found.energy, 3.718836565096953)
     near(found.coriolis, [-1.713725680776271, 0.1746286306717857, -1.321702224166140])
-    near(found.total, [1.974681440443213, 3.949362880886427, -0.2717451523545706])
+    near(found.total_force, [1.974681440443213, 3.949362880886427, -0.2717451523545706])
     near(found.accelerations, [0.5498767341746178, 0.5023893398994562, 0.1152343473889402])
     symbols = found.gamma[[0, 0, 1, 2], [0, 1, 0, 2], [0, 2, 2, 2]]
     assert np.abs(symbols - [-1.2662465643950, 1.6523302716625, -2.5108940402715, -5.0298877387374]).max() < 1e-12
@@ -214,9 +214,9 @@ analysis: {type: state}
 def test_a_rod_across_a_shaft_that_is_driven() -> None:
     """Coriolis' torque on the drive."""
     found = told(ROD_ON_A_SHAFT)
-    assert found.names == ("main.angle", "hinge.angle") and found.driven == (True, False)
+    assert found.names == ("main.angle", "hinge.angle") and found.is_driven == (True, False)
     near(np.diag(found.epsilon), [0.1377253037221782, 1 / 3])
-    near([found.coriolis[1], found.total[1]], [-16.41346255020347, -3.152873225512475])
+    near([found.coriolis[1], found.total_force[1]], [-16.41346255020347, -3.152873225512475])
     near(found.accelerations, [0.0, 39.78176797407298])
     near(found.drives, [6.565385020081387, 0.0])
     free, mixed, driven = found.energies
@@ -240,7 +240,7 @@ def test_friction_by_what_a_driven_joint_carries() -> None:
                 told(text, **asked)
             else:
                 spec = load("scene.yaml", text)
-                over(spec, range_of("main.angle=0:1", spec))
+                find_inertia_curve(spec, parse_range("main.angle=0:1", spec))
 
 
 @pytest.mark.parametrize(("name", "coordinate"), [("slider_crank", "main.angle"), ("four_bar_balanced", "crank.angle")])
@@ -259,4 +259,4 @@ def test_the_inertia_of_the_squeezing_mechanism() -> None:
     found = told({**andrews(START, dict.fromkeys(START, 0.0)), "analysis": {"type": "state"}})
     assert found.names == ("O.angle",)
     assert found.epsilon[0, 0] == pytest.approx(2.32027633125e-6, rel=1e-11)
-    assert found.total[0] / found.epsilon[0, 0] == pytest.approx(14222.4439199541, rel=1e-7)
+    assert found.total_force[0] / found.epsilon[0, 0] == pytest.approx(14222.4439199541, rel=1e-7)

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import HeunError
-from heuncli.loads.kinetostatics.auto_properties import Cutting, properties_of
+from heuncli.loads.kinetostatics.auto_properties import CutForm, find_cut_properties
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Shape, Vec
-from heuncli.scene.meshes.reading import mesh_of
-from heuncli.scene.shapes.forms import form
+from heuncli.scene.meshes.reading import read_closed_mesh
+from heuncli.scene.shapes.forms import make_composite_solid
 from heuncli.study.workflow import solve
 from tests.shared import triangles as t
 
@@ -23,10 +23,10 @@ X, Y, Z = np.eye(3)
 
 def cut(triangles: Array, n: Array, e1: Array, d: float, *others: Shape) -> dict[str, float] | str:
     """The properties of one cut through a mesh, or why there are none."""
-    mesh = mesh_of(t.obj(triangles).encode(), "a.obj")
+    mesh = read_closed_mesh(t.obj(triangles).encode(), "a.obj")
     axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     shape = Shape("mesh", density=1.0, mesh=mesh, scale=1.0, at=(0.0, 0.0, 0.0), rotation=axes)
-    found = properties_of(Cutting(form([shape, *others]), n, e1, np.array([d]), np.zeros(1)))
+    found = find_cut_properties(CutForm(make_composite_solid([shape, *others]), n, e1, np.array([d]), np.zeros(1)))
     if found.missing:
         return found.missing[0]
     (group,) = found.groups

@@ -176,14 +176,18 @@ def test_a_parameter_of_the_same_name() -> None:
 ])  # fmt: skip
 def test_a_coordinate_told_otherwise(text: str) -> None:
     """f(factor x), times g, within a limit: as the values are, on every branch."""
-    from heuncli.scene.expressions.curves import fit
+    from heuncli.scene.expressions.curves import interpolate_points
 
-    tables = {"c": fit("c", np.array([-20.0, 0.0, 2.0, 20.0]), np.array([1.0, 2.0, 5.0, 1.0]), "linear", None, None)}
+    tables = {
+        "c": interpolate_points(
+            "c", np.array([-20.0, 0.0, 2.0, 20.0]), np.array([1.0, 2.0, 5.0, 1.0]), "linear", None, None
+        )
+    }
     scope = Scope(joints={"own": "pin", "j": "pin"}, tables=tables, in_time=True)
     f = compile_expression(text, scope)
     g = compile_expression("3 + j.angle*abs(t - 1)", scope)
-    scaled = composed.with_factor(f, ("own", "rate"), 2.5)
-    limited = composed.within(composed.product(g, scaled), 7.0)
+    scaled = composed.scale_coordinate(f, ("own", "rate"), 2.5)
+    limited = composed.limit_magnitude(composed.multiply_expressions(g, scaled), 7.0)
     for t in (0.5, 1.5):
         for rate in (-1.3, 0.3, 2.0, 5.0):
             for angle in (-2.0, 0.7, 1.4):
@@ -194,7 +198,7 @@ def test_a_coordinate_told_otherwise(text: str) -> None:
                 whole = (3 + angle * abs(t - 1)) * wanted
                 found = limited.value(t, [own[use] for use in limited.uses])
                 assert found == pytest.approx(min(max(whole, -7.0), 7.0), rel=1e-15)
-    assert composed.product(compile_expression("2", scope), compile_expression("3", scope)).constant == 6.0
+    assert composed.multiply_expressions(compile_expression("2", scope), compile_expression("3", scope)).constant == 6.0
 
 
 PULSE = """

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.analyses.probing.numerics.stiffness import polynomial, reach
+from heuncli.analyses.probing.numerics.stiffness import find_stable_distance, stability_polynomial
 from heuncli.analyses.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.analyses.probing.study import probe
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.kernel_loop import KernelLoop
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
@@ -57,8 +57,8 @@ def test_a_spin_about_the_intermediate_axis_is_left_as_theory_says() -> None:
     """Growth sqrt(1/3); heun solves it as a flat motion, in which nothing grows, and half turns come every 2 pi."""
     found = probed(AXIS.format(omega="[0, 1, 0]", duration=40))
     assert found.model["plane"] == "found"
-    assert found.across is not None and found.across.exponential
-    assert found.across.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
+    assert found.out_of_plane is not None and found.out_of_plane.exponential
+    assert found.out_of_plane.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
     assert found.growth is not None and not found.growth.exponential
     assert found.verdict.startswith("unstable against leaving the plane")
     turns = np.array(instants(found, HALF_TURN))
@@ -71,7 +71,7 @@ def test_the_same_in_space() -> None:
     assert found.growth.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
     assert found.growth.directions == 12 and found.growth.horizon is None
     # beyond the run: eps sqrt(n) e^(0.577 t) = 1e-3 at 46.8, 44.1, 42.8 s for 100, 2000, 10000 steps
-    assert found.growth.expected == pytest.approx(44.8, abs=2.0)
+    assert found.growth.expected_horizon == pytest.approx(44.8, abs=2.0)
 
 
 @pytest.mark.parametrize(("joint", "across"), [("pin, axis: [0, 1, 0]", False), ("ball", True)])
@@ -81,7 +81,7 @@ def test_an_upright_rod_falls(joint: str, across: bool) -> None:
     found = probed(text + "analysis: {duration: 5, samples: 3}\n")
     rate = math.sqrt(1.5 * 9.81)
     assert found.growth is not None and found.growth.rate == pytest.approx(rate, rel=SHADOW)
-    assert found.growth.times == pytest.approx(math.log(math.cosh(5.0 * rate) ** 2) / 2.0, abs=1.0)
+    assert found.growth.logarithm == pytest.approx(math.log(math.cosh(5.0 * rate) ** 2) / 2.0, abs=1.0)
     if across:
         whole = probed(text + "analysis: {duration: 5, samples: 3}\n", reduce=False)
         assert whole.growth is not None and whole.growth.rate == pytest.approx(rate, rel=SHADOW)
@@ -90,10 +90,10 @@ def test_an_upright_rod_falls(joint: str, across: bool) -> None:
 def test_beside_a_run_by_scipy_the_kernel_runs() -> None:
     """It has no stages of such a method; its stiff one goes beside it, and finds what theory says."""
     found = probed(AXIS.format(omega="[0, 1, 0]", duration=40).replace("samples", "method: SciPy-LSODA, samples"))
-    assert found.model["method"] == "SciPy-LSODA" and found.across is not None
-    assert found.across.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
+    assert found.model["method"] == "SciPy-LSODA" and found.out_of_plane is not None
+    assert found.out_of_plane.rate == pytest.approx(math.sqrt(1.0 / 3.0), rel=SHADOW)
     with pytest.raises(ValueError, match="no stages of SciPy-LSODA"):
-        KernelLoop(None, None, method_of("SciPy-LSODA"), np.zeros(0), 1, None)  # type: ignore[arg-type]
+        KernelLoop(None, None, load_method_by_name("SciPy-LSODA"), np.zeros(0), 1, None)  # type: ignore[arg-type]
 
 
 def test_a_pendulum_forgets_nothing() -> None:
@@ -158,7 +158,7 @@ def test_one_instant() -> None:
         text = CRANK.replace(", INITIAL", f", initial: {{angle: {angle}, rate: 1}}")
         found = probed(text.replace("ANALYSIS", "analysis: {type: state}"))
         assert bool(instants(found, DEAD_CENTRE, "joints.bore")) == there
-        block = found.block()
+        block = found.to_block()
         assert block["growth_rate"] is None and block["horizon"] is None and "growth_rate" in block["not_told"]
         assert block["condition"]["mass"] >= 1.0
 
@@ -174,7 +174,7 @@ bodies: {{bar: {{mass: 1, center: [0.5, 0, 0], inertia: [0.01, 0.1, 0.1], points
 joints: {{pivot: {{type: pin, from: ground.O, to: bar.O, axis: [0, 1, 0]}}}}
 forces: {{drag: {{type: torque, joint: pivot, value: "-0.1*sqrt(pivot.rate**2)"}}}}
 analysis: {analysis}
-""").block()
+""").to_block()
     assert (block["stiffness"] is not None) == told
     assert ("no slope" in block["not_told"].get("stiffness", "")) != told
 
@@ -200,7 +200,7 @@ analysis: {duration: 1, samples: 3, tolerance: 1e-6}
     fast = 0.5 * (1e3 + math.sqrt(1e6 - 200.0))
     assert stiff.decay == pytest.approx(fast, rel=1e-6)
     row = next(step for step in stiff.steps if step.method == "DOP853")
-    assert row.stability == pytest.approx(reach(DOP853, -1.0 + 0j) / fast, rel=1e-6)
+    assert row.stability == pytest.approx(find_stable_distance(DOP853, -1.0 + 0j) / fast, rel=1e-6)
     assert stiff.ratio > 10.0 and found.trouble[0].startswith("stiff")
 
 
@@ -212,11 +212,11 @@ RK4 = Method(
 
 def test_stability_polynomials() -> None:
     """Of RK4 the exponential's series to z^4, stable to 2.785 on the real axis and to 2 sqrt 2 on the imaginary one."""
-    assert polynomial(RK4) == pytest.approx([1.0, 1.0, 1 / 2, 1 / 6, 1 / 24], rel=1e-15)
-    assert reach(RK4, -1.0 + 0j) == pytest.approx(2.785, abs=0.01)
-    assert reach(RK4, 1j) == pytest.approx(2.0 * math.sqrt(2.0), abs=0.01)
-    assert math.isinf(reach(RK4, 1.0 + 0j))
-    coefficients = polynomial(DOP853)
+    assert stability_polynomial(RK4) == pytest.approx([1.0, 1.0, 1 / 2, 1 / 6, 1 / 24], rel=1e-15)
+    assert find_stable_distance(RK4, -1.0 + 0j) == pytest.approx(2.785, abs=0.01)
+    assert find_stable_distance(RK4, 1j) == pytest.approx(2.0 * math.sqrt(2.0), abs=0.01)
+    assert math.isinf(find_stable_distance(RK4, 1.0 + 0j))
+    coefficients = stability_polynomial(DOP853)
     assert coefficients[:9] == pytest.approx([1.0 / math.factorial(k) for k in range(9)], rel=1e-13)
 
 
@@ -259,7 +259,7 @@ analysis: {duration: 20, samples: 3}
     by_angle = (braked(0.1 + d, 2.0, 20.0)[0] - braked(0.1 - d, 2.0, 20.0)[0]) / (2.0 * d)
     by_rate = (braked(0.1, 2.0 + d, 20.0)[0] - braked(0.1, 2.0 - d, 20.0)[0]) / (2.0 * d)
     assert found is not None and not found.exponential
-    assert found.times == pytest.approx(math.log(math.hypot(by_angle, rate * by_rate)), abs=1e-4)
+    assert found.logarithm == pytest.approx(math.log(math.hypot(by_angle, rate * by_rate)), abs=1e-4)
 
 
 def test_what_an_implicit_method_takes_troubles_the_others_alone() -> None:
@@ -273,14 +273,14 @@ forces: {k: {type: torque, joint: s, value: "-8e5*s.travel - 4e4*s.speed + 100*s
 analysis: {duration: 10, samples: 3, tolerance: 1e-6}
 """
     found = probed(text)
-    assert found.implicit == "Radau9" and found.stiffness is not None and found.stiffness.ratio > 100.0
+    assert found.implicit_method == "Radau9" and found.stiffness is not None and found.stiffness.ratio > 100.0
     assert found.verdict == "nothing in this motion troubles heun's default method" and not found.trouble
     assert any(words.startswith("stiff: ") and "Radau9" in words for words in found.others)
-    assert found.growth is not None and found.growth.stopped is None  # runs beside it come to the end
+    assert found.growth is not None and found.growth.stop_reason is None  # runs beside it come to the end
     slow = 4e4 / 2.0 - math.sqrt(4e8 - 8e5)
-    assert found.growth.times == pytest.approx(-10.0 * slow, rel=0.02)
+    assert found.growth.logarithm == pytest.approx(-10.0 * slow, rel=0.02)
     by_hand = probed(text.replace("tolerance", "method: SciPy-Radau, tolerance"))
-    assert by_hand.implicit == "SciPy-Radau" and not by_hand.trouble
+    assert by_hand.implicit_method == "SciPy-Radau" and not by_hand.trouble
 
 
 def test_what_is_free_neither_decays_nor_oscillates() -> None:

@@ -12,16 +12,16 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from heuncli.base.errors import SolveError
-from heuncli.loads.equilibrium.coordinates import coordinates_of
-from heuncli.loads.equilibrium.directions import directions
-from heuncli.loads.equilibrium.pose import bearing
-from heuncli.loads.equilibrium.rest_check import require_still
-from heuncli.loads.equilibrium.search import MOST_STEPS
-from heuncli.loads.equilibrium.slopes import Slopes
+from heuncli.loads.equilibrium.coordinates import make_coordinates
+from heuncli.loads.equilibrium.directions import decompose
+from heuncli.loads.equilibrium.pose import make_bearing_pose
+from heuncli.loads.equilibrium.rest_check import require_at_rest
+from heuncli.loads.equilibrium.search import MAX_STEPS
+from heuncli.loads.equilibrium.slopes import RestLaw
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.load import load
-from heuncli.scene.shapes.rotations import from_vector
+from heuncli.scene.shapes.rotations import rotation_from_vector
 from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
@@ -316,7 +316,7 @@ def test_a_loop_in_space_has_the_least_energy(seed: int) -> None:
 def stays(run: Study, within: float) -> None:
     """A motion from the rest pose, over a second, does not leave it."""
     layout = run.setup.scene.layout
-    later = run.setup.runner.trajectory(MotionTask(np.array([0.0, 1.0]), 1e-10)).states
+    later = run.setup.runner.run(MotionTask(np.array([0.0, 1.0]), 1e-10)).states
     rates = np.concatenate([np.arange(g["rates"], g["end"]) for g in layout.tables["groups"]])
     near(later[1, rates] - later[0, rates], 0.0, 1.0, within)
 
@@ -326,7 +326,7 @@ def tree(rng: np.random.Generator) -> str:
     n = 4
     bodies, joints, springs, grounds = [], [], [], ["O: [0, 0, 0]"]
     for i in range(n):
-        axis = from_vector(rng.uniform(-1.0, 1.0, 3))[0].tolist()
+        axis = rotation_from_vector(rng.uniform(-1.0, 1.0, 3))[0].tolist()
         bodies.append(f"b{i}: {{{BAR}, near: {{orientation: {{axis: {axis}, angle: {rng.uniform(0.2, 1.0)!r}}}}}}}")
         on = "ground.O" if i == 0 else f"b{rng.integers(i)}.end"
         kind = rng.choice(["ball", "pin, axis: [0.6, 0.8, 0]", "universal, axis: [1, 0, 0], to_axis: [0, 1, 0]"])
@@ -458,21 +458,21 @@ def test_matrices_whose_directions_fall_together(seed: int) -> None:
     J[0, 1] = J[2, 3] = 5.0
     P = np.linalg.qr(rng.normal(size=(6, 6)))[0] + 0.2 * rng.normal(size=(6, 6))
     A = P @ J @ np.linalg.inv(P)
-    own = directions(A, np.eye(6))
-    near(own.whole(np.ones(6, dtype=bool)), A, 40.0, 1e-9)
+    own = decompose(A, np.eye(6))
+    near(own.reassemble(np.ones(6, dtype=bool)), A, 40.0, 1e-9)
     c = rng.normal(size=6)
     z, term, h = np.zeros(6), c.copy(), 0.7 / 40.0
     for k in range(1, 40):
         term = term * h / k
         z = z + term
         term = A @ term
-    near((own.X @ own.led(h, own.inverse @ c)).real, z, float(np.abs(z).max()), 1e-9)
+    near((own.X @ own.integrate(h, own.inverse @ c)).real, z, float(np.abs(z).max()), 1e-9)
 
 
 def test_what_is_told_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that ends too early is refused, whatever it was told."""
-    monkeypatch.setattr(Slopes, "left", property(lambda own: np.zeros(len(own.c))))
-    monkeypatch.setattr(Slopes, "newton", lambda own, a: 0.0 * a)
+    monkeypatch.setattr(RestLaw, "left", property(lambda own: np.zeros(len(own.c))))
+    monkeypatch.setattr(RestLaw, "newton", lambda own, a: 0.0 * a)
     assert "the search ended where joints.p still accelerates by 14.9 rad" in refused(carriage("90 deg"))
 
 
@@ -491,9 +491,9 @@ def test_a_slider_that_does_not_rest_is_told_in_its_unit(force: str, said: str) 
     text = SLIDER.replace("FORCE", force).replace("type: rest", "type: state")
     spec = load("slider.yaml", text)
     runner = set_up(spec, reduce=False).runner
-    coordinates = coordinates_of(runner.layout)
+    coordinates = make_coordinates(runner.layout)
     with pytest.raises(SolveError) as caught:
-        require_still(runner, coordinates, bearing(runner, coordinates, 0.0, runner.layout.y0))
+        require_at_rest(runner, coordinates, make_bearing_pose(runner, coordinates, 0.0, runner.layout.y0))
     assert said in caught.value.problems[0].message
     assert "report" not in (caught.value.problems[0].hint or "")
 
@@ -535,7 +535,7 @@ def test_a_way_that_ends_stretched(turned: str, monkeypatch: pytest.MonkeyPatch)
 
     At 10 rad/s it nears that pose until its steps are used up; of so many a tenth tells the same.
     """
-    monkeypatch.setattr("heuncli.loads.equilibrium.search.MOST_STEPS", MOST_STEPS // 10)
+    monkeypatch.setattr("heuncli.loads.equilibrium.search.MAX_STEPS", MAX_STEPS // 10)
     with pytest.raises(SolveError) as caught:
         solve(load(str(ROOT / "specs" / "governor.yaml"), overrides={"w": turned}))
     assert "singular pose" in caught.value.problems[0].message

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.instant import instant_of
+from heuncli.analyses.lagrange.instant import make_instant
 from heuncli.base.errors import SolveError
 from heuncli.results.results import Results
 from heuncli.scene.file_format.load import load
@@ -144,7 +144,7 @@ def test_starts_that_do_not_roll_are_refused(start: str, code: str) -> None:
     with pytest.raises(SolveError) as error:
         of_disc(start)
     (problem,) = error.value.problems
-    assert (problem.code, problem.about) == (code, "rolling.rim")
+    assert (problem.code, problem.entry_path) == (code, "rolling.rim")
     assert problem.hint
 
 
@@ -226,5 +226,5 @@ def test_no_rest_pose_that_a_wheel_rolls_to() -> None:
 def test_no_lagrange_of_speeds_that_no_coordinates_have() -> None:
     """In space; in the plane a wheel's coordinate is its turn."""
     with pytest.raises(SolveError, match="no-coordinate"):
-        instant_of(load("disc.yaml", DISC.replace("START", "velocity: [0.6, 0, 0]")), None, None)
-    assert instant_of(load("cart.yaml", CART), None, None).found is not None
+        make_instant(load("disc.yaml", DISC.replace("START", "velocity: [0.6, 0, 0]")), None, None)
+    assert make_instant(load("cart.yaml", CART), None, None).linear_equations is not None

@@ -345,7 +345,7 @@ def test_a_rope_that_a_blow_would_have_to_push_is_told_by_its_place() -> None:
     blow = "impulses: {b: {on: cage.top, vector: [0, 5], time: 0}}\nanalysis: {duration: 1, samples: 3}"
     with pytest.raises(SolveError, match="the rope hoist would have to push") as refused:
         solved(roped_cage(-9.81, blow))
-    assert refused.value.problems[0].about == "couplings.hoist"
+    assert refused.value.problems[0].entry_path == "couplings.hoist"
 
 
 def test_a_law_that_jerks_a_taut_rope_is_told() -> None:
@@ -365,4 +365,4 @@ def test_an_end_that_lies_on_its_sheave_is_told(x: float, where: float) -> None:
         SolveError, match=f"this point stands {where:g} m from the axis of the sheave behind"
     ) as refused:
         solved(text)
-    assert refused.value.problems[0].about == "couplings.rope.through.0"
+    assert refused.value.problems[0].entry_path == "couplings.rope.through.0"

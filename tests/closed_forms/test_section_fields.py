@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from heuncli.loads.kinetostatics.stress import MODULI, stresses
+from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
 from heuncli.results.results import Array
 
 Place = tuple[Array, Array]
@@ -88,7 +88,7 @@ def random_load(rng: np.random.Generator, size: float) -> dict[str, float]:
 def ratios(kind: str, sizes: dict[str, float], load: dict[str, float], at: Place, tau: tuple[Array, Array]) -> Array:
     """Shear and von Mises stress as they are told, over the largest of the dense fields."""
     m = MODULI[kind](sizes)
-    told = stresses(m, {name: np.array([value]) for name, value in load.items()}, None)
+    told = compute_stresses(m, {name: np.array([value]) for name, value in load.items()}, None)
     sigma = load["N"] / m.area + load["M1"] / m.I1 * at[1] - load["M2"] / m.I2 * at[0]
     square = tau[0] ** 2 + tau[1] ** 2
     field = np.sqrt([square.max(), (sigma**2 + 3.0 * square).max()])

@@ -7,8 +7,8 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.shapes.forms import form
-from heuncli.scene.shapes.inertia import properties
+from heuncli.scene.shapes.forms import make_composite_solid
+from heuncli.scene.shapes.inertia import split_pseudo_inertia
 from tests.shared.solids import SOLIDS, beyond, difference, moved, rotation
 
 RHO = 2.5
@@ -17,7 +17,7 @@ CLOSE = {"rtol": 1e-14, "atol": 1e-16}
 
 def upright(shape: Shape, cut: float) -> tuple[float, Array, Array]:
     """Mass, centre and inertia about it of the piece z > cut."""
-    return properties(beyond(form([shape]), np.array([0.0, 0.0, 1.0]), np.array([cut]))[0])
+    return split_pseudo_inertia(beyond(make_composite_solid([shape]), np.array([0.0, 0.0, 1.0]), np.array([cut]))[0])
 
 
 def test_rod() -> None:
@@ -81,9 +81,9 @@ def test_box() -> None:
 
 def test_golden_box() -> None:
     """manual/theory.md, "Closed cases" 16: a box about the centre of its face x = 0, and its piece x > 0.7."""
-    f = form([Shape("box", center=(1, 0, 0), size=(2, 1, 0.6), density=1.0)])
-    mass, center, _ = properties(f.whole())
-    piece, at, _ = properties(beyond(f, np.array([1.0, 0, 0]), np.array([0.7]))[0])
+    f = make_composite_solid([Shape("box", center=(1, 0, 0), size=(2, 1, 0.6), density=1.0)])
+    mass, center, _ = split_pseudo_inertia(f.whole_inertia())
+    piece, at, _ = split_pseudo_inertia(beyond(f, np.array([1.0, 0, 0]), np.array([0.7]))[0])
     assert np.allclose([mass, piece], [1.2, 0.78], **CLOSE)
     assert np.allclose([center, at], [[1, 0, 0], [1.35, 0, 0]], **CLOSE)
 
@@ -91,27 +91,27 @@ def test_golden_box() -> None:
 @pytest.mark.parametrize("name", SOLIDS)
 def test_mass_and_density_say_the_same(name: str) -> None:
     shape = SOLIDS[name]
-    by_density = form([shape])
-    mass = float(by_density.whole()[3, 3])
-    by_mass = form([shape._replace(mass=mass, density=None, line_density=None)])
-    assert difference(by_mass.whole(), by_density.whole(), by_density.whole()) < 1e-15
+    by_density = make_composite_solid([shape])
+    mass = float(by_density.whole_inertia()[3, 3])
+    by_mass = make_composite_solid([shape._replace(mass=mass, density=None, line_density=None)])
+    assert difference(by_mass.whole_inertia(), by_density.whole_inertia(), by_density.whole_inertia()) < 1e-15
 
 
 @pytest.mark.parametrize("name", SOLIDS)
 def test_extent_is_where_pieces_begin_and_end(name: str) -> None:
     rng = np.random.default_rng(11)
     for _ in range(20):
-        f = form([moved(SOLIDS[name], rotation(rng), rng.normal(size=3))])
+        f = make_composite_solid([moved(SOLIDS[name], rotation(rng), rng.normal(size=3))])
         n = rotation(rng)[0]
         low, high = f.extent(n)
         edge = 1e-3 * (high - low)
         mass = beyond(f, n, np.array([low, low + edge, high - edge, high]))[:, 3, 3]
-        assert abs(mass[0] - f.whole()[3, 3]) < 1e-14 * mass[0]
+        assert abs(mass[0] - f.whole_inertia()[3, 3]) < 1e-14 * mass[0]
         assert mass[0] > mass[1] > mass[2] > 0.0
         assert mass[3] < 1e-14 * mass[0]
 
 
 def test_shapes_add() -> None:
     shapes = list(SOLIDS.values())
-    parts = sum(form([shape]).whole() for shape in shapes)
-    assert difference(form(shapes).whole(), parts, parts) < 1e-15
+    parts = sum(make_composite_solid([shape]).whole_inertia() for shape in shapes)
+    assert difference(make_composite_solid(shapes).whole_inertia(), parts, parts) < 1e-15

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.stats import sobol_indices as scipy_indices
 
-from heuncli.analyses.variants.axes import Drawn
-from heuncli.analyses.variants.draws import draws_of
-from heuncli.analyses.variants.indices import sobol_indices
+from heuncli.analyses.variants.axes import RandomVariable
+from heuncli.analyses.variants.draws import make_draws
+from heuncli.analyses.variants.indices import compute_sobol_indices
 from heuncli.results.results import Array
 from tests.shared.command import Heun
 
@@ -73,9 +73,9 @@ def test_a_sweep_finds_the_indices_of_ishigamis_function(heun: Heun, folder: Pat
 
 @pytest.mark.parametrize("law", ["uniform", "lhs", "sobol"])
 def test_they_are_those_that_scipy_finds_by_the_same_plan(law: str) -> None:
-    laws = [Drawn(name, law, -math.pi, math.pi, "") for name in "xyz"]  # type: ignore[arg-type]
-    f = ishigami(draws_of(laws, 256, 3, indices=True).values).reshape(256, 5)
-    own = sobol_indices(f)
+    laws = [RandomVariable(name, law, -math.pi, math.pi, "") for name in "xyz"]  # type: ignore[arg-type]
+    f = ishigami(make_draws(laws, 256, 3, indices=True).values).reshape(256, 5)
+    own = compute_sobol_indices(f)
     assert own is not None
     given = {"f_A": f[:, :1].T, "f_B": f[:, 1:2].T, "f_AB": f[:, 2:].T[:, None, :]}
     theirs = scipy_indices(func=given, n=256)
@@ -85,9 +85,9 @@ def test_they_are_those_that_scipy_finds_by_the_same_plan(law: str) -> None:
 
 def test_of_a_sum_each_index_is_the_share_of_its_variance() -> None:
     """x + 2 y + 3 z of normal deviations 1: 1/14, 4/14, 9/14, first and total."""
-    laws = [Drawn(name, "normal", 5.0, 1.0, "") for name in "xyz"]
-    f = draws_of(laws, 20_000, 0, indices=True).values @ np.array([1.0, 2.0, 3.0])
-    own = sobol_indices(f.reshape(-1, 5))
+    laws = [RandomVariable(name, "normal", 5.0, 1.0, "") for name in "xyz"]
+    f = make_draws(laws, 20_000, 0, indices=True).values @ np.array([1.0, 2.0, 3.0])
+    own = compute_sobol_indices(f.reshape(-1, 5))
     assert own is not None
     for one, truth in zip(own, np.array([1.0, 4.0, 9.0]) / 14.0, strict=True):
         assert one.first.low is not None and abs(one.first.value - truth) < 2.0 * (one.first.value - one.first.low)
@@ -95,5 +95,5 @@ def test_of_a_sum_each_index_is_the_share_of_its_variance() -> None:
 
 
 def test_what_does_not_vary_or_is_known_of_few_samples_has_none() -> None:
-    assert sobol_indices(np.ones((100, 4))) is None
-    assert sobol_indices(np.random.default_rng(0).random((7, 4))) is None
+    assert compute_sobol_indices(np.ones((100, 4))) is None
+    assert compute_sobol_indices(np.random.default_rng(0).random((7, 4))) is None

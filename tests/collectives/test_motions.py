@@ -12,12 +12,12 @@ import pytest
 
 import heuncli
 from heuncli.base.errors import HeunError
-from heuncli.output.snapshots.collectives import collective
-from heuncli.output.tables.results_json_schema import results_schema
+from heuncli.output.snapshots.collectives import count_collective
+from heuncli.output.tables.results_json_schema import make_results_schema
 from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
-from heuncli.study.load_cycles.counted import Collective, Counting, LoadHistory, counted
-from heuncli.study.load_cycles.rainflow import rainflow
+from heuncli.study.load_cycles.counted import Collective, Counting, LoadHistory, make_collective
+from heuncli.study.load_cycles.rainflow import count_once
 from tests.shared.command import HANGING, TURNED, Heun
 from tests.shared.folders import SPECS
 from tests.shared.scenes import study
@@ -89,8 +89,8 @@ def same_sizes(one: Collective, other: Array, scale: float = 1.0) -> None:
 
 
 def test_a_tone_is_as_many_cycles_as_turns_of_twice_its_amplitude() -> None:
-    one = collective(shaker(), SIDE, slopes=(1.0, 3.0, 12.0))
-    assert one.total == 5.0
+    one = count_collective(shaker(), SIDE, slopes=(1.0, 3.0, 12.0))
+    assert one.total_cycles == 5.0
     same_sizes(one, np.full(10, 20.0))
     for found in one.equivalents:  # 5 cycles of 20 N are one of 20 * 5^(1/m)
         assert abs(found.range - 20.0 * 5.0 ** (1.0 / found.slope)) <= found.error
@@ -103,8 +103,8 @@ def test_two_tones_are_counted_between_the_samples() -> None:
     w = 20.0
     t = np.linspace(0.0, 10.0 * np.pi / w, 1_000_001)
     law = 10.0 * np.sin(w * t) + 4.0 * np.sin(7.0 * w * t + 1.0)
-    cycles = rainflow(law)
-    one = collective(shaker(TWO_TONES), SIDE)
+    cycles = count_once(law)
+    one = count_collective(shaker(TWO_TONES), SIDE)
     wanted = np.sort(np.repeat(cycles.ranges, (2.0 * cycles.counts).astype(int)))
     mine = sizes(one)
     assert mine.shape == wanted.shape
@@ -125,7 +125,7 @@ def test_machines_looked_at_closely_have_the_same_cycles(name: str, path: str) -
     one = solved.collective(path)
     values = solved[path].at(np.linspace(solved.time[0], solved.time[-1], 40_001))
     values = np.sqrt(np.sum(values**2, axis=1)) if values.ndim > 1 else values
-    cycles, size = rainflow(values), float(np.ptp(values))
+    cycles, size = count_once(values), float(np.ptp(values))
     wanted = np.sort(np.repeat(cycles.ranges, (2.0 * cycles.counts).astype(int)))
     mine = sizes(one)
     mine, wanted = (own[own > 1e-4 * size] for own in (mine, wanted))
@@ -135,24 +135,24 @@ def test_machines_looked_at_closely_have_the_same_cycles(name: str, path: str) -
 
 def test_scaled_turned_shifted_and_slowed() -> None:
     """Loads c times as large: ranges, too; turned round: the same; a mean moves none; time does not matter."""
-    wanted = sizes(collective(shaker(TWO_TONES), SIDE))
+    wanted = sizes(count_collective(shaker(TWO_TONES), SIDE))
     for values in ({"a": "30 N"}, {"a": "-10 N"}, {"w": "3.7"}):
-        same_sizes(collective(shaker(TWO_TONES, **values), SIDE), wanted, 3.0 if values == {"a": "30 N"} else 1.0)
-    same_sizes(collective(shaker(TWO_TONES + " + 1000"), SIDE), wanted)
+        same_sizes(count_collective(shaker(TWO_TONES, **values), SIDE), wanted, 3.0 if values == {"a": "30 N"} else 1.0)
+    same_sizes(count_collective(shaker(TWO_TONES + " + 1000"), SIDE), wanted)
     warped = TWO_TONES.replace("*t", "*(t + 0.02*sin(4*t)**2)")  # comes to the same phase at the end
-    same_sizes(collective(shaker(warped, turns=5), SIDE), wanted)
+    same_sizes(count_collective(shaker(warped, turns=5), SIDE), wanted)
 
 
 def test_repeated_is_a_run_of_so_many_turns() -> None:
-    long = collective(shaker(TWO_TONES, turns=7), SIDE, slopes=(4.0,))
-    short = collective(shaker(TWO_TONES, turns=1), SIDE, slopes=(4.0,), repeat=7, cycles=1.0)
+    long = count_collective(shaker(TWO_TONES, turns=7), SIDE, slopes=(4.0,))
+    short = count_collective(shaker(TWO_TONES, turns=1), SIDE, slopes=(4.0,), repeat=7, cycles=1.0)
     same_sizes(short, sizes(long))
     assert abs(long.equivalents[0].range - short.equivalents[0].range) <= 2 * long.equivalents[0].error
-    assert long.crossings.up.tolist() == short.crossings.up.tolist()
+    assert long.crossings.upward.tolist() == short.crossings.upward.tolist()
 
 
 def test_closed_has_whole_cycles_only() -> None:
-    one = collective(shaker(turns=1), SIDE, closed=True)
+    one = count_collective(shaker(turns=1), SIDE, is_closed=True)
     assert one.cycles.counts.tolist() == [1.0]
     same_sizes(one, np.full(2, 20.0))
 
@@ -162,37 +162,37 @@ def test_the_bearing_of_a_wheel_out_of_balance() -> None:
     unbalance, weight = 3 * 0.002 * 100**2, 3 * 9.81
     solved = study(ROTOR)
     for axis, mean in (("x", 0.0), ("y", weight)):
-        one = collective(solved, f"joints.hub.force.{axis}", closed=True)
+        one = count_collective(solved, f"joints.hub.force.{axis}", is_closed=True)
         same_sizes(one, np.full(2, 2 * unbalance))
         assert abs(one.cycles.means[0] - mean) <= one.history.error
-    ring = collective(study(ROTOR, axes="to"), "joints.hub.force.y", closed=True)
+    ring = count_collective(study(ROTOR, axes="to"), "joints.hub.force.y", is_closed=True)
     same_sizes(ring, np.full(2, 2 * weight))
 
 
 def test_a_magnitude_has_lost_its_sign() -> None:
     """|a cos|: twice as many cycles of half the range; the kinks at zero are met."""
-    one = collective(shaker(), "joints.guide.force")
+    one = count_collective(shaker(), "joints.guide.force")
     assert one.history.is_magnitude
-    assert one.total == 10.0
+    assert one.total_cycles == 10.0
     same_sizes(one, np.full(20, 10.0))
 
 
 def test_both_sides_of_jumps_count() -> None:
-    one = collective(shaker("a*(step(sin(w*t + 0.3)) + 0.1*w*t)"), SIDE)
+    one = count_collective(shaker("a*(step(sin(w*t + 0.3)) + 0.1*w*t)"), SIDE)
     t = np.sort(np.concatenate([(np.arange(1, 11) * np.pi - 0.3) / 20.0] * 2))
     low = np.tile([1.0, 0.0, 0.0, 1.0], 5)
     rest = 10.0 * np.concatenate([[1.0], low + 2.0 * t, [1.0 + 0.1 * 20.0 * 10.0 * np.pi / 20.0]])
     rest[1:-1] = 10.0 * (low + 0.1 * 20.0 * t)
-    cycles = rainflow(rest)
+    cycles = count_once(rest)
     same_sizes(one, np.sort(np.repeat(cycles.ranges, (2.0 * cycles.counts).astype(int))))
 
 
 def test_what_does_not_vary_has_no_cycles() -> None:
     """Noise of rounding is counted apart, in no class and no sum."""
-    one = collective(study(ROTOR.replace("gravity: [0, -9.81, 0]\n", "")), "joints.hub.force", slopes=(3.0,))
-    assert one.total == 0.0
+    one = count_collective(study(ROTOR.replace("gravity: [0, -9.81, 0]\n", "")), "joints.hub.force", slopes=(3.0,))
+    assert one.total_cycles == 0.0
     assert one.equivalents[0].range == 0.0
-    assert 0.0 < one.equivalents[0].error <= 2.0 * one.below.range * one.below.cycles ** (1.0 / 3.0)
+    assert 0.0 < one.equivalents[0].error <= 2.0 * one.below_error.range * one.below_error.cycles ** (1.0 / 3.0)
 
 
 def test_the_error_covers_histories_within_it() -> None:
@@ -202,7 +202,7 @@ def test_the_error_covers_histories_within_it() -> None:
     for _ in range(200):
         values, e = np.cumsum(rng.normal(size=60)), float(10.0 ** rng.uniform(-3, 0))
         moved = values + e * rng.choice([-1.0, 1.0, 0.3], size=60)
-        one, other = (counted(LoadHistory("", "N", values, own, e), asked) for own in (values, moved))
+        one, other = (make_collective(LoadHistory("", "N", values, own, e), asked) for own in (values, moved))
         for mine, others in zip(one.equivalents, other.equivalents, strict=True):
             assert abs(mine.range - others.range) <= mine.error + 1e-12
 
@@ -210,11 +210,13 @@ def test_the_error_covers_histories_within_it() -> None:
 def test_the_stated_error_covers_a_coarse_run() -> None:
     """A bar swings, told to three digits and to twelve."""
     coarse, fine = (
-        collective(study(TURNED + "analysis: {duration: 5, samples: 3}\n", tolerance=tolerance), path, slopes=(3.0,))
+        count_collective(
+            study(TURNED + "analysis: {duration: 5, samples: 3}\n", tolerance=tolerance), path, slopes=(3.0,)
+        )
         for tolerance in (1e-5, 1e-12)
         for path in ("joints.pivot.force.z",)
     )
-    assert coarse.total == fine.total > 3
+    assert coarse.total_cycles == fine.total_cycles > 3
     off = abs(coarse.equivalents[0].range - fine.equivalents[0].range)
     assert off <= coarse.equivalents[0].error < 1e-2 * fine.equivalents[0].range
 
@@ -231,7 +233,7 @@ def test_the_stated_error_covers_a_coarse_run() -> None:
 )  # fmt: skip
 def test_refused(text: str, path: str, words: str) -> None:
     with pytest.raises(HeunError, match=words) as caught:
-        collective(study(text), path)
+        count_collective(study(text), path)
     assert all(problem.hint for problem in caught.value.problems)
 
 
@@ -263,7 +265,7 @@ def test_python_asks_alike(cycles: float) -> None:
     """The door gives the same object, and refuses ways to count that are none, by their names."""
     solved = heuncli.solve(text=SHAKER.format(TWO_TONES))
     one = solved.collective(SIDE, slopes=[3], repeat=2)
-    other = collective(shaker(TWO_TONES), SIDE, slopes=(3.0,), repeat=2)
+    other = count_collective(shaker(TWO_TONES), SIDE, slopes=(3.0,), repeat=2)
     assert one.equivalents == other.equivalents
     assert solved.collective(SIDE, slopes=np.int64(3), repeat=2).equivalents == one.equivalents
     with pytest.raises(heuncli.UsageError) as caught:
@@ -279,7 +281,7 @@ def test_forms(heun: Heun, folder: Path) -> None:
     alone = json.loads(heun(*words, "--format", "json").stdout)
     both = json.loads(heun(*words, "--format", "json", "--case", "all").stdout)
     for told in (alone, both):
-        jsonschema.validate(told, results_schema())
+        jsonschema.validate(told, make_results_schema())
     one = alone["collectives"][SIDE]
     assert sum(one["ranges"]["cycles"]) == one["cycles"] == sum(one["rainflow"]["count"])
     assert list(both["cases"]) == ["soft", "hard"]

@@ -11,8 +11,8 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.study.load_cycles import classes
-from heuncli.study.load_cycles.equivalent import damage, equivalent_range
-from heuncli.study.load_cycles.rainflow import Cycles, endless, rainflow, repeated, turning_points
+from heuncli.study.load_cycles.equivalent import damage_shares, equivalent_range
+from heuncli.study.load_cycles.rainflow import Cycles, count_endless, count_once, count_repeated, find_turning_points
 
 pytestmark = pytest.mark.heavy  # no kernel in it
 
@@ -78,7 +78,7 @@ def histories(seed: int = 20261126) -> Iterator[Array]:
 
 
 def test_astm_figure_6() -> None:
-    cycles = rainflow(FIGURE_6)
+    cycles = count_once(FIGURE_6)
     assert by_range(cycles) == COUNTED_6
     assert cycles.begin[cycles.counts == 1.0].tolist() == [-1.0]  # E-F, the one that closes
     assert cycles.end[cycles.counts == 1.0].tolist() == [3.0]
@@ -89,17 +89,17 @@ def test_astm_figure_7_begins_at_the_highest_peak() -> None:
     history = np.array([5.0, -1.0, 3.0, -4.0, 4.0, -3.0, 1.0, -2.0, 5.0])
     again = np.concatenate([history[3:-1], history[:4]])
     for one in (history, again):
-        cycles = endless(one)
+        cycles = count_endless(one)
         assert set(cycles.counts.tolist()) == {1.0}
         assert by_range(cycles) == {3.0: 1.0, 4.0: 1.0, 7.0: 1.0, 9.0: 1.0}
 
 
 def test_the_packages_own_tests() -> None:
     """Plateaus and points on a slope change nothing; its history of 100 numbers, printed to four decimals."""
-    assert by_range(rainflow(np.repeat(FIGURE_6, 2))) == COUNTED_6
+    assert by_range(count_once(np.repeat(FIGURE_6, 2))) == COUNTED_6
     slopes = np.interp(np.arange(0.0, 8.01, 0.25), np.arange(9.0), FIGURE_6)
-    assert by_range(rainflow(slopes)) == COUNTED_6
-    cycles = rainflow(np.array(OF_PACKAGE))
+    assert by_range(count_once(slopes)) == COUNTED_6
+    cycles = count_once(np.array(OF_PACKAGE))
     found = zip(0.5 * cycles.ranges, cycles.means, cycles.counts, strict=True)
     rounded = Counter((round(float(size), 4), round(float(mean), 4), float(n)) for size, mean, n in found)
     assert rounded == Counter(OF_PACKAGE_COUNTED)
@@ -115,9 +115,9 @@ def test_as_the_package_rainflow_on_random_histories() -> None:
         wanted: Counter[tuple[float, float]] = Counter()
         for size, mean, n, _, _ in package.extract_cycles(history.tolist()):
             wanted[size, mean] += n
-        assert by_range_and_mean(rainflow(history)) == Counter({k: n for k, n in wanted.items() if k[0] > 0.0})
+        assert by_range_and_mean(count_once(history)) == Counter({k: n for k, n in wanted.items() if k[0] > 0.0})
     assert list(package.extract_cycles([0.0, 1.0])) == []
-    assert by_range(rainflow(np.array([0.0, 1.0]))) == {1.0: 0.5}
+    assert by_range(count_once(np.array([0.0, 1.0]))) == {1.0: 0.5}
 
 
 def test_classes_as_the_package_rainflow() -> None:
@@ -125,10 +125,10 @@ def test_classes_as_the_package_rainflow() -> None:
     rng = np.random.default_rng(3)
     for n in (1, 2, 5, 9, 10):
         for history in (FIGURE_6, rng.normal(size=60)):
-            cycles = rainflow(history)
-            limits = classes.limits(0.0, float(cycles.ranges.max()), n)
+            cycles = count_once(history)
+            limits = classes.make_class_limits(0.0, float(cycles.ranges.max()), n)
             wanted = [count for _, count in package.count_cycles(history.tolist(), nbins=n)]
-            assert classes.by_range(cycles, limits, 1e-12).tolist() == wanted
+            assert classes.count_by_range(cycles, limits, 1e-12).tolist() == wanted
 
 
 def test_a_repeated_history_counts_as_one_told_so_many_times() -> None:
@@ -136,64 +136,64 @@ def test_a_repeated_history_counts_as_one_told_so_many_times() -> None:
         history[-1] = history[0]
         times = 1 + k % 6
         told = np.concatenate([history, *[history[1:]] * (times - 1)])
-        assert by_range_and_mean(repeated(history, times)) == by_range_and_mean(rainflow(told))
+        assert by_range_and_mean(count_repeated(history, times)) == by_range_and_mean(count_once(told))
 
 
 def test_endless_is_what_each_further_time_adds() -> None:
     for history in histories():
         history[-1] = history[0]
-        added = by_range_and_mean(repeated(history, 9))
-        added.subtract(by_range_and_mean(repeated(history, 8)))
-        assert by_range_and_mean(endless(history)) == Counter({key: n for key, n in added.items() if n})
+        added = by_range_and_mean(count_repeated(history, 9))
+        added.subtract(by_range_and_mean(count_repeated(history, 8)))
+        assert by_range_and_mean(count_endless(history)) == Counter({key: n for key, n in added.items() if n})
 
 
 def test_halves_and_cycles_use_every_range_once() -> None:
     """Each turning point behind the first ends one half cycle."""
     for history in histories():
-        points = len(turning_points(history))
-        assert rainflow(history).counts.sum() == 0.5 * max(points - 1, 0)
+        points = len(find_turning_points(history))
+        assert count_once(history).counts.sum() == 0.5 * max(points - 1, 0)
 
 
 def test_laws_of_a_count() -> None:
     """Scaled, shifted loads have such ranges and means; turned in sign or time, or warped, they count alike."""
     for history in histories():
-        cycles = by_range_and_mean(rainflow(history))
-        scaled = by_range_and_mean(rainflow(4.0 * history))
+        cycles = by_range_and_mean(count_once(history))
+        scaled = by_range_and_mean(count_once(4.0 * history))
         assert scaled == Counter({(4.0 * size, 4.0 * mean): n for (size, mean), n in cycles.items()})
-        turned = by_range_and_mean(rainflow(-history))
+        turned = by_range_and_mean(count_once(-history))
         assert turned == Counter({(size, -mean + 0.0): n for (size, mean), n in cycles.items()})
-        assert by_range(rainflow(history[::-1])) == by_range(rainflow(history))
+        assert by_range(count_once(history[::-1])) == by_range(count_once(history))
         warped = np.insert(history, 1, 0.5 * (history[0] + history[1]))
-        assert by_range_and_mean(rainflow(warped)) == cycles
-        shifted = rainflow(history + 64.0)
-        assert np.allclose(np.sort(shifted.ranges), np.sort(rainflow(history).ranges), rtol=0, atol=1e-12)
-        assert np.allclose(np.sort(shifted.means), np.sort(rainflow(history).means + 64.0), rtol=0, atol=1e-12)
+        assert by_range_and_mean(count_once(warped)) == cycles
+        shifted = count_once(history + 64.0)
+        assert np.allclose(np.sort(shifted.ranges), np.sort(count_once(history).ranges), rtol=0, atol=1e-12)
+        assert np.allclose(np.sort(shifted.means), np.sort(count_once(history).means + 64.0), rtol=0, atol=1e-12)
 
 
 def test_crossings_are_those_of_the_history() -> None:
     """A level is passed upwards by a range that begins at or below it and ends above; counted there, one by one."""
     for history in histories():
-        points = turning_points(history)
+        points = find_turning_points(history)
         a, b = points[:-1], points[1:]
         levels = np.linspace(history.min(), history.max(), 9)
-        found = classes.crossings(rainflow(history), levels)
-        assert found.up.tolist() == [float(np.sum((a <= L) & (b > L))) for L in levels]
-        assert found.down.tolist() == [float(np.sum((a >= L) & (b < L))) for L in levels]
-        assert found.counted(0.0).tolist() == np.where(levels >= 0.0, found.up, found.down).tolist()
+        found = classes.count_crossings(count_once(history), levels)
+        assert found.upward.tolist() == [float(np.sum((a <= L) & (b > L))) for L in levels]
+        assert found.downward.tolist() == [float(np.sum((a >= L) & (b < L))) for L in levels]
+        assert found.count_by_reference(0.0).tolist() == np.where(levels >= 0.0, found.upward, found.downward).tolist()
 
 
 def test_the_matrix_adds_up_to_the_classes() -> None:
     for history in histories():
-        cycles = rainflow(history)
-        limits = classes.limits(0.0, float(cycles.ranges.max(initial=0.0)), 7)
-        cells = classes.matrix(cycles, limits, 1e-12)
-        assert cells.counts.sum(axis=1).tolist() == classes.by_range(cycles, limits, 1e-12).tolist()
+        cycles = count_once(history)
+        limits = classes.make_class_limits(0.0, float(cycles.ranges.max(initial=0.0)), 7)
+        cells = classes.count_matrix(cycles, limits, 1e-12)
+        assert cells.counts.sum(axis=1).tolist() == classes.count_by_range(cycles, limits, 1e-12).tolist()
 
 
 def test_rounding_decides_no_class() -> None:
     """Ranges at a limit, off by their error upwards, belong below it as those off downwards do."""
     cycles = Cycles(np.zeros(3), np.array([0.5 - 1e-13, 0.5 + 1e-13, 1.0]), np.ones(3))
-    assert classes.by_range(cycles, classes.limits(0.0, 1.0, 2), 1e-12).tolist() == [2.0, 1.0]
+    assert classes.count_by_range(cycles, classes.make_class_limits(0.0, 1.0, 2), 1e-12).tolist() == [2.0, 1.0]
 
 
 def test_equivalent_range() -> None:
@@ -201,6 +201,6 @@ def test_equivalent_range() -> None:
     ranges, counts = np.array([1.0, 2.0]), np.array([8.0, 1.0])
     assert equivalent_range(ranges, counts, 3.0, 16.0) == pytest.approx(1.0, rel=1e-15)
     assert equivalent_range(ranges, counts, 3.0, 2.0) == pytest.approx(2.0, rel=1e-15)
-    assert damage(ranges, counts, 3.0).tolist() == pytest.approx([0.5, 0.5])
+    assert damage_shares(ranges, counts, 3.0).tolist() == pytest.approx([0.5, 0.5])
     assert equivalent_range(1e200 * ranges, counts, 9.0, 1.0) == pytest.approx(1e200 * (8 + 2**9) ** (1 / 9), rel=1e-14)
     assert equivalent_range(np.zeros(0), np.zeros(0), 3.0, 1.0) == 0.0

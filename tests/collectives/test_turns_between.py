@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.load_cycles.rainflow import turning_points
-from heuncli.study.search.turnings import with_turnings
+from heuncli.study.load_cycles.rainflow import find_turning_points
+from heuncli.study.search.turnings import add_turning_points
 
 COARSE, ERROR = 257, 1e-12
 HARD: dict[str, tuple[Callable[[Array], Array], float]] = {
@@ -24,8 +24,8 @@ def test_every_turn_of_a_dense_sampling_is_met(name: str) -> None:
     law, duration = HARD[name]
     grid = np.linspace(0.0, duration, COARSE)
     errors, even = np.array([ERROR]), np.array([False])
-    found = with_turnings(lambda t: law(t)[:, None], grid, law(grid)[:, None], errors, even)
+    found = add_turning_points(lambda t: law(t)[:, None], grid, law(grid)[:, None], errors, even)
     assert found.complete
-    mine, dense = turning_points(found.values[:, 0]), turning_points(law(np.linspace(0.0, duration, 400_001)))
+    mine, dense = find_turning_points(found.values[:, 0]), find_turning_points(law(np.linspace(0.0, duration, 400_001)))
     assert len(mine) == len(dense)
     np.testing.assert_allclose(mine, dense, atol=1e-3 * np.ptp(dense))

@@ -19,9 +19,9 @@ BOBS = Addition(
 
 from __future__ import annotations
 
-from heuncli.scene.importers.asked import ImportAsked
-from heuncli.scene.importers.described import DescribedBody, DescribedEntry, DescribedMachine, DescribedPoint
-from heuncli.scene.importers.names import called, names_of
+from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.description import DescribedBody, DescribedEntry, DescribedMachine, DescribedPoint
+from heuncli.scene.importers.names import format_original_name, assign_names
 from heuncli.scene.importers.xml_elements import XmlElement
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.scene.file_format.models import ZERO
@@ -29,15 +29,15 @@ from heuncli.scene.file_format.models import ZERO
 NONE = (ZERO, ZERO, ZERO)
 
 
-def described(_content: bytes, file: str, root: XmlElement, _asked: ImportAsked, sha256: str) -> DescribedMachine:
+def described(_content: bytes, file: str, root: XmlElement, _asked: ImportOptions, sha256: str) -> DescribedMachine:
     """The machine that a file of bobs describes."""
-    wanted = [bob.attributes["name"] for bob in root.inner]
-    names = names_of("bob", wanted)
+    wanted = [bob.attributes["name"] for bob in root.children]
+    names = assign_names("bob", wanted)
     bodies, joints, left_out = [], [], []
-    for bob, name, its in zip(root.inner, names, wanted, strict=True):
+    for bob, name, its in zip(root.children, names, wanted, strict=True):
         mass, length = (float(bob.attributes[key]) for key in ("mass", "length"))
         points = (DescribedPoint("hook", ZERO),)
-        bodies.append(DescribedBody(name, mass, (0.0, 0.0, -length), NONE, points, remark=called("bob", name, its)))
+        bodies.append(DescribedBody(name, mass, (0.0, 0.0, -length), NONE, points, remark=format_original_name("bob", name, its)))
         joints.append(DescribedEntry(name, {"type": "ball", "from": "ground.hook", "to": f"{name}.hook"}))
         if "colour" in bob.attributes:
             place = SourceLocation(file, bob.line, bob.column, f"bob {its}")

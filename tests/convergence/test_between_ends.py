@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.method_rows import METHODS
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from tests.shared.bars import chain, double
@@ -33,14 +33,14 @@ ROUNDED = 1e-12  # of numbers of some units: below, it is rounding that errs
 def erred(name: str, scene: str) -> list[Array]:
     """Of some steps the error at PARTS of them, against the motion that goes on from the step's start."""
     runner = study(SCENES[scene]).setup.runner
-    method = method_of(name)
-    run = runner.trajectory(MotionTask(np.array([0.0, 0.8]), STEP if method.fixed else LOCAL, method=method))
+    method = load_method_by_name(name)
+    run = runner.run(MotionTask(np.array([0.0, 0.8]), STEP if method.has_fixed_step else LOCAL, method=method))
     ends = run.ends
     found = []
     for k in np.unique(np.linspace(1, len(ends) - 2, SOME).astype(int)).tolist():
         inner = ends[k - 1] + PARTS * (ends[k] - ends[k - 1])
         begin = runner.resample(run, ends[k - 1 : k])[0]
-        exact = runner.trajectory(MotionTask(inner - ends[k - 1], 1e-14, start=begin))
+        exact = runner.run(MotionTask(inner - ends[k - 1], 1e-14, start=begin))
         found.append(np.abs(runner.resample(run, inner) - exact.states).max(axis=1))
     return [error for error in found if error.max() > ROUNDED]
 
@@ -50,7 +50,7 @@ def erred(name: str, scene: str) -> list[Array]:
 def test_the_largest_error_is_seen(name: str, scene: str) -> None:
     errors = erred(name, scene)
     assert errors or name == "Gauss6"
-    parts = (*method_of(name).within, 1.0)
+    parts = (*load_method_by_name(name).sample_fractions, 1.0)
     seen = [max(float(error[int(np.argmin(np.abs(PARTS - x)))]) for x in parts) for error in errors]
     assert all(s >= SEEN * float(error.max()) for s, error in zip(seen, errors, strict=True))
 

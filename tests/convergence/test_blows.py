@@ -208,7 +208,7 @@ def test_the_highest_just_after_a_blow() -> None:
     after = run.resample(np.array([0.0317])).coordinates["shaft"]["rate"][0]
     assert found["value"] == pytest.approx(after, rel=1e-12) and found["at"] == pytest.approx(0.0317, abs=1e-12)
     near(block["bodies"]["w"]["angular_velocity_jump"][2], 5 * 0.5 / J, 10.0, 1e-12)
-    assert float(measure.write([measure.parse("impulses.0.energy_jump")], run, "table")) == pytest.approx(
+    assert float(measure.format_measures([measure.parse_measure("impulses.0.energy_jump")], run, "table")) == pytest.approx(
         float(block["energy_jump"]), rel=1e-14)  # fmt: skip
 
 
@@ -236,7 +236,7 @@ def test_a_blow_behind_the_horizon_is_not_told_as_a_number() -> None:
     run = study(text)
     horizon = run.results.accuracy["horizon"]
     assert horizon is not None and horizon < 38.0
-    assert measure.write([measure.parse("impulses.0.energy_jump")], run, "table").strip() == "?"
+    assert measure.format_measures([measure.parse_measure("impulses.0.energy_jump")], run, "table").strip() == "?"
 
 
 # ---- the errors of impulses

@@ -67,9 +67,7 @@ def test_looking_at_events_changes_no_bit(name: str) -> None:
     s = study(spec(name), method="DOP853")
     jumps = s.history.jumps
     runs = [
-        s.setup.runner.trajectory(
-            MotionTask(s.results.time, 1e-9, discontinuities=jumps), StoppingRules(events=eventful)
-        )
+        s.setup.runner.run(MotionTask(s.results.time, 1e-9, discontinuities=jumps), StoppingRules(events=eventful))
         for eventful in (False, True)
     ]
     assert np.array_equal(runs[0].states, runs[1].states)

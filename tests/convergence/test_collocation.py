@@ -11,7 +11,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, SolveError
 from heuncli.motion.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES
@@ -169,7 +169,7 @@ def test_specs_by_a_stiff_method(scene: str) -> None:
 def test_done_again_it_has_the_same_bits(method: str) -> None:
     """Which instants are asked for changes nothing of the steps; others than those are the run's own."""
     runner, times = study(STIFF_SCENES["friction of 1e-6"]).setup.runner, np.linspace(0.0, 1.0, 37)
-    few, many = (runner.trajectory(MotionTask(at, 1e-7, method=method_of(method))) for at in (times[[0, -1]], times))
+    few, many = (runner.run(MotionTask(at, 1e-7, method=load_method_by_name(method))) for at in (times[[0, -1]], times))
     assert few.ends.tolist() == many.ends.tolist()
     assert np.array_equal(runner.resample(few, times), many.states)
     assert np.array_equal(runner.resample(few, times[[17]]), many.states[[17]])

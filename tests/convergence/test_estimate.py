@@ -18,7 +18,7 @@ from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
-from heuncli.study.compose.blocks import blocks
+from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -64,8 +64,8 @@ def instants(study: Study) -> Array:
 def places(study: Study, local: float) -> Array:
     """The same by one run at a local tolerance."""
     runner = study.setup.runner
-    run = runner.trajectory(MotionTask(instants(study), local))
-    found = blocks(recover(study.setup, runner.recovered(run.times, run.states), False), {"motion", "points"})
+    run = runner.run(MotionTask(instants(study), local))
+    found = make_blocks(recover(study.setup, runner.evaluate(run.times, run.states), False), {"motion", "points"})
     return read_places(found["bodies"], found["points"])
 
 
@@ -91,7 +91,7 @@ def measured(name: str, tolerance: float) -> tuple[float, float, float]:
     """Estimate, true error, and how far that is sure, all relative to the scene's size."""
     study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
     found, size, wanted = (
-        study.reports_at(instants(study), {"motion", "points"}),
+        study.compute_reports(instants(study), {"motion", "points"}),
         study.setup.scene.layout.size,
         exact(name),
     )
@@ -145,9 +145,9 @@ def test_reactions_are_judged_too() -> None:
         for tolerance in (1e-5, 1e-8, 1e-11):
             study = solve(load("scene.yaml", SCENES[name]), Options(tolerance=tolerance))
             runner = study.setup.runner
-            run = runner.trajectory(MotionTask(study.history.times, 1e-15))
-            recovered = runner.recovered(run.times, run.states)
-            wanted = blocks(recover(study.setup, recovered, False), {"joints"})["joints"]
+            run = runner.run(MotionTask(study.history.times, 1e-15))
+            recovered = runner.evaluate(run.times, run.states)
+            wanted = make_blocks(recover(study.setup, recovered, False), {"joints"})["joints"]
             forces = {j: b["force"] for j, b in study.results.joints.items()}
             size = max(float(np.abs(F).max()) for F in forces.values())
             error = max(float(np.abs(F - wanted[j]["force"]).max()) for j, F in forces.items()) / size

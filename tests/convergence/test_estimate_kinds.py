@@ -33,7 +33,7 @@ def studied(name: str, tolerance: float) -> tuple[Study, Results]:
     study = solve(load(str(SPECS / f"{name}.yaml")), Options(tolerance=tolerance))
     times = study.history.times
     dense = np.unique(np.concatenate([times, np.linspace(times[0], times[-1], 151)]))
-    return study, study.reports_at(dense, frozenset({"joints", "foundation", "sections", "energy"}))
+    return study, study.compute_reports(dense, frozenset({"joints", "foundation", "sections", "energy"}))
 
 
 def loads(kind: str, found: Results) -> list[tuple[str, Array]]:

@@ -30,9 +30,9 @@ pytestmark = pytest.mark.heavy
 @cache
 def studied(name: str, tolerance: float) -> tuple[Study, Results]:
     """A spec's run by cause, and what it tells at instants between, too."""
-    made = solve(load(str(SPECS / f"{name}.yaml")), Options(tolerance=tolerance, wanted=WANTED))
+    made = solve(load(str(SPECS / f"{name}.yaml")), Options(tolerance=tolerance, requested_reports=WANTED))
     times = made.history.times
-    return made, made.reports_at(np.unique(np.concatenate([times, np.linspace(times[0], times[-1], 101)])), WANTED)
+    return made, made.compute_reports(np.unique(np.concatenate([times, np.linspace(times[0], times[-1], 101)])), WANTED)
 
 
 def shares(found: Results) -> dict[tuple[str, str], list[Array]]:

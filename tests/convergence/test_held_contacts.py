@@ -73,8 +73,8 @@ def test_a_pressed_mass_leaves_where_the_rate_is_large_enough(force: float, tole
     leaving = math.sqrt(force / (m * r)) / al
     angle = f"{al!r}*t**2/2"
     run = hub("slide, axis: [1, 0, 0]", pressed(force, 0.0), angle, m, r, 1.05 * leaving, tolerance)
-    assert run.history.checked is not None
-    steps = run.history.checked.run
+    assert run.history.checked_run is not None
+    steps = run.history.checked_run.run
     first_open = int(np.argmax(~steps.holding.astype(bool).any(axis=1)))
     near(steps.ends[first_open - 1], leaving, leaving, 1e-13)
 

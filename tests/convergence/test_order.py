@@ -14,7 +14,7 @@ from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import METHODS
 from heuncli.base.records import replace
 from heuncli.motion.integration.methods.method import Method, Row
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.results.results import Array
@@ -33,20 +33,20 @@ POINTS = 4  # the finest of those between
 
 def centres(runner: Runner, times: Array, states: Array) -> Array:
     """Attitudes and places of all bodies."""
-    found = runner.recovered(times, states)
+    found = runner.evaluate(times, states)
     return np.concatenate([found.bodies["R"].reshape(*found.bodies.shape, 9), found.bodies["r"]], axis=2)
 
 
 def measured(name: str, end: float, at: Array) -> tuple[Array, Array]:
     """Numbers of steps, and the largest error at some instants, parts of the last step: where it tells the order."""
     runner = study(SCENE).setup.runner
-    method = replace(method_of(name), fixed=True)
+    method = replace(load_method_by_name(name), has_fixed_step=True)
     counts, errors = [], []
     for n in COUNTS.tolist():
         times = end - (1.0 - at) * (end / n)
-        exact = runner.trajectory(MotionTask(times, 1e-15))
+        exact = runner.run(MotionTask(times, 1e-15))
         try:
-            run = runner.trajectory(MotionTask(times, end / n, method=method))
+            run = runner.run(MotionTask(times, end / n, method=method))
         except SolveError as refused:  # Newton's iteration for the stages of too long a step
             assert refused.problems[0].code == "stages-unsolved"
             continue
@@ -67,7 +67,7 @@ def test_order_in_given_steps(name: str) -> None:
     counts, errors = measured(name, 0.3, np.array([1.0]))
     assert len(counts) == POINTS
     order = next(row.order for row in METHODS if row.name == name)
-    assert method_of(name).order == order
+    assert load_method_by_name(name).order == order
     assert fitted(counts, errors) == pytest.approx(order, abs=0.5)
 
 
@@ -80,7 +80,7 @@ def test_order_between_the_ends_of_steps(name: str) -> None:
     """
     counts, errors = measured(name, 0.5, np.array([0.3, 0.5, 0.8]))
     assert len(counts) == POINTS
-    method = method_of(name)
+    method = load_method_by_name(name)
     by_stages = method.implicit and not method.by_step
     assert fitted(counts, errors) > (len(method.stages) + 1 if by_stages else method.order) - 1.5
 
@@ -102,7 +102,7 @@ def nodes_of(method: Method) -> tuple[float, ...]:
 @pytest.mark.parametrize("name", TABLEAUS)
 def test_rows_add_up_to_their_nodes(name: str) -> None:
     """For y' = 1 every stage is where it says."""
-    method = method_of(name)
+    method = load_method_by_name(name)
     rows = [*zip(method.stages, method.nodes[1:], strict=False)]
     rows += zip(method.extra, method.nodes[len(method.stages) + 2 :], strict=True)
     for row, node in rows:
@@ -113,7 +113,7 @@ def test_rows_add_up_to_their_nodes(name: str) -> None:
 @pytest.mark.parametrize("name", TABLEAUS)
 def test_the_solution_is_a_quadrature_of_its_order(name: str) -> None:
     """For y' = t^k, k < order: the integral; and the estimates see nothing of it as far as their own order goes."""
-    method = method_of(name)
+    method = load_method_by_name(name)
     nodes = nodes_of(method)
     for k in range(method.order):
         assert total(method.solution, nodes, k) == pytest.approx(1.0 / (k + 1), abs=2e-15)
@@ -127,7 +127,7 @@ def test_the_solution_is_a_quadrature_of_its_order(name: str) -> None:
 @pytest.mark.parametrize("x", [0.2, 0.5, 0.9])
 def test_the_dense_output_is_a_quadrature_of_one_order_less(name: str, x: float) -> None:
     """For y' = t^k the interpolating polynomial is x^(k+1) / (k+1), as far as its order goes."""
-    method = method_of(name)
+    method = load_method_by_name(name)
     nodes, end = nodes_of(method), len(method.stages) + 1
     order = min(method.order, max(3, method.order - 1))
     for k in range(order):
@@ -156,7 +156,7 @@ def test_order_of_runs(name: str, dense: bool) -> None:
     times = np.linspace(0.0, end, 101) if dense else np.array([end])
 
     def run_to(tolerance: float) -> tuple[Array, int]:
-        run = s.setup.runner.trajectory(MotionTask(times, tolerance))
+        run = s.setup.runner.run(MotionTask(times, tolerance))
         return centres(s.setup.runner, run.times, run.states), run.steps
 
     exact, _ = run_to(1e-15)

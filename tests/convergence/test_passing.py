@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from heuncli.motion.integration.check.singular_poses import singular_poses
+from heuncli.motion.integration.check.singular_poses import find_singular_positions
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
@@ -48,7 +48,7 @@ def pendulum(rate: float) -> tuple[float, Array]:
 
 def run(rate: float, tolerance: float) -> tuple[Trajectory, Runner]:
     runner = Runner(scene(rate).layout)
-    return runner.trajectory(MotionTask(np.linspace(0.0, TURN, 5), tolerance, most_steps=3000)), runner
+    return runner.run(MotionTask(np.linspace(0.0, TURN, 5), tolerance, most_steps=3000)), runner
 
 
 RATES = [1.0, 0.3, 2.9, *np.random.default_rng(17).uniform(0.05, 4.0, 17).tolist()]
@@ -59,7 +59,7 @@ RATES = [1.0, 0.3, 2.9, *np.random.default_rng(17).uniform(0.05, 4.0, 17).tolist
 def test_the_parallelogram_stays_one(rate: float, tolerance: float) -> None:
     """Bars parallel to rounding, at the pendulum's angle to what the local tolerance makes of two seconds' growth."""
     found, runner = run(rate, tolerance)
-    R = runner.recovered(found.times, found.states).bodies["R"][-1]
+    R = runner.evaluate(found.times, found.states).bodies["R"][-1]
     turned = {name: np.arctan2(R[runner.layout.place[i], 0, 1], R[runner.layout.place[i], 0, 0])
               for i, name in enumerate(b.name for b in scene(rate).mechanism.bodies)}  # fmt: skip
     assert abs(np.sin(turned["coupler"])) <= 1e-8  # what a gap of 1e-16 lets it turn in a flat pose
@@ -74,7 +74,7 @@ def test_passages_are_told() -> None:
     """All flat positions of the two seconds, with their instants."""
     for rate in RATES[:4]:
         found, runner = run(rate, 1e-9)
-        np.testing.assert_allclose(singular_poses(runner, found), pendulum(rate)[1], atol=3e-6)
+        np.testing.assert_allclose(find_singular_positions(runner, found), pendulum(rate)[1], atol=3e-6)
     warnings = study(parallelogram(1.0, TURN, 5)).results.warnings
     assert any(w.startswith("passes through a singular pose at t = 0.70845, 1.21526 s") for w in warnings)
 
@@ -83,6 +83,6 @@ def test_passages_are_told() -> None:
 def test_coming_near_is_no_passage(coupler: float) -> None:
     """A coupler a little too short or too long keeps the chain from lying flat."""
     s = study(parallelogram(0.2, TURN, 5, coupler=coupler))
-    assert s.history.checked is not None
-    assert min(s.history.checked.run.pivots) < 0.05
+    assert s.history.checked_run is not None
+    assert min(s.history.checked_run.run.pivots) < 0.05
     assert s.history.singular == ()

@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.base.method_rows import METHODS
 from heuncli.base.tolerances import EPS
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.results.results import Array
 from tests.bench.long import KNOWN, Errors, errors, runner_of
 
@@ -16,7 +16,7 @@ SYMMETRIC = [row.name for row in METHODS if row.kind == "implicit" and row.steps
 
 
 def after(name: str, method: str, local: float) -> Errors:
-    return errors(KNOWN[name], RUNNERS[name], method_of(method), local, 100)
+    return errors(KNOWN[name], RUNNERS[name], load_method_by_name(method), local, 100)
 
 
 def growth(off: Array) -> float:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from heuncli.study.ask.measure import peak
+from heuncli.study.ask.measure import find_peak
 from tests.shared.pushed_block import pushed_block
 from tests.shared.scenes import near, study
 
@@ -44,7 +44,7 @@ drives:
   motor: {joint: shaft, angle: "exp(-((t - 5.3)/0.01)**2)"}
 analysis: {duration: 10, samples: 3}
 """)
-    found, at, *_ = peak(run, "joints.shaft.drive", "max")
+    found, at, *_ = find_peak(run, "joints.shaft.drive", "max")
     near(found, 4 * math.exp(-1.5) * 1e4, 1e4, 1e-6)
     near(abs(at - 5.3), 0.01 * math.sqrt(1.5), 0.01, 1e-3)
 

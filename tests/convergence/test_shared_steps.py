@@ -58,7 +58,7 @@ def test_what_is_told_is_no_less_than_the_error(w: int, jumps: int, monkeypatch:
 
 def test_a_run_that_ends_at_its_start_shares_no_step() -> None:
     """As where a rope would have to push at once, in a start moved by rounding alone."""
-    assert not runs.shared_steps(np.array([0.1, 0.2]), np.zeros(0))
+    assert not runs.has_shared_steps(np.array([0.1, 0.2]), np.zeros(0))
 
 
 WIDE = """

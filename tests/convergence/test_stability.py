@@ -7,9 +7,9 @@ import pytest
 
 from heuncli.base.method_rows import METHODS
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 
-WATCHED = [m for m in (method_of(row.name) for row in METHODS if row.kind == "explicit") if m.stable]
+WATCHED = [m for m in (load_method_by_name(row.name) for row in METHODS if row.kind == "explicit") if m.stable]
 
 
 def growth(method: Method, x: float) -> float:
@@ -30,4 +30,4 @@ def test_boundary_of_stability(method: Method) -> None:
 
 def test_every_adaptive_explicit_method_is_watched() -> None:
     explicit = [row.name for row in METHODS if row.kind == "explicit" and row.steps == "adaptive"]
-    assert {m.name for m in WATCHED} >= {name for name in explicit if method_of(name).attitude == 0}
+    assert {m.name for m in WATCHED} >= {name for name in explicit if load_method_by_name(name).attitude == 0}

@@ -88,7 +88,7 @@ def test_watching_changes_no_bit(name: str) -> None:
     """Where nothing is begun anew; in `friction` an implicit method is tried on the way, or is not worth trying."""
     s = study((SPECS / f"{name}.yaml").read_text())
     request = MotionTask(s.results.time, 1e-9)
-    runs = [s.setup.runner.trajectory(request, StoppingRules(stiffness=watched)) for watched in (False, True)]
+    runs = [s.setup.runner.run(request, StoppingRules(stiffness=watched)) for watched in (False, True)]
     assert np.array_equal(runs[0].states, runs[1].states)
     assert np.array_equal(runs[0].ends, runs[1].ends)
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.tune.results import (
-    Constraint,
-    Goal,
-    Reading,
+    DesignVariable,
+    MeasureReading,
     TrialOutcome,
-    TunedVariable,
+    TuneConstraint,
+    TuneGoal,
     TuneResults,
     TuneTask,
 )
 from heuncli.analyses.tune.study import Tuning
-from heuncli.analyses.tune.trials import TIME_LIMIT, Trials
+from heuncli.analyses.tune.trials import TIME_LIMIT_CODE, Trials
 from heuncli.results.results import Array
 
 Function = Callable[[Array], float]
@@ -38,15 +38,15 @@ def tuned(
     seed: int = 0,
 ) -> TuneResults:
     """What is found of a function over the unit box, whose constraints are to be 0 or less."""
-    variables = tuple(TunedVariable(f"x{i}", 0.0, 1.0, "") for i in range(n))
-    limits = tuple(Constraint(f"c{i}", "<=", 0.0, "") for i in range(len(constraints)))
-    task = TuneTask(variables, Goal("f", "", greatest), limits, most=most, seed=seed)
+    variables = tuple(DesignVariable(f"x{i}", 0.0, 1.0, "") for i in range(n))
+    limits = tuple(TuneConstraint(f"c{i}", "<=", 0.0, "") for i in range(len(constraints)))
+    task = TuneTask(variables, TuneGoal("f", "", greatest), limits, max_variants=most, seed=seed)
     solved: list[Mapping[str, str]] = []
 
     def answers(several: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
         for values in several:
             if len(solved) >= time_for:
-                yield TrialOutcome(code=TIME_LIMIT)
+                yield TrialOutcome(code=TIME_LIMIT_CODE)
                 return
             assert values not in solved  # nothing is solved twice
             solved.append(values)
@@ -54,11 +54,11 @@ def tuned(
             if unsolvable(x):
                 yield TrialOutcome(code="does-not-close", reason="it does not close")
             else:
-                yield TrialOutcome((Reading(goal(x), error), *(Reading(c(x)) for c in constraints)))
+                yield TrialOutcome((MeasureReading(goal(x), error), *(MeasureReading(c(x)) for c in constraints)))
 
     tuning = Tuning(Trials(task, answers, lambda done, of, what: None), TrialOutcome())
     tuning.run()
-    found = tuning.results()
+    found = tuning.to_results()
     assert len(found.history) == len(solved) <= most
     assert [trial.number for trial in found.history] == [*range(1, len(solved) + 1)]
     return found
@@ -90,21 +90,21 @@ def test_a_kink_in_two_variables(seed: int) -> None:
     assert found.ending == "converged" and found.gain is not None
     assert found.gain <= found.floor <= 2e-6 * spread(kinked)
     assert 0.0 <= best_of(found) - 5.0 <= 10.0 * found.floor
-    for freedom, rises in zip(found.freedoms, ((1.0, 1.0), (2.5, 3.0)), strict=True):
+    for freedom, rises in zip(found.tolerance_ranges, ((1.0, 1.0), (2.5, 3.0)), strict=True):
         for move, rise in zip(freedom.of_hundredth, rises, strict=True):
-            assert move is not None and move.until == "worse"
-            assert 0.8 * 0.05 / rise - 1e-4 <= move.by <= 0.05 / rise + 1e-4
+            assert move is not None and move.limit == "worse"
+            assert 0.8 * 0.05 / rise - 1e-4 <= move.distance <= 0.05 / rise + 1e-4
 
 
 @pytest.mark.parametrize("greatest", [False, True])
 def test_a_smooth_bowl_whichever_way_up(greatest: bool) -> None:
     found = tuned(lambda x: -bowl(x) if greatest else bowl(x), error=1e-9, greatest=greatest)
     assert found.ending == "converged" and abs(abs(best_of(found)) - 1.0) <= found.floor
-    for freedom, curvature in zip(found.freedoms, (1.0, 2.0), strict=True):
+    for freedom, curvature in zip(found.tolerance_ranges, (1.0, 2.0), strict=True):
         for move in freedom.of_hundredth:  # 1 % of 1: curvature s² = 0.01
-            assert move is not None and move.by == pytest.approx(math.sqrt(0.01 / curvature), rel=0.15)
+            assert move is not None and move.distance == pytest.approx(math.sqrt(0.01 / curvature), rel=0.15)
         for move in freedom.of_floor:
-            assert move is not None and move.by == pytest.approx(math.sqrt(found.floor / curvature), rel=0.5)
+            assert move is not None and move.distance == pytest.approx(math.sqrt(found.floor / curvature), rel=0.5)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4])
@@ -122,11 +122,11 @@ def test_two_valleys() -> None:
 def test_a_boundary_with_a_closed_form() -> None:
     """x + 2y is least where xy = 0.2 at x = sqrt(0.4), y = x/2."""
     found = tuned(lambda x: float(x[0] + 2.0 * x[1]), [lambda x: float(0.2 - x[0] * x[1])])
-    assert found.ending == "converged" and found.feasible and found.active == (True,)
+    assert found.ending == "converged" and found.is_feasible and found.active_constraints == (True,)
     assert 0.0 <= best_of(found) - 2.0 * math.sqrt(0.4) <= 2.0 * found.floor
     assert found.best is not None and found.best.place == pytest.approx((math.sqrt(0.4), math.sqrt(0.1)), abs=2e-3)
-    down, up = found.freedoms[0].of_hundredth
-    assert down is not None and down.until == "c0" and up is not None and up.until == "worse"
+    down, up = found.tolerance_ranges[0].of_hundredth
+    assert down is not None and down.limit == "c0" and up is not None and up.limit == "worse"
 
 
 def test_a_corner_of_two_constraints_and_one_that_does_nothing() -> None:
@@ -136,16 +136,19 @@ def test_a_corner_of_two_constraints_and_one_that_does_nothing() -> None:
         lambda x: float(x.sum() - 1.9),
     ]
     found = tuned(lambda x: float(x[0] + 2.0 * x[1]), constraints)
-    assert found.ending == "converged" and found.active == (True, True, False)
+    assert found.ending == "converged" and found.active_constraints == (True, True, False)
     assert 0.0 <= best_of(found) - 1.3 <= 2.0 * found.floor
 
 
 def test_bounds_that_hold_it() -> None:
     found = tuned(lambda x: float(x[0] - 3.0 * x[1]))
     assert found.ending == "converged" and best_of(found) == -3.0
-    assert (found.at_bound(0), found.at_bound(1)) == ("low", "high")
-    assert found.freedoms[0].of_hundredth[0] is not None
-    assert found.freedoms[0].of_hundredth[0].until == "bound" and found.freedoms[0].of_hundredth[0].by == 0.0
+    assert (found.find_bound(0), found.find_bound(1)) == ("low", "high")
+    assert found.tolerance_ranges[0].of_hundredth[0] is not None
+    assert (
+        found.tolerance_ranges[0].of_hundredth[0].limit == "bound"
+        and found.tolerance_ranges[0].of_hundredth[0].distance == 0.0
+    )
 
 
 def test_half_of_the_box_cannot_be_solved() -> None:
@@ -155,16 +158,16 @@ def test_half_of_the_box_cannot_be_solved() -> None:
     edge = min(kinked(np.array([0.5, y])) for y in ys)
     assert found.ending == "converged" and abs(best_of(found) - edge) <= 1e-4
     assert found.failures["does-not-close"] > 10 and found.best is not None and found.best.place[0] >= 0.5
-    down = found.freedoms[0].of_hundredth[0]
-    assert down is not None and down.until == "does-not-close"
+    down = found.tolerance_ranges[0].of_hundredth[0]
+    assert down is not None and down.limit == "does-not-close"
 
 
 def test_a_jump() -> None:
     """The best lies beside a jump, and its freedom says so."""
     found = tuned(lambda x: float((x[0] - 0.3) ** 2 + (x[1] - 0.6) ** 2 + (5.0 if x[0] > 0.25 else 0.0)) + 1.0)
     assert found.ending == "converged" and best_of(found) == pytest.approx(1.0025, abs=1e-5)
-    up = found.freedoms[0].of_hundredth[1]
-    assert up is not None and up.by < 1e-6 and up.until == "jump"
+    up = found.tolerance_ranges[0].of_hundredth[1]
+    assert up is not None and up.distance < 1e-6 and up.limit == "jump"
 
 
 @pytest.mark.parametrize("noise", [1e-3, 1e-5])
@@ -184,9 +187,9 @@ def test_a_flat_valley() -> None:
     """Where one variable does nothing, it may move from bound to bound."""
     found = tuned(lambda x: float((x[0] - 0.4) ** 2) + 1.0)
     assert found.ending == "converged" and best_of(found) - 1.0 <= found.floor
-    assert [move.until for move in found.freedoms[1].of_hundredth if move is not None] == ["bound", "bound"]
+    assert [move.limit for move in found.tolerance_ranges[1].of_hundredth if move is not None] == ["bound", "bound"]
     assert found.best is not None
-    assert [move.by for move in found.freedoms[1].of_hundredth if move is not None] == pytest.approx(
+    assert [move.distance for move in found.tolerance_ranges[1].of_hundredth if move is not None] == pytest.approx(
         [found.best.place[1], 1.0 - found.best.place[1]]
     )
 
@@ -199,16 +202,16 @@ def test_nothing_differs_anywhere() -> None:
 def test_nothing_feasible() -> None:
     """What passes the constraints least is told, and which of them is nearest."""
     found = tuned(bowl, [lambda x: float(x[0] - 0.4), lambda x: float(0.6 - x[0])])
-    assert found.ending == "infeasible" and not found.feasible and found.best is not None
+    assert found.ending == "infeasible" and not found.is_feasible and found.best is not None
     assert 0.4 - 1e-3 <= found.best.place[0] <= 0.6 + 1e-3
-    over = [max(value, 0.0) for value in found.best.kept_to]
-    assert sum(over) == pytest.approx(0.2, abs=1e-3) and found.nearest_unmet in (0, 1)
-    assert found.freedoms == () and found.active == (False, False)
+    over = [max(value, 0.0) for value in found.best.constraint_values]
+    assert sum(over) == pytest.approx(0.2, abs=1e-3) and found.nearest_violated in (0, 1)
+    assert found.tolerance_ranges == () and found.active_constraints == (False, False)
 
 
 def test_a_narrow_feasible_strip() -> None:
     found = tuned(bowl, [lambda x: abs(float(x[0] - x[1]) - 0.1) - 0.002])
-    assert found.ending == "converged" and found.feasible and found.active == (True,)
+    assert found.ending == "converged" and found.is_feasible and found.active_constraints == (True,)
     assert best_of(found) - 1.0 == pytest.approx(0.098**2 * 2.0 / 3.0, rel=1e-2)  # of weights 1 and 2
 
 
@@ -240,9 +243,9 @@ def test_the_same_seed_the_same_variants() -> None:
 @pytest.mark.parametrize(("low", "high"), [(0.0, 3.0), (1000.0, 1000.001), (-5e-9, 5e-9), (0.0, 1e9)])
 def test_values_are_told_as_they_are_solved(low: float, high: float) -> None:
     """In few digits beside the width of the interval, both bounds exactly."""
-    variable = TunedVariable("x", low, high, "kg")
-    assert (variable.value(0.0), variable.value(1.0)) == (low, high)
+    variable = DesignVariable("x", low, high, "kg")
+    assert (variable.to_value(0.0), variable.to_value(1.0)) == (low, high)
     for place in np.random.default_rng(0).random(50):
-        value = variable.value(float(place))
+        value = variable.to_value(float(place))
         assert low <= value <= high and abs(value - (low + place * (high - low))) <= 1e-9 * (high - low) + 1e-12 * high
-        assert float(variable.text(float(place)).removesuffix(" kg")) == value
+        assert float(variable.to_text(float(place)).removesuffix(" kg")) == value

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.motion.integration.check.singular_poses import singular_poses
+from heuncli.motion.integration.check.singular_poses import find_singular_positions
 from heuncli.motion.integration.run import step_records
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -99,13 +99,13 @@ def asked(setup: Setup) -> Array:
 
 
 def jumps(setup: Setup) -> list[float]:
-    return discontinuities_of(setup.scene.mechanism, float(asked(setup)[-1]))
+    return find_discontinuities(setup.scene.mechanism, float(asked(setup)[-1]))
 
 
 def trajectory(setup: Setup, times: Array, tolerance: float | None = None) -> Trajectory:
     assert setup.method is not None
     tolerance = tolerance or setup.spec.analysis.tolerance
-    return setup.runner.trajectory(MotionTask(times, tolerance, discontinuities=jumps(setup), method=setup.method))
+    return setup.runner.run(MotionTask(times, tolerance, discontinuities=jumps(setup), method=setup.method))
 
 
 def others(setup: Setup, run: Trajectory) -> Array:
@@ -126,7 +126,9 @@ def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -
     setup = scene(name)
     times = asked(setup)
     run, bare = trajectory(setup, times), trajectory(setup, times[[0, -1]])
-    assert len(run.kept) <= max(2, kept // run.kept.records.shape[1]) + len(run.blows)  # what follows a blow is kept
+    assert len(run.records) <= max(2, kept // run.records.records.shape[1]) + len(
+        run.impulse_events
+    )  # what follows a blow is kept
     more = others(setup, run)
     whole = trajectory(setup, np.unique(np.concatenate([more, times])))
     for one in (run, whole):
@@ -145,28 +147,28 @@ def test_each_instant_is_recovered_by_itself(name: str) -> None:
     """The same bits whatever is asked with it: alone, among others, after one far away."""
     setup = scene(name)
     run = trajectory(setup, asked(setup))
-    whole = setup.runner.recovered(run.times, run.states)
+    whole = setup.runner.evaluate(run.times, run.states)
     count = len(run.times)
     for pick in ([count // 2], [0], [count - 1], [count // 3, 0, count - 1], list(range(count))[::-3]):
-        found = setup.runner.recovered(run.times[pick], run.states[pick])
+        found = setup.runner.evaluate(run.times[pick], run.states[pick])
         for part in ("states", "bodies", "freedoms", "loads", "rows", "gap", "idle", "pivot"):
             np.testing.assert_array_equal(getattr(found, part), getattr(whole, part)[pick], err_msg=part)
 
 
 def test_the_flat_poses_are_those_of_the_run_whatever_is_asked() -> None:
     setup = scene("flat_four_bar")
-    wanted = singular_poses(setup.runner, trajectory(setup, asked(setup)))
+    wanted = find_singular_positions(setup.runner, trajectory(setup, asked(setup)))
     assert len(wanted) == 2
-    assert singular_poses(setup.runner, trajectory(setup, np.array([0.0, 2.0]))) == wanted
+    assert find_singular_positions(setup.runner, trajectory(setup, np.array([0.0, 2.0]))) == wanted
 
 
 @pytest.mark.heavy
 def test_a_chaotic_run_has_its_energy_at_every_instant() -> None:
     """Far beyond the horizon no number is that of the pendulum, but every one is that of one run, with its energy."""
     s = study(DOUBLE.replace("duration: 2, samples: 201", "duration: 200, samples: 3"), wanted=frozenset({"energy"}))
-    assert s.history.checked is not None
-    run = s.history.checked.run
-    found = s.reports_at(s.search_times, frozenset({"energy"})).energy
+    assert s.history.checked_run is not None
+    run = s.history.checked_run.run
+    found = s.compute_reports(s.search_times, frozenset({"energy"})).energy
     total = found["kinetic"] + found["potential"]
     near(total, np.full(len(total), total[0]), float(np.ptp(found["potential"])), 1e-6)
     own = trajectory(s.setup, s.search_times, run.local)
@@ -205,8 +207,8 @@ def test_an_ordinary_pendulum(kind: str) -> None:
 def test_a_singular_pose_between_does_no_harm() -> None:
     """The instants next to a flat pose, where a run begun there could not go on."""
     s = study((FOLDER / "specs/flat_four_bar.yaml").read_text().partition("\nexpect:")[0])
-    assert s.history.checked is not None
-    ends = s.history.checked.run.ends
+    assert s.history.checked_run is not None
+    ends = s.history.checked_run.run.ends
     flat = 1.2152618
     times = np.sort(np.concatenate([flat + np.array([-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6]), ends[20:25]]))
     found = s.resample(times)

@@ -70,7 +70,7 @@ def test_a_case_without_any_load_is_a_deck() -> None:
     """Of a body that nothing acts on Nastran's LOAD adds up a set all the same: without one it is no card."""
     body = {"mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1]}
     cases = heuncli.solve({"heun": 1, "bodies": {"idle": body}}).load_cases("idle", "first")
-    deck = "".join(DECKS["nastran"].written(cases, DeckNames(1001, "BODY")))
+    deck = "".join(DECKS["nastran"].iter_text(cases, DeckNames(1001, "BODY")))
     load = deck[deck.index("LOAD* ") :].split()
     assert (
         load[1:6] == ["10", "1.0", "1.0", "12", "*"]

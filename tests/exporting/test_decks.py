@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh, read_mesh
-from heuncli.analyses.load_cases.unit_systems import asked, in_units
+from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_units
 from heuncli.app.commands.exporting.request import FORMATS
 from heuncli.base.records import replace
 from heuncli.output.fe_decks import nastran
@@ -23,13 +23,13 @@ from heuncli.output.fe_decks.naming import DeckNames
 from heuncli.output.fe_decks.readme import exact
 from heuncli.output.fe_decks.registry import DECKS
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import cross
+from heuncli.scene.shapes.rotations import cross_vectors
 from tests.shared.load_cases import cases_of, point_masses
 from tests.shared.scenes import moving, near, study
 from tests.shared.trees import tree_scene
 
 NAMES = DeckNames(2001, "ROD_ALL")
-UNITS = asked("N,mm,t")
+UNITS = parse_units("N,mm,t")
 SEEDS = (1, 3, 6)
 
 
@@ -38,7 +38,7 @@ def written_cases(seed: int) -> tuple[LoadCases, ...]:
     """The cases of all bodies of a random tree, in N, mm, t."""
     scene, _ = tree_scene(seed)
     run = study(moving(scene, (0.0, 0.1, 0.3)))
-    return tuple(in_units(cases_of(run, name, "first,0.1,last"), UNITS) for name in scene["bodies"])
+    return tuple(convert_load_cases(cases_of(run, name, "first,0.1,last"), UNITS) for name in scene["bodies"])
 
 
 class ReadCase(NamedTuple):
@@ -64,7 +64,7 @@ class ReadDeck(NamedTuple):
 
 def text_of(form: str, cases: LoadCases) -> str:
     names = NAMES._replace(mesh=tetrahedron(cases.body)) if form == "calculix" else NAMES
-    return "".join(DECKS[form].written(cases, names))
+    return "".join(DECKS[form].iter_text(cases, names))
 
 
 def tetrahedron(body: LoadedBody) -> SolidMesh:
@@ -197,7 +197,7 @@ def test_a_deck_has_the_numbers(form: str, seed: int) -> None:
 
 
 def compare(cases: LoadCases, case: LoadCase, deck: ReadDeck, told: ReadCase, tolerance: float) -> None:
-    sums = cases.body.sums(case)
+    sums = cases.body.compute_sums(case)
     linear = case.field.linear
     if 1 not in deck.nodes:  # else it stands as forces at the nodes of the mesh, which have to balance the case
         near(told.acceleration, case.field.angular_acceleration, 1.0 + rate(case), tolerance)
@@ -221,11 +221,14 @@ def balanced(cases: LoadCases, case: LoadCase, deck: ReadDeck, told: ReadCase, t
     """The deck alone, on a mesh that is the body: what its cards make of point masses sums up to nothing."""
     masses, places = point_masses(cases.body)
     w, u = told.velocity, told.acceleration
-    inertia = [-m * (told.linear + cross(u, x) + cross(w, cross(w, x))) for m, x in zip(masses, places, strict=True)]
+    inertia = [
+        -m * (told.linear + cross_vectors(u, x) + cross_vectors(w, cross_vectors(w, x)))
+        for m, x in zip(masses, places, strict=True)
+    ]
     force = np.sum([*told.forces.values(), *inertia], axis=0)
-    moments = [*told.moments.values(), *(cross(deck.nodes[n], F) for n, F in told.forces.items())]
-    moment = np.sum([*moments, *(cross(x, F) for x, F in zip(places, inertia, strict=True))], axis=0)
-    sums = cases.body.sums(case)
+    moments = [*told.moments.values(), *(cross_vectors(deck.nodes[n], F) for n, F in told.forces.items())]
+    moment = np.sum([*moments, *(cross_vectors(x, F) for x, F in zip(places, inertia, strict=True))], axis=0)
+    sums = cases.body.compute_sums(case)
     near(force, 0.0, sums.largest_force, tolerance)
     near(moment, 0.0, sums.largest_moment, tolerance)
 
@@ -246,7 +249,7 @@ def test_csv_and_json_have_the_numbers(seed: int) -> None:
             (origin,) = [vector(row) for row in own if row["quantity"] == "acceleration"]
             assert origin == list(case.field.origin) == block["origin"]["acceleration"]
             (sums,) = [row for row in own if row["kind"] == "sum" and row["quantity"] == "force"]
-            assert np.abs(vector(sums)).max() <= 1e-9 * cases.body.sums(case).largest_force
+            assert np.abs(vector(sums)).max() <= 1e-9 * cases.body.compute_sums(case).largest_force
             assert {row["unit"] for row in own if row["quantity"] == "moment"} == {"N*mm"}
 
 
@@ -279,8 +282,8 @@ def test_nastran_by_pynastran(monkeypatch: pytest.MonkeyPatch) -> None:
             for card in loads:
                 for mass in model.masses.values():
                     F = mass.Mass() * pushed(card, mass.Centroid())
-                    force, moment = force + F, moment + cross(mass.Centroid(), F)
-            sums = cases.body.sums(case)
+                    force, moment = force + F, moment + cross_vectors(mass.Centroid(), F)
+            sums = cases.body.compute_sums(case)
             near(force, 0.0, sums.largest_force)
             near(moment, 0.0, sums.largest_moment)
 
@@ -292,7 +295,7 @@ def pushed(card: Any, x: Array) -> Array:
     if card.type != "RFORCE":
         return np.zeros(3)
     w, u = (2 * np.pi * size * np.array(card.r123) for size in (card.scale, card.racc))
-    return np.asarray(cross(u, x) - cross(w, cross(w, x)))
+    return np.asarray(cross_vectors(u, x) - cross_vectors(w, cross_vectors(w, x)))
 
 
 HOSTILE = (
@@ -339,10 +342,10 @@ def test_numbers_have_room() -> None:
     """Of all magnitudes and signs, with a point: twelve digits and more in 20 characters, eleven in a large field."""
     rng = np.random.default_rng(0)
     for x in [0.0, -0.0, 0.3, 0.1 + 0.2, 6000.000000000001, *numbers(rng)]:
-        for text, room, digits in ((nastran.real(x), 16, 1e-10), (exact(x), 20, 1e-12)):
+        for text, room, digits in ((nastran.format_real(x), 16, 1e-10), (exact(x), 20, 1e-12)):
             assert len(text) <= room and "." in text
             assert abs(real(text) - x) <= digits * abs(x)
-        assert nastran.value_of(nastran.real(x)) == real(nastran.real(x))
+        assert nastran.parse_real(nastran.format_real(x)) == real(nastran.format_real(x))
 
 
 def numbers(rng: np.random.Generator) -> Iterator[float]:

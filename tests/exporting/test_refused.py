@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.analyses.load_cases.gathered import require_balance
 from heuncli.analyses.load_cases.solid_mesh import read_mesh
-from heuncli.analyses.load_cases.unit_systems import SI, asked
+from heuncli.analyses.load_cases.unit_systems import SI, parse_units
 from heuncli.base.errors import Finding, SolveError
 from heuncli.base.records import replace
 from tests.shared.command import Heun
@@ -153,9 +153,9 @@ SYSTEMS = ["N,mm,t", "N,m,kg", "kN,m,t", "lbf,in,slinch", "lbf,ft,slug", "kN,mm,
 @pytest.mark.parametrize("words", SYSTEMS)
 def test_units_that_go_together(words: str) -> None:
     """Force is mass times length over time squared, in numbers."""
-    found = asked(words)
+    found = parse_units(words)
     assert found.force == pytest.approx(found.mass * found.length / found.time**2, rel=1e-12)
-    assert sorted(found.words[:3]) == sorted(words.split(",")[:3])
+    assert sorted(found.names[:3]) == sorted(words.split(",")[:3])
 
 
 @pytest.mark.parametrize(
@@ -163,12 +163,12 @@ def test_units_that_go_together(words: str) -> None:
 )
 def test_units_that_do_not(words: str) -> None:
     with pytest.raises(Finding) as raised:
-        asked(words)
+        parse_units(words)
     assert "--units" in raised.value.hint
 
 
 def test_si_is_the_default() -> None:
-    assert asked("N,m,kg") == SI
+    assert parse_units("N,m,kg") == SI
 
 
 MESHES = [

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.results.results import Array, Block
-from heuncli.results.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, below
-from heuncli.study.ask.measure import peak
+from heuncli.results.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, find_child
+from heuncli.study.ask.measure import find_peak
 from heuncli.study.ask.study import Study
 
 TIMES = 10.0  # the stated errors
@@ -62,7 +62,7 @@ def apart(first: Study, second: Study, change: Change, *, same_open: bool = True
                 continue
             if row is None:
                 worst += [] if more and one is None else [Apart(path, math.inf, 0.0)]
-            elif row.timed:
+            elif row.is_timed:
                 wanted, told = change(np.asarray(one, dtype=float)[here], row), np.asarray(other, dtype=float)[there]
                 worst += _compared(path, wanted, told, row, first, second, same_open, sizes)
         if worst:
@@ -120,7 +120,7 @@ def _pairs(path: str, one: Any, other: Any, node: Node | Quantity | None
         if key not in one or key not in other:
             yield f"{path}.{key}", one.get(key), other.get(key), None
         else:
-            yield from _pairs(f"{path}.{key}", one[key], other[key], below(node, key))
+            yield from _pairs(f"{path}.{key}", one[key], other[key], find_child(node, key))
 
 
 def _compared(path: str, wanted: Array, told: Array, row: Quantity, first: Study, second: Study, same_open: bool,
@@ -135,7 +135,7 @@ def _compared(path: str, wanted: Array, told: Array, row: Quantity, first: Study
     off = np.abs(wanted - told)[~(np.isnan(wanted) | np.isnan(told))]
     if not off.size:
         return
-    unit = row.unit(turning=True)
+    unit = row.select_unit(turning=True)
     size = max(_size(one, units, sizes) for one in (first, second) for units in row.units)
     error = sum(stated(one, path) for one in (first, second))
     allowed = (TIMES * error + FLOOR) * size
@@ -222,7 +222,7 @@ def beyond_peaks(study: Study, dense: Study, random: Random, most: int = 8) -> l
         for path, value, _, row in _pairs(
             block, getattr(dense.results, block), getattr(dense.results, block), TREE[block]
         )
-        if row is not None and row.timed and row.shape in ((), (SPACE,)) and not set(path.split(".")) & SKIPPED
+        if row is not None and row.is_timed and row.shape in ((), (SPACE,)) and not set(path.split(".")) & SKIPPED
     ]
     horizon = min((one.results.accuracy.get("horizon") or math.inf for one in (study, dense)), default=math.inf)
     inside = dense.results.time < horizon
@@ -234,7 +234,7 @@ def beyond_peaks(study: Study, dense: Study, random: Random, most: int = 8) -> l
         size = max(_size(one, units, sizes) for one in (study, dense) for units in row.units)
         allowed = (TIMES * sum(stated(one, path) for one in (study, dense)) + FLOOR) * size
         for how, sign in (("max", 1.0), ("min", -1.0)):
-            told = peak(study, path, how).value
+            told = find_peak(study, path, how).value
             most_seen = sign * float(np.nanmax(sign * values[inside]))
             if not math.isnan(told) and not sign * (most_seen - told) <= allowed:
                 found.append(

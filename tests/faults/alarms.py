@@ -161,8 +161,8 @@ def _become(name: str, folder: Path, at: float | None, work: Callable[[], int]) 
                 return lambda: None
             used = resource.getrusage(resource.RUSAGE_SELF)
             left = at - (used.ru_utime + used.ru_stime) if os.getpid() == own else at / 4.0
-            signal.signal(signal.SIGPROF, alarm._ring)
-            signal.setitimer(signal.ITIMER_PROF, max(left, 1e-6), alarm.NEXT_RING)
+            signal.signal(signal.SIGPROF, alarm._handle_alarm)
+            signal.setitimer(signal.ITIMER_PROF, max(left, 1e-6), alarm.ALARM_INTERVAL)
             told, sys.unraisablehook = sys.unraisablehook, hush
 
             def undo() -> None:
@@ -177,8 +177,8 @@ def _become(name: str, folder: Path, at: float | None, work: Callable[[], int]) 
             if not isinstance(what.exc_value, alarm.TimeUp):
                 told(what)
 
-        alarm._timer = timer
-        signals.listen()
+        alarm._start_timer = timer
+        signals.install_handlers()
         code = work()
         sys.stdout.flush()
     finally:

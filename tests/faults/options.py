@@ -20,12 +20,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS
 from heuncli.base.errors import HeunError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.source import parse_source
 from tests.shared.all_scenes import all_scenes, link_files
 from tests.shared.command import Done
 from tests.shared.folders import ROOT
@@ -264,7 +264,7 @@ def uncovered() -> list[str]:
     missing = [command.name for command in COMMANDS if command.name not in LINES]
     for command in COMMANDS:
         lines = " ".join(f" {line} " for line in LINES.get(command.name, ()))
-        for field in fields_of(command.request):
+        for field in list_fields(command.request):
             words = field.option.words
             if words and (command.name, field.name) not in LEFT_OUT and not any(f" {word} " in lines for word in words):
                 missing.append(f"{command.name} {words[0]}")
@@ -297,7 +297,7 @@ def scene_in(folder: Path, name: str, text: str, limit: float) -> Scene:
 
 def words_of(path: Path, text: str, limit: float) -> dict[str, str]:
     """What lines ask of a scene: names that it has, or names that it has not, where it has none."""
-    tree = parse(path.name, text, "").data
+    tree = parse_source(path.name, text, "").data
     numbers = [*numbers_in(tree)]
     (number, value), (second, other) = (numbers * 2)[:2] if numbers else (("none", 1.0), ("none", 1.0))
     try:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from random import Random
 
-from heuncli.app.cli.options import RequestField, fields_of
-from heuncli.app.cli.registry import command_of
+from heuncli.app.cli.options import RequestField, list_fields
+from heuncli.app.cli.registry import find_command
 from tests.faults import sources
 from tests.faults.mutate_spec import UNITS, misspelt, vocabulary
 from tests.faults.random_expressions import random_expression
@@ -58,9 +58,9 @@ def random_command(random: Random, tree: sources.Tree) -> tuple[str, ...]:
     """A command line on the file SPEC, which holds this tree."""
     command = random.choice(QUICK) if random.random() < 0.97 else "chart"
     words = [command]
-    row = command_of(command)
+    row = find_command(command)
     assert row is not None
-    options = fields_of(row.request)
+    options = list_fields(row.request)
     if any(not row.option.words for row in options):
         words += (
             [SPEC]

@@ -8,11 +8,11 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.base.announcements import listener, listening
+from heuncli.base.announcements import current_listener, progress_listener
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.tolerances import MOST_STEPS
 from heuncli.motion.integration.run import slow_runs
-from heuncli.motion.integration.run.pace import FIRST_LOOK, projected_steps
+from heuncli.motion.integration.run.pace import FIRST_LOOK, project_steps
 from tests.shared.scenes import solved
 
 SCENE = """\
@@ -111,7 +111,7 @@ def test_a_load_beyond_all_measure_is_named() -> None:
 def test_the_steps_projected(instants, last: float, steps: float) -> None:  # type: ignore[no-untyped-def]
     """Paces in closed form, told from their first 2,000 steps."""
     ends = instants(np.arange(1.0, FIRST_LOOK + 1.0))
-    assert projected_steps(ends, last) == pytest.approx(steps, rel=1e-6)
+    assert project_steps(ends, last) == pytest.approx(steps, rel=1e-6)
 
 
 def test_a_limit_that_is_reached_tells_the_pace() -> None:
@@ -196,7 +196,7 @@ def test_a_long_run_says_so_while_it_goes_on(monkeypatch: pytest.MonkeyPatch) ->
 
     with (
         pytest.raises(Heard, match=r"a long run: .*bodies\.sheave \(1e-09 kg.*rounding.*--time-limit"),
-        listening(hear),
+        progress_listener(hear),
     ):
         solved(PINNED)
-    assert listener() is None
+    assert current_listener() is None

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import mpmath as mp
 
-from heuncli.analyses.balancing.asked import AskedWheel, BalanceOptions
+from heuncli.analyses.balancing.asked import BalanceOptions, FlywheelRequest
 from heuncli.analyses.balancing.results import BalanceResults
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
@@ -199,7 +199,7 @@ class Compared(NamedTuple):
 
 def compared(case: Case, *, axis: int = 1, rate: float = RATE, begin: float = 0.0) -> list[Compared]:
     """Amplitudes and phases of some orders, mean, ΔE and the wheel."""
-    asked = BalanceOptions(rate=rate, turns=1, orders=ORDERS, flywheel=AskedWheel("", 0.01))
+    asked = BalanceOptions(rate=rate, turns=1, orders=ORDERS, flywheel=FlywheelRequest("", 0.01))
     found = balance(load("scene.yaml", case.text(axis, rate, begin)), asked)
     with mp.workdps(DIGITS):
         return [*of_orders(case, found), *of_wheel(case, found, abs(rate))]

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.motion.linearisation.modes import SceneModes
 from heuncli.results.results import Array
@@ -209,7 +209,7 @@ def tellings(one: Drawn, seed: int) -> list[tuple[list[int], int | None, str]]:
 def judged(one: Drawn, given: list[int], driven: int | None, kind: str) -> Finding:
     """One telling of a scene."""
     try:
-        found = modes(load("scene.yaml", to_yaml(spec_of(one, given, driven, kind))))
+        found = compute_spec_modes(load("scene.yaml", to_yaml(spec_of(one, given, driven, kind))))
     except SolveError as error:
         return Finding("refused", 0.0, str(error))
     return compared(found, eigenvalues(one, driven))
@@ -217,7 +217,7 @@ def judged(one: Drawn, given: list[int], driven: int | None, kind: str) -> Findi
 
 def compared(found: SceneModes, right: Array) -> Finding:
     """heun's modes against eigenvalues."""
-    if not found.steady:
+    if not found.is_steady:
         return Finding("not about the steady motion", 0.0, "")
     own = [mode for mode in found.modes if mode.kind != "free"]
     if len(own) != len(right):

@@ -15,11 +15,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.linalg import expm
 
-from heuncli.analyses.charting.motion import motion_of
+from heuncli.analyses.charting.motion import make_motion
 from heuncli.analyses.charting.plan import ChartOptions
-from heuncli.analyses.charting.results import ChartedRun
+from heuncli.analyses.charting.results import ChartRun
 from heuncli.analyses.charting.study import chart
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.scene.file_format.load import load
 from tests.shared.chains import DRAWN, Array, chain
@@ -77,7 +77,7 @@ def errors(seed: int) -> Iterator[tuple[str, float, float, float]]:
     exact = np.array([expm(A * t) @ start for t in times])[:, :n]
 
     found = chart(spec, ChartOptions(tuple(GIVEN_STEPS), steps=tuple(duration / k for k in STEPS)))
-    doubt = found.reference.own["motion"] or 0.0
+    doubt = found.reference.error["motion"] or 0.0
     for run in found.runs:
         count = round(duration / run.row.local)
         if run.steps != count:  # a load had its largest between two stages, and a step was laid there
@@ -90,16 +90,16 @@ def errors(seed: int) -> Iterator[tuple[str, float, float, float]]:
         yield f"{run.row.method} {count}", told(run), off(np.array(made)[:, :n], exact, found.size), doubt
 
     found = chart(spec, ChartOptions(CHOOSING, TOLERANCES))
-    doubt = found.reference.own["motion"] or 0.0
-    runner = motion_of(spec, None).setup.runner
+    doubt = found.reference.error["motion"] or 0.0
+    runner = make_motion(spec, None).setup.runner
     for run in found.runs:
         method, local = run.row.method, run.row.local
-        own = runner.trajectory(MotionTask(times, local, method=method_of(method)))
-        travels = runner.recovered(times, own.states).freedoms["q"]
+        own = runner.run(MotionTask(times, local, method=load_method_by_name(method)))
+        travels = runner.evaluate(times, own.states).freedoms["q"]
         yield f"{method} {local:g}", told(run), off(travels, exact, found.size), doubt
 
 
-def told(run: ChartedRun) -> float:
+def told(run: ChartRun) -> float:
     """The error of the motion that a chart tells; not a number where it tells none."""
     value = run.error["motion"]
     return math.nan if value is None else value

@@ -24,11 +24,11 @@ import mpmath as mp
 import numpy as np
 
 from heuncli.analyses.find.results import FindCondition
-from heuncli.analyses.find.study import look
+from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.axes import Interval
 from heuncli.analyses.variants.course import Sample
 from heuncli.app.cli.entry import enter
-from heuncli.app.commands.find.page import FoundPage, to_json
+from heuncli.app.commands.find.page import FindPage, to_json
 from heuncli.study.quantities.table_units import Units
 
 Rng = np.random.Generator
@@ -364,10 +364,10 @@ def found_directly(course: KnownCourse, relation: Any) -> Any:
             return Sample(x, None, why=("not-computable", "not a finite number"))
         return Sample(x, m - course.value, max(STATED * abs(m), 8.0 * EPS * (abs(m) + abs(course.value))))
 
-    found = look(ask, course.low, course.high, relation, count=7, most=300, value=course.value)
+    found = find_meetings(ask, course.low, course.high, relation, scan_count=7, max_evaluations=300, value=course.value)
     condition = FindCondition("f", relation, course.value, "N", "")
     interval = Interval("x", course.low, course.high, "")
-    return json.loads(to_json(FoundPage("", condition, interval, found, 7, 300, Units({}))))
+    return json.loads(to_json(FindPage("", condition, interval, found, 7, 300, Units({}))))
 
 
 def judged(seed: int, kind: str = "all", *, direct: bool = False) -> tuple[KnownCourse, str, Verdict]:

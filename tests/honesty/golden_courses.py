@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.output.snapshots.changes import changes
-from heuncli.output.snapshots.keep import keep
-from heuncli.output.snapshots.kept import KeptRun
+from heuncli.output.snapshots.changes import find_changes
+from heuncli.output.snapshots.keep import take_run_snapshot
+from heuncli.output.snapshots.kept import RunSnapshot
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -154,10 +154,10 @@ def changed(course: Course, kind: str, step: float, draw: random.Random) -> Cour
     return course
 
 
-def kept(text: str) -> KeptRun:
+def kept(text: str) -> RunSnapshot:
     """The numbers of a scene as a golden file holds them."""
     wanted = frozenset({"joints"})
-    return keep(solve(load("course.yaml", text), Options(wanted=wanted)), wanted)
+    return take_run_snapshot(solve(load("course.yaml", text), Options(requested_reports=wanted)), wanted)
 
 
 def look_at(case: Case) -> Outcome:
@@ -165,7 +165,7 @@ def look_at(case: Case) -> Outcome:
     same = case.kind == "same"
     one, other = kept(case.before.spec(101)), kept(case.after.spec(57 if same else 101, turned=same))
     number, later = (run.numbers["joints.w.force.x"] for run in (one, other))
-    found = [change for change in changes(one, other) if change.path.startswith("joints.w.force")]
+    found = [change for change in find_changes(one, other) if change.path.startswith("joints.w.force")]
     return Outcome(case, len(found), case.size / (number.error + later.error))
 
 

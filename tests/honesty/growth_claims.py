@@ -145,8 +145,8 @@ def faults(of: Chain, by: Right, growth: GrowthResults) -> list[str]:
     """What of a growth that is told is not so."""
     found = []
     last = float(by.logarithm[-1])
-    if abs(growth.times - last) > SAME * max(abs(last), 1.0):
-        found.append(f"ln G {growth.times:.8g}, right {last:.8g}")
+    if abs(growth.logarithm - last) > SAME * max(abs(last), 1.0):
+        found.append(f"ln G {growth.logarithm:.8g}, right {last:.8g}")
     rate = slope_of(of.duration, *by)
     if abs(growth.rate - rate) * of.duration > 6.0 * BETWEEN:  # over a half, by least squares
         found.append(f"rate {growth.rate:.6g}, right {rate:.6g}")
@@ -184,7 +184,7 @@ def main() -> None:
             continue
         count += 1
         last = float(by.logarithm[-1])
-        largest = max(largest, abs(growth.times - last) / max(abs(last), 1.0))
+        largest = max(largest, abs(growth.logarithm - last) / max(abs(last), 1.0))
         for fault in faults(of, by, growth):
             wrong += 1
             print(f"{seed}: {fault}")

@@ -271,7 +271,7 @@ def compare_row(run: Study, own: Row, wanted: Ended) -> tuple[float, str]:
             kind = "joints" if own.way == "rope" else "couplings"
             has = abs(float(block.get(kind, {}).get(name, {}).get("tension", 0.0)))
             path = (kind, name, "tension")
-        stated = error_of(run, path, "N·s") if run.history.beside else 0.0
+        stated = error_of(run, path, "N·s") if run.history.check_impulses else 0.0
         doubts.append(stated + (ROUNDING + lost) * largest + wanted.doubt * sum(own.masses))
         found.append((abs(has - z) / doubts[-1], name))
     motion = float(run.results.accuracy["estimate"]["motion"]) * run.magnitudes.size

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import from_vector
+from heuncli.scene.shapes.rotations import rotation_from_vector
 
 G = 9.81
 Place = Sequence[float] | Array
@@ -26,7 +26,7 @@ class Bench:
         self, seed: int, *, space: bool = False, metre: float = 1.0, kilogram: float = 1.0, digits: int = 17
     ) -> None:
         self.rng = np.random.default_rng(seed)
-        self.turned = from_vector(self.rng.normal(size=3)) if space else np.eye(3)
+        self.turned = rotation_from_vector(self.rng.normal(size=3)) if space else np.eye(3)
         self.metre, self.kilogram, self.digits = metre, kilogram, digits
         self.ground: dict[str, Any] = {}
         self.bodies: dict[str, Any] = {}

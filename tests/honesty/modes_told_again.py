@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.motion.linearisation.modes import SceneModes
 from heuncli.motion.linearisation.oscillations import Mode
@@ -56,7 +56,7 @@ def scene(kind: str, seed: int) -> dict[str, Any]:
 def answer(tree: Any) -> SceneModes | str:
     """The modes of a scene, or why there are none."""
     try:
-        return modes(load("scene.yaml", to_yaml(tree)))
+        return compute_spec_modes(load("scene.yaml", to_yaml(tree)))
     except SolveError as error:
         return error.problems[0].code
     except np.linalg.LinAlgError as error:

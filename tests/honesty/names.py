@@ -23,8 +23,8 @@ from typing import Any, NamedTuple
 
 from heuncli.base.errors import Finding
 from heuncli.base.units import parse_unit
-from heuncli.scene.file_format.names import RESERVED_FOR
-from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.names import RESERVED_NAMES
+from heuncli.scene.file_format.source import parse_source
 from tests.shared.folders import SPECS
 from tests.shared.in_process import run_command
 from tests.shared.renamed import WORDS, NeutralSpec, neutral, tokens_for, with_words
@@ -78,7 +78,7 @@ FORMS = (
 
 def tree_of(path: Path) -> Any:
     """The plain data of a spec, its motion in few samples."""
-    tree = parse(path.name, path.read_text(encoding="utf-8"), "").data
+    tree = parse_source(path.name, path.read_text(encoding="utf-8"), "").data
     analysis = tree.get("analysis") or {}
     if isinstance(analysis.get("samples"), int):
         analysis["samples"] = min(analysis["samples"], LONG)
@@ -94,7 +94,7 @@ def words_for(spec: NeutralSpec, random: Random, merge: bool) -> dict[str, str]:
     for name in random.sample(sorted(spec.blocks), len(spec.blocks)):
         blocks = spec.blocks[name]
         own = blocks | ({"struck"} if blocks & STRUCK else set())
-        refused = {word for block in blocks for word in RESERVED_FOR.get(block, ())}
+        refused = {word for block in blocks for word in RESERVED_NAMES.get(block, ())}
         refused |= {"until"} if "events" in blocks else set()
         refused |= {word for word in WORDS if is_unit(word)} if "parameters" in blocks else set()
         used = [word for word in taken if not (taken[word] & own) and word not in refused]

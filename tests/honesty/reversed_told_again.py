@@ -116,7 +116,7 @@ def compared(
     joints: tuple[Any, Any],
 ) -> Iterator[Difference]:
     """A number of the first run as the second has to tell it."""
-    word, unit = ".".join(path), row.unit(turns(first, path))
+    word, unit = ".".join(path), row.select_unit(turns(first, path))
     joint = joint_of(first, path)
     if path[-1] in PLACES and (path[0] == "couplings" or {"supports", "elements", *told.exchanged_ends} & set(path)):
         return

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.lagrange.instant import instant_of
+from heuncli.analyses.lagrange.instant import make_instant
 from heuncli.analyses.lagrange.results import StateSpace
-from heuncli.analyses.lagrange.study import LagrangeQuestion, told
+from heuncli.analyses.lagrange.study import LagrangeOptions, to_results
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.base.joint_kinds import RATES
 from heuncli.results.results import Array, Results
@@ -218,7 +218,7 @@ def judged(seed: int) -> tuple[Finding, dict[str, Any]]:
     scene = drawn(seed)
     try:
         spec = load("scene.yaml", to_yaml({**scene, "analysis": {"type": "state"}}))
-        names = list(told(spec, instant_of(spec, None, None), LagrangeQuestion()).names)
+        names = list(to_results(spec, make_instant(spec, None, None), LagrangeOptions()).names)
         tree, driven = with_motion(scene, names, seed)
         base = moved(Case(tree, driven, [], []), {})
     except (SolveError, SpecError) as error:
@@ -236,11 +236,11 @@ def judged(seed: int) -> tuple[Finding, dict[str, Any]]:
 def by_differences(case: Case, inputs: list[str], names: list[str], rng: np.random.Generator) -> Finding:
     """The state space of a scene against differences, again finer where these are too coarse."""
     spec = load("scene.yaml", to_yaml({**case.tree, "analysis": {"type": "state"}}))
-    question = LagrangeQuestion(
+    question = LagrangeOptions(
         state_space=True, inputs=tuple(inputs), coordinates=tuple(names), outputs=tuple(case.outputs)
     )
     try:
-        space = told(spec, instant_of(spec, None, None), question).state_space
+        space = to_results(spec, make_instant(spec, None, None), question).state_space
     except (SolveError, SpecError) as error:
         return Finding("refused", 0.0, str(error))
     assert space is not None

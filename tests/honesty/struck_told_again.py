@@ -17,7 +17,7 @@ import numpy as np
 
 from heuncli.base.errors import HeunError
 from heuncli.results.results_schema import REPORTS, SHARES
-from heuncli.study.ask.measure import peak
+from heuncli.study.ask.measure import find_peak
 from heuncli.study.ask.study import Study
 from tests.faults.sources import parsed
 from tests.honesty.rest_poses import spread
@@ -117,7 +117,7 @@ def of_extremes(first: Study, second: Study, told: Retold) -> Iterator[Differenc
     for name in first.results.sections if "sections" not in told.skipped else ():
         for number, unit in (("N", "N"), ("M2", "N·m")):
             path = ("sections", name, number)
-            one, other = (peak(run, ".".join(p), "abs").value
+            one, other = (find_peak(run, ".".join(p), "abs").value
                           for run, p in ((first, path), (second, ("sections", told.name(name), number))))  # fmt: skip
             stated = error_of(first, path, unit) * told.scale(unit) + error_of(second, path, unit)
             rounding = ROUNDING * second.magnitudes.by_unit[unit]

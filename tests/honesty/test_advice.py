@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.results.results import Results
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.source import parse_source
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import describe, solve
 from tests.oracle.published import four_bar, windows
@@ -36,7 +36,7 @@ def advice(text: str) -> str:
 
 def done(text: str, note: str) -> Results:
     """With every replacement that a note names; what the new kind does not know is left out."""
-    scene = parse("scene.yaml", text, "").data
+    scene = parse_source("scene.yaml", text, "").data
     replaced = REPLACED.findall(note)
     giving_way = re.findall(r"stiffness: \{moment: 0\} on (\w+)", note)
     assert replaced or giving_way

@@ -15,7 +15,7 @@ import pytest
 from heuncli.app.cli.entry import enter
 from heuncli.base import tolerances
 from heuncli.results.results import Array, Results
-from heuncli.study.ask.measure import MeasureRequest, value
+from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.ask.study import Study
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import near, study
@@ -44,7 +44,7 @@ def accelerations(results: Results) -> Array:
 def test_what_is_told_is_right(rate: float) -> None:
     """From a tenth of a second off the flat poses to a billionth: told to six digits of the largest, or not told."""
     s = swung(rate)
-    assert s.history.checked is not None
+    assert s.history.checked_run is not None
     rng = np.random.default_rng(3)
     apart = 10.0 ** rng.uniform(-9.0, -1.0, 60) * rng.choice([-1.0, 1.0], 60)
     times = np.unique(np.concatenate([np.array(s.history.singular)[:, None] + apart]).ravel())
@@ -76,11 +76,11 @@ def test_extremes_are_those_of_what_is_known(rate: float) -> None:
     bottom = 0.5 * (rate**2 + 4.8 * G + G)
     if s.results.points["left.top"]["position"][:, 1].min() > 0.0 or len(s.history.singular) < 2:
         pytest.skip("it does not come to the bottom in two seconds")
-    found, at, *_ = value(MeasureRequest("abs", "joints.C.radial"), s)
+    found, at, *_ = measure_value(MeasureRequest("abs", "joints.C.radial"), s)
     assert at is not None
     # a search ends where nothing promises more than a tenth of the error that is told, which singular poses enlarge
     near(found, bottom, bottom, max(1e-8, 0.1 * s.magnitudes.errors["reactions", "N"] / bottom))
-    near(value(MeasureRequest("max", "energy.kinetic"), s)[0], 5.0 / 6.0 * (rate**2 + 4.8 * G), bottom, 1e-8)
+    near(measure_value(MeasureRequest("max", "energy.kinetic"), s)[0], 5.0 / 6.0 * (rate**2 + 4.8 * G), bottom, 1e-8)
 
 
 def test_the_example(capsys: pytest.CaptureFixture[str]) -> None:
@@ -152,8 +152,8 @@ def test_bars_of_any_length_through_a_flat_pose(lengths: list[float]) -> None:
     """Loads may grow there without bound: those that are told agree with a run a thousand times as fine."""
     text = folding(*lengths, 0.9, 4.0)
     s, fine = (study(text, wanted=WANTED, tolerance=tolerance) for tolerance in (1e-9, 1e-12))
-    assert s.history.checked is not None
-    if not s.history.singular or s.history.checked.horizon is not None:
+    assert s.history.checked_run is not None
+    if not s.history.singular or s.history.checked_run.horizon is not None:
         pytest.skip("it does not come to a flat pose, or nothing is claimed")
     flat = s.history.singular[0]
     rng = np.random.default_rng(8)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.check.distance import Marks, bounded_motion_error, motion_error
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.check.distance import MotionPoints, bounded_motion_error, motion_error
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -18,18 +18,18 @@ NAMES = ("double", "chain", "flat_four_bar", "top")
 AT = np.linspace(0.0, 0.5, 201)
 
 
-def together(setup: Setup, states: list[Array]) -> Recovered:
+def together(setup: Setup, states: list[Array]) -> Evaluation:
     """The answers at the states of some runs, at each instant one after the other."""
     count = len(states)
-    return setup.runner.recovered(np.repeat(AT, count), np.stack(states, axis=1).reshape(count * len(AT), -1))
+    return setup.runner.evaluate(np.repeat(AT, count), np.stack(states, axis=1).reshape(count * len(AT), -1))
 
 
 @pytest.mark.parametrize("count", [2, 3])
 @pytest.mark.parametrize("name", NAMES)
 def test_never_too_small_and_the_same_at_most(name: str, count: int) -> None:
     setup = set_up(load(SPECS / f"{name}.yaml"))
-    runs = [setup.runner.trajectory(MotionTask(AT, local)).states for local in (1e-4, 1e-7, 1e-10)[:count]]
-    several, marks, size = together(setup, runs), Marks(setup.scene.layout), setup.scene.layout.size
+    runs = [setup.runner.run(MotionTask(AT, local)).states for local in (1e-4, 1e-7, 1e-10)[:count]]
+    several, marks, size = together(setup, runs), MotionPoints(setup.scene.layout), setup.scene.layout.size
     error = motion_error(marks, several.bodies, count, size)
     bound = bounded_motion_error(marks, several, count, size)
     assert (bound >= error).all()
@@ -40,9 +40,9 @@ def test_never_too_small_and_the_same_at_most(name: str, count: int) -> None:
 def test_what_may_not_be_claimed_is_told_by_itself() -> None:
     """Where the error may pass CLAIMED it is looked at: the horizon is an instant at which it does."""
     setup = set_up(load(SPECS / "double.yaml"))
-    own = setup.runner.trajectory(MotionTask(AT, 1e-9)).states
+    own = setup.runner.run(MotionTask(AT, 1e-9)).states
     growing = own + 1e-6 * np.exp(20.0 * AT)[:, None] * np.sin(np.arange(own.shape[1]))
-    several, marks, size = together(setup, [own, growing]), Marks(setup.scene.layout), setup.scene.layout.size
+    several, marks, size = together(setup, [own, growing]), MotionPoints(setup.scene.layout), setup.scene.layout.size
     error = motion_error(marks, several.bodies, 2, size)
     bound = bounded_motion_error(marks, several, 2, size)
     late = error > tolerances.CLAIMED
@@ -53,9 +53,9 @@ def test_what_may_not_be_claimed_is_told_by_itself() -> None:
 
 def test_what_is_no_number_is_unknown() -> None:
     setup = set_up(load(SPECS / "double.yaml"))
-    own = setup.runner.trajectory(MotionTask(AT, 1e-9)).states
+    own = setup.runner.run(MotionTask(AT, 1e-9)).states
     other = own.copy()
     other[-1] = np.inf
     with np.errstate(invalid="ignore"):
-        bound = bounded_motion_error(Marks(setup.scene.layout), together(setup, [own, other]), 2, 1.0)
+        bound = bounded_motion_error(MotionPoints(setup.scene.layout), together(setup, [own, other]), 2, 1.0)
     assert bound[-1] == tolerances.UNKNOWN

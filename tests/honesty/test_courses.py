@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from heuncli.analyses.find.results import CourseFindings
+from heuncli.analyses.find.results import IntervalFindings
 from heuncli.analyses.find.search import is_steep
-from heuncli.analyses.find.study import look
+from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.conditions import Sign
 from heuncli.analyses.variants.course import MeasureCourse, Sample
 
@@ -80,10 +80,10 @@ def noisy(f: Function, error: float, seed: int, asked: list[float]) -> Callable[
     return ask
 
 
-def looked(f: Function, error: float, seed: int = 0, relation: Sign = "=", count: int = 7) -> CourseFindings:
+def looked(f: Function, error: float, seed: int = 0, relation: Sign = "=", count: int = 7) -> IntervalFindings:
     asked: list[float] = []
-    found = look(noisy(f, error, seed, asked), 0.0, 1.0, relation, count=count, most=400)
-    assert found.complete and len(set(asked)) == len(asked) == len(found.samples)  # nothing is asked twice
+    found = find_meetings(noisy(f, error, seed, asked), 0.0, 1.0, relation, scan_count=count, max_evaluations=400)
+    assert found.is_complete and len(set(asked)) == len(asked) == len(found.samples)  # nothing is asked twice
     return found
 
 
@@ -135,8 +135,8 @@ def test_where_an_inequality_is_met(relation: Sign, seed: int) -> None:
     f = two_waves(rng)
     found = looked(f, 1e-9, seed, relation)
     for x in FINE[::7].tolist():
-        inside = any(met.low.x + met.low.error < x < met.high.x - met.high.error for met in found.met)
-        beside = any(abs(x - edge.x) <= edge.error + 1e-4 for met in found.met for edge in met)
+        inside = any(met.low.x + met.low.error < x < met.high.x - met.high.error for met in found.met_stretches)
+        beside = any(abs(x - edge.x) <= edge.error + 1e-4 for met in found.met_stretches for edge in met)
         if not beside:
             assert inside == (f(x) < 0.0 if relation == "<" else f(x) >= 0.0), x
 
@@ -146,7 +146,7 @@ def test_jumps_and_poles_are_no_crossings(place: float) -> None:
     for f in (lambda x: 1.0 if x > place else -1.0, lambda x: 1.0 / (x - place)):
         found = looked(f, 1e-9)
         (jump,) = found.jumps
-        assert found.crossings == () and jump.before.x <= place <= jump.after.x < jump.before.x + 1e-9
+        assert found.crossings == () and jump.left.x <= place <= jump.right.x < jump.left.x + 1e-9
 
 
 @pytest.mark.parametrize("steep", [1e2, 1e4, 1e6])
@@ -182,8 +182,10 @@ def test_crossings_where_the_course_bends_or_is_flat_are_within_their_errors(sha
     rng = np.random.default_rng([13, seed])
     c, way = rng.uniform(0.03, 0.97), rng.choice([-1.0, 1.0])
     size = 10.0 ** rng.uniform(-11.0, -3.5)
-    found = look(scattered(lambda x: way * BENT[shape](x - c), size, rng), 0.0, 1.0, "=", count=7, most=400)
-    assert found.complete and found.crossings and not found.jumps
+    found = find_meetings(
+        scattered(lambda x: way * BENT[shape](x - c), size, rng), 0.0, 1.0, "=", scan_count=7, max_evaluations=400
+    )
+    assert found.is_complete and found.crossings and not found.jumps
     for crossing in found.crossings:
         assert abs(crossing.sample.x - c) <= crossing.error + 1e-15
     if shape.startswith("bends"):
@@ -217,7 +219,7 @@ def test_a_measure_that_is_the_value_everywhere() -> None:
 
 def test_crossings_at_the_ends() -> None:
     found = looked(lambda x: x * (x - 1.0), 1e-12)
-    assert [crossing.way for crossing in found.crossings] == [0, 0]
+    assert [crossing.direction for crossing in found.crossings] == [0, 0]
     assert [crossing.sample.x for crossing in found.crossings] == [0.0, 1.0]
 
 
@@ -229,11 +231,13 @@ def test_a_wave_in_beat_with_an_even_scan_is_seen() -> None:
 
 def test_extremes_are_refined_where_nothing_is_met() -> None:
     found = looked(lambda x: math.sin(5.0 * x) + 3.0, 1e-9)
-    assert found.refined and found.least is not None and found.greatest is not None
+    assert found.is_refined and found.least is not None and found.greatest is not None
     assert found.greatest.gap == pytest.approx(4.0, abs=1e-5) and found.least.gap == pytest.approx(2.0, abs=1e-5)
 
 
 def test_a_budget_ends_the_search() -> None:
     asked: list[float] = []
-    found = look(noisy(lambda x: math.sin(40.0 * x), 1e-9, 0, asked), 0.0, 1.0, "=", count=7, most=20)
-    assert not found.complete and len(asked) == 20
+    found = find_meetings(
+        noisy(lambda x: math.sin(40.0 * x), 1e-9, 0, asked), 0.0, 1.0, "=", scan_count=7, max_evaluations=20
+    )
+    assert not found.is_complete and len(asked) == 20

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.analyses.sensitivity.derivative import derivative
+from heuncli.analyses.sensitivity.derivative import compute_derivative
 from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
 
 Function = Callable[[float], float]
@@ -28,7 +28,7 @@ def told(f: Function, at: float, error: float, seed: int = 0) -> NoisyDerivative
         size = error * (1.0 + abs(value))
         return NoisyValue(value + size * math.sin(1e9 * distance + seed), size)
 
-    return derivative(ask, at, abs(at) or 1.0)
+    return compute_derivative(ask, at, abs(at) or 1.0)
 
 
 @pytest.mark.parametrize("seed", range(120))
@@ -146,9 +146,9 @@ def test_a_bend_beside_a_bound_is_covered_as_far_as_it_shows(seed: int) -> None:
 
 
 def test_the_same_bits_are_nothing() -> None:
-    one = derivative(lambda x: NoisyValue(3.25, 1e-9), 1.0, 1.0)
+    one = compute_derivative(lambda x: NoisyValue(3.25, 1e-9), 1.0, 1.0)
     assert (one.kind, one.value, one.error) == ("nothing", 0.0, 0.0)
-    assert derivative(lambda x: NoisyValue(None, why=("open", "")), 1.0, 1.0).why[0] == "open"
+    assert compute_derivative(lambda x: NoisyValue(None, why=("open", "")), 1.0, 1.0).why[0] == "open"
 
 
 def test_steps_are_few() -> None:
@@ -159,5 +159,5 @@ def test_steps_are_few() -> None:
         asked.add(x)
         return NoisyValue(math.exp(x), 1e-9 * math.exp(x))
 
-    derivative(ask, 1.0, 1.0)
+    compute_derivative(ask, 1.0, 1.0)
     assert len(asked) <= 9

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from heuncli.output.snapshots import measure
-from heuncli.output.tables.page import page_of
-from heuncli.output.tables.text_table import plain
+from heuncli.output.tables.page import make_page
+from heuncli.output.tables.text_table import format_plain
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study
@@ -23,13 +23,13 @@ pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, 
 
 def tables(run: Study) -> str:
     """The tables of a run: of one instant, or of extremes."""
-    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
+    page = make_page(run.results, make_labels(run.spec), run.magnitudes)
     if len(run.results.time) == 1:
-        return "\n".join(map(plain, page.instants(run.results)))
-    along = page.along if page.has_runs else None
-    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
-    extremes = run.extremes(searched, None, whole=True)
-    return "\n".join(map(plain, page.extremes(extremes)))
+        return "\n".join(map(format_plain, page.make_tables_at_instants(run.results)))
+    along = page.run_columns if page.has_runs else None
+    searched = ColumnSearch(page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), along)
+    extremes = run.search_extremes(searched, None, whole=True)
+    return "\n".join(map(format_plain, page.make_tables_of_extremes(extremes)))
 
 
 def row(text: str, title: str, label: str) -> list[str]:
@@ -206,12 +206,12 @@ def test_beyond_the_horizon_of_a_pendulum_nothing_is_told() -> None:
     assert 13.0 < horizon < 16.0
 
     def told(words: str) -> str:
-        return measure.write([measure.parse(words)], run, "table").strip()
+        return measure.format_measures([measure.parse_measure(words)], run, "table").strip()
 
     for words in ("max", "min", "max abs", "final", "at 19.99", f"at {horizon!r}"):
         assert told(f"{words} joints.p.force.x") == told(f"{words} energy.kinetic") == "?"
     assert float(told("at 5 coordinates.p.angle")) == pytest.approx(-0.439854790363542, abs=1e-6)
-    assert [compare(run, item).passed for item in run.spec.expect] == [False, False, False, True]
+    assert [compare(run, item).is_met for item in run.spec.expect] == [False, False, False, True]
     text = tables(run)
     cells = row(text, "p  pin", "Fx")
     assert cells[3] == "?"
@@ -230,9 +230,9 @@ class Cell(NamedTuple):
 
 def numbers(run: Study, at: list[float]) -> dict[tuple[str, str, int], Cell]:
     """The cells of the tables at some instants, by heading, column and line."""
-    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
+    page = make_page(run.results, make_labels(run.spec), run.magnitudes)
     cells: dict[tuple[str, str, int], Cell] = {}
-    for k, table in enumerate(page.instants(run.resample(np.array(at)))):
+    for k, table in enumerate(page.make_tables_at_instants(run.resample(np.array(at)))):
         units = [column.head.partition("[")[2] for column in table.columns]
         lines = [line for line in table.rows if not isinstance(line, str)]
         for n, column in enumerate(table.columns):

@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, value
+from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
@@ -89,11 +89,11 @@ def extreme(bar: Bar, part: str, sign: float) -> float:
 @pytest.mark.parametrize("seed", range(24))
 def test_a_driven_bar(seed: int) -> None:
     bar = drawn(seed)
-    run = solve(load("bar.yaml", told(bar)), Options(wanted=frozenset({"sections"})))
+    run = solve(load("bar.yaml", told(bar)), Options(requested_reports=frozenset({"sections"})))
     size = max(abs(x) for t in np.linspace(0.0, bar.duration, 99) for x in bar.loads(t).values())
     for part in ("N", "Q2", "M1"):
         for how, sign in (("max", 1.0), ("min", -1.0)):
-            found = value(MeasureRequest(how, f"sections.cut.{part}"), run).value
+            found = measure_value(MeasureRequest(how, f"sections.cut.{part}"), run).value
             exact = sign * extreme(bar, part, sign)
             assert abs(found - exact) <= 1e-9 * size, (part, how, found, exact)
 
@@ -114,8 +114,8 @@ bodies:
 joints: {{pin: {{type: pin, from: ground.O, to: bar.O, axis: [0, 1, 0]}}}}
 analysis: {{duration: {draw.uniform(4.0, 9.0) * math.sqrt(length)!r}, samples: 7}}
 """
-    run = solve(load("bar.yaml", text), Options(wanted=frozenset({"joints"})))
+    run = solve(load("bar.yaml", text), Options(requested_reports=frozenset({"joints"})))
     about = inertia + mass * (0.5 * length) ** 2
     exact = mass * G * (1.0 + 2.0 * (1.0 - math.cos(theta)) * mass * (0.5 * length) ** 2 / about)
-    found = value(MeasureRequest("max", "joints.pin.force.z"), run).value
+    found = measure_value(MeasureRequest("max", "joints.pin.force.z"), run).value
     assert abs(found - exact) <= (run.results.accuracy["estimate"]["reactions"] + 1e-13) * exact

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results.results_paths import find
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
@@ -35,7 +35,8 @@ analysis: {duration: 1, samples: 11}
 @cache
 def found(tolerance: float) -> Study:
     return solve(
-        load("gear.yaml", SCENE), Options(wanted=frozenset({"joints", "impulses", "motion"}), tolerance=tolerance)
+        load("gear.yaml", SCENE),
+        Options(requested_reports=frozenset({"joints", "impulses", "motion"}), tolerance=tolerance),
     )
 
 
@@ -44,6 +45,6 @@ def found(tolerance: float) -> Study:
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
 def test_numbers_of_a_blow_have_their_errors(path: str, tolerance: float) -> None:
     own, exact = found(tolerance), found(1e-11)
-    it, its = (find(study.results, f"impulses.0.{path}") for study in (own, exact))
+    it, its = (find_values(study.results, f"impulses.0.{path}") for study in (own, exact))
     off = float(np.abs(it.values - its.values).max())
     assert 1e-3 * stated_error(own, it.keys) < off <= stated_error(own, it.keys)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.analyses.variants.asking import Asker, Recipe, measured
-from heuncli.output.snapshots.keep import keep
+from heuncli.analyses.variants.asking import Recipe, VariantEvaluator, measure_study
+from heuncli.output.snapshots.keep import take_run_snapshot
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import MeasureRequest, Peak, stated_error
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.stated import error_of, unit_of
+from heuncli.study.quantities.stated import find_measure_error, find_unit
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT, SPECS
 
@@ -28,12 +28,12 @@ SCENES = (
 @pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
 def test_unit_and_error_are_those_of_the_tables(scene: object) -> None:
     study = solve(load(str(scene)), Options())
-    numbers = keep(study, frozenset(REPORTS)).numbers
+    numbers = take_run_snapshot(study, frozenset(REPORTS)).numbers
     assert numbers
     for path, kept in numbers.items():
         asked = path.removesuffix(".lowest").removesuffix(".highest")
-        error = error_of(MeasureRequest("max", asked), Peak(1.0, 0.0), study)
-        assert unit_of(asked, study.spec) == kept.unit, path
+        error = find_measure_error(MeasureRequest("max", asked), Peak(1.0, 0.0), study)
+        assert find_unit(asked, study.spec) == kept.unit, path
         assert math.isclose(error or 0.0, kept.error, rel_tol=1e-12), path
 
 
@@ -45,7 +45,7 @@ def test_the_error_of_a_place_covers_a_coarse_run() -> None:
         told = solved[path].error
         assert solved[path].unit == unit
         assert 1e-9 < off <= told < 1e-4
-        assert stated_error(solved.study, solved.study.numbers(path).keys) == told
+        assert stated_error(solved.study, solved.study.find_numbers(path).keys) == told
         assert solved.measure(f"max {path}").error == told
 
 
@@ -144,7 +144,7 @@ def test_an_extreme_beside_a_singular_pose_is_not_known() -> None:
     """The least acceleration, −1.2 g, lies in the flat pose, around which the search looks at nothing."""
     flat = SPECS / "flat_four_bar.yaml"
     least, greatest = MeasureRequest("min", "coordinates.B.acceleration"), MeasureRequest("max", "coordinates.B.rate")
-    asker = Asker(Recipe(str(flat), flat.read_text(encoding="utf-8"), (least, greatest), Options(), {}))
+    asker = VariantEvaluator(Recipe(str(flat), flat.read_text(encoding="utf-8"), (least, greatest), Options(), {}))
     beside, apart = asker.answer({"g": "10.466811241737235", "rate": "7.046032184352546"}).measures
     assert beside.value is None and beside.word == "unknown"
     assert apart.value is not None and apart.error is not None
@@ -175,8 +175,8 @@ sections: {along: {body: bar, from: top, to: end, count: 21}}
 def test_the_least_magnitude_along_cuts_is_nothing_within_its_error(path: str) -> None:
     """At the free end nothing is left: the root of what rounding leaves of a square is larger than a load's error."""
     study = solve(load("hanging.yaml", HANGING), Options())
-    least = measured(MeasureRequest("min", path), study)
+    least = measure_study(MeasureRequest("min", path), study)
     assert least.value is not None and least.error is not None
     assert least.value <= least.error < 1e-6 * 700 * 9.81 * 3
-    greatest = measured(MeasureRequest("max", "sections.along.force"), study)
+    greatest = measure_study(MeasureRequest("max", "sections.along.force"), study)
     assert greatest.error is not None and abs(greatest.value - 700 * 9.81) <= greatest.error < 1e-6

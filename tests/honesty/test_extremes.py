@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import HeunError
-from heuncli.output.tables.page import TABLE_DEFAULT, page_of
+from heuncli.output.tables.page import TABLE_DEFAULT, make_page
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.bench.honesty import told
@@ -27,14 +27,16 @@ BESIDE = {"flat_four_bar.yaml": 1e-4}
 
 def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, float]]:
     """Which rows of the tables pass their extremes at some of so many instants, by how many times the stated error."""
-    page = page_of(run.results, labels_of(run.spec), run.magnitudes)
-    errors, even = page.errors(), page.even()
-    along = page.along if page.has_runs else None
-    found = run.extremes(ColumnSearch(page.columns, page.groups(), errors, even, along), TABLE_DEFAULT)
+    page = make_page(run.results, make_labels(run.spec), run.magnitudes)
+    errors, even = page.find_errors(), page.magnitude_columns()
+    along = page.run_columns if page.has_runs else None
+    found = run.search_extremes(ColumnSearch(page.make_columns, page.make_groups(), errors, even, along), TABLE_DEFAULT)
     last, horizon = run.results.time[-1], run.results.accuracy.get("horizon")
     times = np.linspace(run.results.time[0], last, samples)
-    results = run.reports_at(times if horizon is None else times[times < horizon], TABLE_DEFAULT)
-    rows = [values[:, None] for values in page.columns(results).T] + [values for _, values in page.along(results)]
+    results = run.compute_reports(times if horizon is None else times[times < horizon], TABLE_DEFAULT)
+    rows = [values[:, None] for values in page.make_columns(results).T] + [
+        values for _, values in page.run_columns(results)
+    ]
     missed = []
     for k, values in enumerate(rows):
         if np.isnan(values).all() or np.isnan(found.high[k]):
@@ -53,7 +55,7 @@ def test_of_every_spec(path: Path) -> None:
     spec = load(str(path))
     if spec.analysis.type != "motion":
         pytest.skip("one instant")
-    assert not short_by(solve(spec, Options(wanted=TABLE_DEFAULT)), SAMPLES, BESIDE.get(path.name, 0.0))
+    assert not short_by(solve(spec, Options(requested_reports=TABLE_DEFAULT)), SAMPLES, BESIDE.get(path.name, 0.0))
 
 
 @pytest.mark.heavy

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.analyses.find.study import look
+from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.course import Sample
 from tests.honesty.find_courses import KINDS, judged
 
@@ -35,6 +35,8 @@ def test_narrow_peaks_flat_touches_and_near_pairs_are_not_passed_over(seed: int)
 def test_what_errors_leave_open_is_not_met_nowhere(off: float, is_open: bool) -> None:
     """A parabola three errors above the value comes to it as far as anyone knows; at a thousand errors it does not."""
     error = 1e-9
-    found = look(lambda x: Sample(x, (x - 0.4) ** 2 + off * error, error), 0.0, 1.0, "=", count=7, most=300)
-    assert found.complete and not found.touches and found.is_met_nowhere is not is_open
-    assert [one.before.x <= 0.4 <= one.after.x for one in found.not_excluded] == [True] * is_open
+    found = find_meetings(
+        lambda x: Sample(x, (x - 0.4) ** 2 + off * error, error), 0.0, 1.0, "=", scan_count=7, max_evaluations=300
+    )
+    assert found.is_complete and not found.touches and found.is_met_nowhere is not is_open
+    assert [one.left.x <= 0.4 <= one.right.x for one in found.not_excluded] == [True] * is_open

@@ -78,8 +78,8 @@ def test_the_plane_is_all_that_the_reduced_model_shows() -> None:
     """A motion in the plane that would leave it if it were pushed: that it cannot be seen is said."""
     reduced = found(swing())
     assert isinstance(reduced, Reduction)
-    assert "mirror image" in reduced.told[0]
-    assert "stable against leaving it" in reduced.hidden[0]
+    assert "mirror image" in reduced.explanations[0]
+    assert "stable against leaving it" in reduced.limitations[0]
 
 
 DOOR = """
@@ -103,8 +103,8 @@ analysis: {{duration: 1, samples: 3}}
 def test_two_hinges_hold_what_acts_out_of_the_plane(top: str) -> None:
     reduced = found(DOOR.format(top=top, beside=0.0))
     assert isinstance(reduced, Reduction)
-    assert "the joints leave no other motion" in reduced.told[0]
-    assert not reduced.hidden
+    assert "the joints leave no other motion" in reduced.explanations[0]
+    assert not reduced.limitations
 
 
 @pytest.mark.parametrize("top", ["line, axis: [1, 0, 0]", "plane, normal: [0, 1, 0]"])
@@ -116,4 +116,4 @@ def test_a_hinge_beside_the_line_of_the_other() -> None:
     """It turns about another line, by 5e-10: as the drawing has it, in the plane across that."""
     reduced = found(DOOR.format(top="ball", beside=1e-9).replace("B: [0, 0, 2]", "B: [1e-9, 0, 2]"))
     assert isinstance(reduced, Reduction)
-    assert "across (5e-10, 0, 1)" in reduced.told[0]
+    assert "across (5e-10, 0, 1)" in reduced.explanations[0]

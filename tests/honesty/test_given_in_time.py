@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.ask.measure import Peak, peak
+from heuncli.study.ask.measure import Peak, find_peak
 from heuncli.study.ask.study import TOO_FEW, Study
 from tests.shared.scenes import study
 
@@ -43,7 +43,7 @@ def table(push: str = "0", travel: str = "0", samples: int = 2, more: str = "") 
 
 def both(run: Study, path: str) -> tuple[Peak, Peak]:
     """The lowest and the highest of a number of a run, of which no doubt was told."""
-    found = peak(run, path, "min"), peak(run, path, "max")
+    found = find_peak(run, path, "min"), find_peak(run, path, "max")
     assert not run.later_warnings
     return found
 
@@ -80,7 +80,7 @@ def test_pulses_shorter_than_any_distance_of_looking() -> None:
     low, high = both(table(law), ACROSS)
     assert math.isclose(high.value, 7.0, rel_tol=1e-9)
     assert math.isclose(low.value, -10.0, rel_tol=1e-9)
-    assert low.at == pytest.approx(0.3123456, abs=1e-8)
+    assert low.time == pytest.approx(0.3123456, abs=1e-8)
 
 
 def test_ripples_of_a_drive_are_its_acceleration() -> None:
@@ -109,7 +109,7 @@ def test_kinks_that_no_switch_tells_of() -> None:
 
 def test_too_fast_to_be_followed_is_told() -> None:
     run = table("10*sin(2e6*t*(1 + t))")
-    peak(run, ACROSS, "max")
+    find_peak(run, ACROSS, "max")
     assert TOO_FEW.format(len(run.search_times)) in run.later_warnings
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.output.snapshots.changes import changes
+from heuncli.output.snapshots.changes import find_changes
 from tests.honesty.golden_courses import Course, Pulse, drawn, kept, look_at
 
 
@@ -22,4 +22,4 @@ def test_a_load_that_moves_and_a_second_peak_that_grows_are_found() -> None:
     late = Course((still._replace(height=99.0), still._replace(at=0.87)), (0.0, 1.0, 0.0), ())
     one, other = kept(early.spec(101)), kept(late.spec(101))
     assert one.numbers["joints.w.force"].greatest == other.numbers["joints.w.force"].greatest
-    assert {change.path for change in changes(one, other)} >= {"joints.w.force", "joints.w.force.x"}
+    assert {change.path for change in find_changes(one, other)} >= {"joints.w.force", "joints.w.force.x"}

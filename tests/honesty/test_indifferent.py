@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.scene.file_format.load import load
 from tests.honesty.indifferent import PARTS, TYPED, Bench, law, spring_arm, turntable
 from tests.oracle.values import to_yaml
@@ -36,7 +36,7 @@ def told(bench: Bench) -> tuple[bool, bool, int]:
     text = text_of(bench)
     sentences = solved(text).model["rest"]
     assert not any("first order" in sentence for sentence in sentences), sentences
-    free = sum(mode.kind == "free" for mode in modes(load("scene.yaml", text)).modes)
+    free = sum(mode.kind == "free" for mode in compute_spec_modes(load("scene.yaml", text)).modes)
     begun = {sentence.split()[0].strip(":") for sentence in sentences}
     return bool(begun & {"stable", "unstable"}), "indifferent" in begun, free
 
@@ -66,7 +66,7 @@ def test_what_nearly_cancels_is_told_by_its_own_eigenvalue(off: float) -> None:
     text = text_of(bench)
     first, second = solved(text).model["rest"]
     assert first.startswith("stable" if off > 0.0 else "unstable") and second.startswith("indifferent: joints.j1,")
-    values = [mode.eigenvalue for mode in modes(load("scene.yaml", text)).modes if mode.kind != "free"]
+    values = [mode.eigenvalue for mode in compute_spec_modes(load("scene.yaml", text)).modes if mode.kind != "free"]
     near((-(min(values, key=abs) ** 2)).real, wanted, abs(wanted), max(1e-13 / abs(off), 1e-9))
 
 
@@ -126,5 +126,5 @@ def test_a_follower_force_at_the_edge(thrust: float, on_edge: bool) -> None:
     assert sentences[0].startswith("unstable" if thrust > 20.0 else "stable but for what is indifferent")
     assert sentences[1].startswith("indifferent: joints.r,")
     assert any("at the edge of stability: joints.u and joints.v" in sentence for sentence in sentences) == on_edge
-    free = [mode for mode in modes(load("scene.yaml", to_yaml(scene))).modes if mode.kind == "free"]
+    free = [mode for mode in compute_spec_modes(load("scene.yaml", to_yaml(scene))).modes if mode.kind == "free"]
     assert len(free) == 1 + on_edge

@@ -6,7 +6,7 @@ import pytest
 
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import value
+from heuncli.study.ask.measure import measure_value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
@@ -32,4 +32,4 @@ FORCE = 2 * 9.81
 def test_of_what_does_not_vary(analysis: str, path: str, size: float, sign: float) -> None:
     study = solve(load("held.yaml", f"{HELD}analysis: {analysis}\n"), Options())
     for words, expected in (("max abs", size), ("abs", size), ("max", sign * size), ("min", sign * size)):
-        assert value(measure.parse(f"{words} {path}"), study).value == pytest.approx(expected), words
+        assert measure_value(measure.parse_measure(f"{words} {path}"), study).value == pytest.approx(expected), words

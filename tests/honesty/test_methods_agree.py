@@ -14,8 +14,8 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.base.method_rows import METHODS, MethodRow
-from heuncli.motion.integration.check.distance import Marks
-from heuncli.motion.integration.check.shared_blows import between_strikes
+from heuncli.motion.integration.check.distance import MotionPoints
+from heuncli.motion.integration.check.shared_blows import is_between_impulses
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
@@ -73,13 +73,13 @@ def mean_step(scene: int | str, *, reduce: bool) -> float:
 
 
 def run_of(one: Study) -> Trajectory:
-    assert one.history.checked is not None
-    return one.history.checked.run
+    assert one.history.checked_run is not None
+    return one.history.checked_run.run
 
 
 def bodies(one: Study, times: Array) -> Any:
     runner, run = one.setup.runner, run_of(one)
-    return runner.recovered(times, runner.resample(run, times), holding=run.holding_at(times)).bodies
+    return runner.evaluate(times, runner.resample(run, times), holding=run.find_holding(times)).bodies
 
 
 def require_honest(row: MethodRow, scene: int | str, *, reduce: bool) -> None:
@@ -93,17 +93,17 @@ def require_honest(row: MethodRow, scene: int | str, *, reduce: bool) -> None:
         return
     exact = truth(scene, reduce=reduce)
     runs = run_of(exact), run_of(found)
-    checked = found.history.checked
-    assert checked is not None and exact.history.checked is not None
+    checked = found.history.checked_run
+    assert checked is not None and exact.history.checked_run is not None
     horizon = np.inf if checked.horizon is None else checked.horizon
     times = np.linspace(0.0, min(float(run.times[-1]) for run in runs), INSTANTS)
-    times = times[(times < horizon) & ~between_strikes(runs, times)]
+    times = times[(times < horizon) & ~is_between_impulses(runs, times)]
     layout = found.setup.runner.layout
-    apart = Marks(layout).apart(bodies(exact, times), bodies(found, times)) / layout.size
+    apart = MotionPoints(layout).max_distance(bodies(exact, times), bodies(found, times)) / layout.size
     bound = min(checked.motion, tolerances.CLAIMED) if checked.horizon is not None else checked.motion
-    assert float(apart.max(initial=0.0)) <= bound + exact.history.checked.motion
+    assert float(apart.max(initial=0.0)) <= bound + exact.history.checked_run.motion
     if checked.horizon is None:
-        assert len(runs[0].blows) == len(runs[1].blows)
+        assert len(runs[0].impulse_events) == len(runs[1].impulse_events)
 
 
 @pytest.mark.parametrize("seed", TREES_AND_LOOPS)

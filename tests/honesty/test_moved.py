@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from heuncli.output.tables.heading import write_heading
+from heuncli.output.tables.heading import format_heading
 from tests.shared.scenes import study
 
 
@@ -34,7 +34,7 @@ SIZE = 3.3  # of the four-bar [m], nearly
 @pytest.mark.parametrize(("slip", "said"), [(0.0, False), (0.005, False), (0.006, True), (0.1, True)])
 def test_a_slip_of_the_drawing_is_said_in_one_line(slip: float, said: bool) -> None:
     done = study(four_bar(slip))
-    lines = [line for line in write_heading(done.results).splitlines() if line.startswith("moved")]
+    lines = [line for line in format_heading(done.results).splitlines() if line.startswith("moved")]
     assert len(lines) == int(said)
     assert not done.results.warnings
     if said:
@@ -91,5 +91,5 @@ def test_near_is_a_place() -> None:
 def test_three_are_named() -> None:
     """Of many bodies those that moved most; all of them stand in the note on the model."""
     results = replace(study(four_bar(0.1)).results, model={"moved": [f"b{i} by 1 m" for i in range(8)]})
-    told = " ".join(write_heading(results).split())
+    told = " ".join(format_heading(results).split())
     assert "moved to close the joints: b0 by 1 m, b1 by 1 m, b2 by 1 m and 5 more; heun model lists it" in told

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from heuncli.analyses.variants.asking import measured
+from heuncli.analyses.variants.asking import measure_study
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import value
+from heuncli.study.ask.measure import measure_value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -37,16 +37,16 @@ def study() -> Study:
 @pytest.mark.parametrize("how", ["max", "min", "max abs"])
 @pytest.mark.parametrize("path", ["stops.buffer.force", "joints.rope.tension"])
 def test_what_is_open_for_a_while_has_no_extreme(study: Study, how: str, path: str) -> None:
-    asked = measure.parse(f"{how} {path}")
-    found = value(asked, study)
+    asked = measure.parse_measure(f"{how} {path}")
+    found = measure_value(asked, study)
     assert math.isnan(found.value)
-    assert found.at == pytest.approx(CAUGHT, abs=0.1)
-    assert measure.write([asked], study, "table") == "open\n"
-    answer = measured(asked, study)
+    assert found.time == pytest.approx(CAUGHT, abs=0.1)
+    assert measure.format_measures([asked], study, "table") == "open\n"
+    answer = measure_study(asked, study)
     assert (answer.value, answer.word) == (None, "open")
 
 
 def test_what_is_never_open_has_its_extreme(study: Study) -> None:
-    assert value(measure.parse("max foundation.force.x"), study).value == pytest.approx(10.0)
-    assert value(measure.parse("max coordinates.guide.travel"), study).value == pytest.approx(0.1)
-    assert value(measure.parse("at 0.1 stops.buffer.force"), study).value == 0.0
+    assert measure_value(measure.parse_measure("max foundation.force.x"), study).value == pytest.approx(10.0)
+    assert measure_value(measure.parse_measure("max coordinates.guide.travel"), study).value == pytest.approx(0.1)
+    assert measure_value(measure.parse_measure("at 0.1 stops.buffer.force"), study).value == 0.0

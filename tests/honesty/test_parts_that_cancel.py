@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results.results_paths import find
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
@@ -46,7 +46,7 @@ OF_SMALL = ("momentum.moment_spin", "bodies.a.rotation", "bodies.a.quaternion", 
 @cache
 def found(scene: str, tolerance: float) -> Study:
     wanted = frozenset({"foundation", "motion"})
-    return solve(load("scene.yaml", scene), Options(wanted=wanted, tolerance=tolerance))
+    return solve(load("scene.yaml", scene), Options(requested_reports=wanted, tolerance=tolerance))
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
@@ -55,6 +55,6 @@ def found(scene: str, tolerance: float) -> Study:
 )
 def test_each_has_its_error(scene: str, path: str, tolerance: float) -> None:
     own, exact = found(scene, tolerance), found(scene, 1e-11)
-    it, its = (find(study.results, path) for study in (own, exact))
+    it, its = (find_values(study.results, path) for study in (own, exact))
     off = float(np.nanmax(np.linalg.norm(np.atleast_3d(it.values - its.values), axis=1)))
     assert 1e-3 * stated_error(own, it.keys) < off <= stated_error(own, it.keys)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, value
+from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
@@ -46,8 +46,8 @@ analysis: {{duration: 0.5, samples: 6}}
 
 @pytest.mark.parametrize("seed", range(10))
 def test_extremes_are_those_of_either_side(seed: int) -> None:
-    run = solve(load("beam.yaml", scene(seed)), Options(wanted=frozenset({"sections", "motion", "joints"})))
-    places = {action.name: action.to.position for action in run.recovery.actions}
+    run = solve(load("beam.yaml", scene(seed)), Options(requested_reports=frozenset({"sections", "motion", "joints"})))
+    places = {action.name: action.to_end.position for action in run.recovery.actions}
     assert np.array_equal(places["pull"], places["guide"]) and np.array_equal(places["drag"], places["guide"])
     travel = run.resample(np.linspace(0.0, 0.5, 5001)).coordinates["guide"]["travel"]
     k = int(np.argmax(travel > 0.5))
@@ -65,6 +65,6 @@ def test_extremes_are_those_of_either_side(seed: int) -> None:
         size = float(np.abs(sides["force"]).max()) if part[0] in "NQ" else float(np.abs(sides["moment"]).max())
         apart = np.minimum(np.abs(loads - loads[0]), np.abs(loads - loads[-1]))
         assert apart.max() <= CHANGE * size, part
-        largest = value(MeasureRequest("abs", f"sections.cut.{part}"), run).value
+        largest = measure_value(MeasureRequest("abs", f"sections.cut.{part}"), run).value
         dense = np.abs(run.resample(times).sections["cut"][part]).max()
         assert largest <= max(dense, np.abs(loads[[0, -1]]).max()) + 1e-3 * size

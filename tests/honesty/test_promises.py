@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.study.search.intervals import FOURTH, ceiling, promised
+from heuncli.study.search.intervals import FOURTH, bound_heights, bound_heights_cheaply
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -17,8 +17,8 @@ def test_no_promise_is_passed_over(seed: int) -> None:
     right, c = np.where(same, left, right), np.where(rng.random(100_000) < 0.2, b, c)
     up, down = (np.where(rng.random(100_000) < 0.1, np.nan, x) for x in (up, down))
     most = np.maximum(np.abs(left), np.abs(right))
-    promise = promised(b, c, left, right, FOURTH * most, up, down)
+    promise = bound_heights(b, c, left, right, FOURTH * most, up, down)
     known = np.isfinite(promise)
     assert known.mean() > 0.9
-    assert (ceiling(b, c, most, up, down)[known] >= promise[known]).all()
-    assert (ceiling(b, c, 0.5 * most, up, down)[known] < promise[known]).any()
+    assert (bound_heights_cheaply(b, c, most, up, down)[known] >= promise[known]).all()
+    assert (bound_heights_cheaply(b, c, 0.5 * most, up, down)[known] < promise[known]).any()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.multibody.reduction.model import Reduced
+from heuncli.multibody.reduction.model import ReducedScene
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml
@@ -29,8 +29,8 @@ def test_in_a_plane(kind: str) -> None:
         both = pair(load(f"{kind} {seed}", to_yaml(moving(coupled_flat(seed, (kind,), how), TIMES, 1e-10))))
         same(both)
         assert any(sentence.startswith("solved in the plane") for sentence in both.told)
-        reduced = both.small.setup.reduced
-        assert how != "welded" or (reduced is not None and len(reduced.told + reduced.kept) > 1)
+        reduced = both.small.setup.reduction
+        assert how != "welded" or (reduced is not None and len(reduced.explanations + reduced.exceptions) > 1)
 
 
 @pytest.mark.heavy
@@ -70,11 +70,11 @@ RATIO = "couplings: {m: {type: ratio, of: [first, second], factors: [1, 2]}}"
 ROPE = "couplings: {m: {type: rope, through: [ground.O, frame.p, two.c]}}"
 
 
-def scene(tail: str, hang: str = "ball", second: str = "pin", axis: str = "[0, 0, 1]", p: float = 0.0) -> Reduced:
+def scene(tail: str, hang: str = "ball", second: str = "pin", axis: str = "[0, 0, 1]", p: float = 0.0) -> ReducedScene:
     """What is left out of a frame with two wheels, nothing integrated."""
     about = "" if hang == "ball" else ", axis: [0, 0, 1]"
     text = SCENE.format(tail=tail, hang=hang, second=second, axis=axis, about=about, p=p)
-    found = set_up(load("scene.yaml", text)).reduced
+    found = set_up(load("scene.yaml", text)).reduction
     assert found is not None
     return found
 
@@ -96,8 +96,8 @@ NOT_FLAT = {  # of a frame on a ball, and what is told
 }  # fmt: skip
 
 
-def in_plane(found: Reduced) -> bool:
-    return any(sentence.startswith("solved in the plane") for sentence in found.told)
+def in_plane(found: ReducedScene) -> bool:
+    return any(sentence.startswith("solved in the plane") for sentence in found.explanations)
 
 
 @pytest.mark.parametrize("name", NOT_FLAT)
@@ -105,7 +105,7 @@ def test_flat_but_for(name: str) -> None:
     make, given, why = NOT_FLAT[name]
     found = make(*given)
     assert not in_plane(found)
-    assert any(why in sentence for sentence in found.kept), found.kept
+    assert any(why in sentence for sentence in found.exceptions), found.exceptions
 
 
 BEVEL = """\
@@ -125,10 +125,12 @@ analysis: {duration: 0.2, samples: 3}
 
 def test_a_scene_in_space_tells_which_coupling_makes_it_one() -> None:
     """Its joints alone would leave it in a plane across either axis."""
-    found = set_up(load("scene.yaml", BEVEL)).reduced
+    found = set_up(load("scene.yaml", BEVEL)).reduction
     assert found is not None
-    assert not found.told
-    assert found.kept == ("not solved in the plane across x: couplings.m counts second.angle, a coordinate out of it",)
+    assert not found.explanations
+    assert found.exceptions == (
+        "not solved in the plane across x: couplings.m counts second.angle, a coordinate out of it",
+    )
 
 
 def test_what_the_drives_leave_nothing_free_of_is_not_made_smaller() -> None:
@@ -137,8 +139,8 @@ def test_what_the_drives_leave_nothing_free_of_is_not_made_smaller() -> None:
         tail=gear() + "\ndrives: {m: {joint: first, angle: t}, n: {joint: hang, angle: 2*t}}", hang="pin", second="pin",
         axis="[0, 0, 1]", about=", axis: [0, 0, 1]", p=0.0,
     )  # fmt: skip
-    assert set_up(load("scene.yaml", driven)).reduced is None
-    asked = set_up(load("scene.yaml", driven), "DOP853").reduced
+    assert set_up(load("scene.yaml", driven)).reduction is None
+    asked = set_up(load("scene.yaml", driven), "DOP853").reduction
     assert asked is not None
     assert in_plane(asked)
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.multibody.reduction.model import Reduced
+from heuncli.multibody.reduction.model import ReducedScene
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import set_up
@@ -100,25 +100,25 @@ NOT_FLAT = {  # and what is told
 }  # fmt: skip
 
 
-def reduced(text: str) -> Reduced:
+def reduced(text: str) -> ReducedScene:
     """What is left out of a scene, nothing integrated."""
-    found = set_up(load("scene.yaml", text)).reduced
+    found = set_up(load("scene.yaml", text)).reduction
     assert found is not None
     return found
 
 
-def in_plane(found: Reduced) -> bool:
-    return any(sentence.startswith(PLANE) for sentence in found.told)
+def in_plane(found: ReducedScene) -> bool:
+    return any(sentence.startswith(PLANE) for sentence in found.explanations)
 
 
 @pytest.mark.parametrize("name", FLAT)
 def test_flat(name: str) -> None:
     both = pair(load("scene.yaml", FLAT[name].text()))
     same(both)
-    found = both.small.setup.reduced
+    found = both.small.setup.reduction
     assert found is not None and in_plane(found)
     # what joints hold in the plane cannot leave it; what is its own mirror image could
-    assert bool(found.hidden) == (FLAT[name].kind == "ball")
+    assert bool(found.limitations) == (FLAT[name].kind == "ball")
 
 
 @pytest.mark.parametrize("name", NOT_FLAT)
@@ -126,7 +126,7 @@ def test_flat_but_for(name: str) -> None:
     arm, why = NOT_FLAT[name]
     found = reduced(arm.text())
     assert not in_plane(found)
-    assert any(why in sentence for sentence in found.kept), found.kept
+    assert any(why in sentence for sentence in found.exceptions), found.exceptions
 
 
 def lateral(tail: str, rate: float = 0.0) -> str:
@@ -217,7 +217,7 @@ def test_spins(name: str) -> None:
 
 @pytest.mark.parametrize("name", TURNED)
 def test_spins_that_something_changes(name: str) -> None:
-    assert not any("symmetric about its axis" in sentence for sentence in reduced(TURNED[name]).told)
+    assert not any("symmetric about its axis" in sentence for sentence in reduced(TURNED[name]).explanations)
 
 
 def test_a_thin_wire_moves_as_a_rod() -> None:

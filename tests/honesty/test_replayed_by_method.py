@@ -15,10 +15,10 @@ import pytest
 from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import METHODS
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -55,9 +55,9 @@ def runner_of(scene: str) -> tuple[Runner, float]:
 def run_of(scene: str, method: Method, times: Array, *, keeping: bool = False) -> Trajectory:
     """A coarse run, whose steps are long; keeping: the polynomials of those that made one."""
     runner, end = runner_of(scene)
-    jumps = discontinuities_of(runner.layout.mechanism, end)
-    local = end / COUNT if method.fixed else 1e-5
-    return runner.trajectory(MotionTask(times, local, discontinuities=jumps, method=method, keeping=keeping))
+    jumps = find_discontinuities(runner.layout.mechanism, end)
+    local = end / COUNT if method.has_fixed_step else 1e-5
+    return runner.run(MotionTask(times, local, discontinuities=jumps, method=method, stores_polynomials=keeping))
 
 
 def looked_at(run: Trajectory) -> Array:
@@ -73,21 +73,21 @@ def looked_at(run: Trajectory) -> Array:
 @pytest.mark.parametrize(("name", "scene"), [pair for pair in product(NAMES, SCENES) if pair != LONG])
 def test_other_instants_are_the_runs_own(name: str, scene: str) -> None:
     runner, end = runner_of(scene)
-    method = method_of(name)
+    method = load_method_by_name(name)
     try:
         run = run_of(scene, method, np.array([0.0, end]))
     except SolveError as error:
         assert error.problems[0].code in ENDS_SOONER
         return
     times = looked_at(run)
-    whole = times if run.stopped is None else np.append(times[:-1], end)  # a rope ends it there again
+    whole = times if run.pushing_rope is None else np.append(times[:-1], end)  # a rope ends it there again
     direct = run_of(scene, method, whole)
     assert direct.ends.tolist() == run.ends.tolist()
     assert np.array_equal(direct.times, times)
     shown, alone = runner.resample(run, times), runner.resample(run, times[::7])
     assert np.array_equal(shown, direct.states)
     assert np.array_equal(alone, direct.states[::7])
-    keeps = run_of(scene, method, np.append(run.times[:-1], end) if run.stopped else run.times, keeping=True)
+    keeps = run_of(scene, method, np.append(run.times[:-1], end) if run.pushing_rope else run.times, keeping=True)
     sampled = run_of(scene, method, whole[::2] if len(whole) % 2 else np.append(whole[:-1:2], end), keeping=True)
     for kept in (keeps, sampled):  # none of whose steps made a polynomial of its own, but for events; some of whose did
         assert kept.ends.tolist() == run.ends.tolist()
@@ -99,7 +99,7 @@ def test_a_run_hangs_on_no_other() -> None:
     """What an actuator was seen to do, to rounding, is forgotten with the run: the first has the bits of the last."""
     setup = set_up(load("compressor.yaml", SCENES["gas"]))
     end = float(setup.spec.analysis.times[-1])
-    runs = [setup.runner.trajectory(MotionTask([0.0, end], end / 4000, method=method_of("Euler"))) for _ in range(2)]
+    runs = [setup.runner.run(MotionTask([0.0, end], end / 4000, method=load_method_by_name("Euler"))) for _ in range(2)]
     assert runs[0].ends.tolist() == runs[1].ends.tolist()
     assert np.array_equal(runs[0].states, runs[1].states)
 
@@ -108,10 +108,10 @@ def test_polynomials_of_very_long_runs_are_let_go(monkeypatch: pytest.MonkeyPatc
     """Beyond their room none are kept: steps are done again, with the same bits."""
     runner, end = runner_of("chaotic 0")
     asked = np.linspace(0.0, end, 301)
-    kept = run_of("chaotic 0", method_of("DOP853"), asked, keeping=True)
-    monkeypatch.setattr("heuncli.motion.integration.run.step_records.MOST_COURSES", 10)
-    left = run_of("chaotic 0", method_of("DOP853"), asked, keeping=True)
-    assert kept.courses is not None and kept.courses.spans[:, 0].any()
-    assert left.courses is None
+    kept = run_of("chaotic 0", load_method_by_name("DOP853"), asked, keeping=True)
+    monkeypatch.setattr("heuncli.motion.integration.run.step_records.MAX_POLYNOMIAL_NUMBERS", 10)
+    left = run_of("chaotic 0", load_method_by_name("DOP853"), asked, keeping=True)
+    assert kept.polynomials is not None and kept.polynomials.spans[:, 0].any()
+    assert left.polynomials is None
     times = looked_at(kept)
     assert np.array_equal(runner.resample(left, times), runner.resample(kept, times))

@@ -31,8 +31,8 @@ analysis:
 @pytest.mark.parametrize("seed", [2, 4, 7, 9, 12, 13, 16, 17])
 def test_what_is_between_is_the_runs_own(seed: int) -> None:
     run = study(pendulum(seed), time_limit=20)
-    assert run.history.checked is not None
-    steps = run.history.checked.run
+    assert run.history.checked_run is not None
+    steps = run.history.checked_run.run
     assert np.diff(np.append(0.0, steps.ends)).min() < 1e-14  # else the scene shows nothing
     assert run.results.accuracy["estimate"]["motion"] < 1e-8
     between = run.resample(np.linspace(0.0, 1.0, 101))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.methods.followed import FOLLOWED
-from heuncli.study.compose.warnings import unbalanced
+from heuncli.motion.integration.methods.followed import DRIVE_DETERMINED
+from heuncli.study.compose.warnings import warn_unbalanced
 from tests.shared.scenes import near, solved
 
 
@@ -67,7 +67,7 @@ def test_which_branch_is_followed_may_be_rounding(longer: float) -> None:
     more = "drives: {m: {joint: A, angle: 2*t}}\nanalysis: {duration: 0.8, samples: 26}"
     text = slider_crank(0.3, 1 + longer, more).replace("    MOVES\n", "")
     followed = solved(text)
-    if followed.model["method"] == FOLLOWED.name:
+    if followed.model["method"] == DRIVE_DETERMINED.name:
         outer = np.cos(0.3 + 2 * followed.time) + np.sqrt((1 + longer) ** 2 - np.sin(0.3 + 2 * followed.time) ** 2)
         near(followed.bodies["slider"]["center"][:, 0], outer, 1.0, 1e-9)
         assert followed.accuracy["horizon"] is None and followed.accuracy["estimate"]["motion"] <= 1e-9
@@ -121,6 +121,6 @@ def test_what_cannot_stay_in_line_is_refused() -> None:
 
 
 def test_loads_that_do_not_balance_are_told() -> None:
-    assert unbalanced(1e-12) == []
-    (told,) = unbalanced(0.9)
+    assert warn_unbalanced(1e-12) == []
+    (told,) = warn_unbalanced(0.9)
     assert told.startswith("the forces balance to 0.9 of the largest only")

@@ -10,14 +10,16 @@ import pytest
 from numpy.random import Generator
 from scipy.stats import binom, norm
 
-from heuncli.analyses.variants.axes import Drawn
-from heuncli.analyses.variants.draws import draws_of
-from heuncli.analyses.variants.indices import LEAST_BOUNDED, sobol_indices
-from heuncli.analyses.variants.sampling import PERCENTS, SURE, Estimated, sampled
+from heuncli.analyses.variants.axes import RandomVariable
+from heuncli.analyses.variants.draws import make_draws
+from heuncli.analyses.variants.indices import MIN_BOUNDED, compute_sobol_indices
+from heuncli.analyses.variants.sampling import CONFIDENCE, PERCENTS, BoundedEstimate, compute_statistics
 from heuncli.results.results import Array
 
 SEEDS = 2000
-LEAST_SEEN = binom.ppf(1e-4, SEEDS, SURE) / SEEDS  # of so many true intervals fewer hold the truth once in 10,000 times
+LEAST_SEEN = (
+    binom.ppf(1e-4, SEEDS, CONFIDENCE) / SEEDS
+)  # of so many true intervals fewer hold the truth once in 10,000 times
 Law = tuple[Callable[[Generator, int], Array], float, float, Callable[[float], float]]
 # How it is drawn, its mean, its deviation, its quantiles.
 LAWS: dict[str, Law] = {
@@ -27,7 +29,7 @@ LAWS: dict[str, Law] = {
 }
 
 
-def holds(one: Estimated, truth: float) -> bool:
+def holds(one: BoundedEstimate, truth: float) -> bool:
     return (one.low is None or one.low <= truth) and (one.high is None or truth <= one.high)
 
 
@@ -37,7 +39,7 @@ def shares(law: Law, n: int) -> tuple[float, float, list[float]]:
     rng = np.random.default_rng(17)
     hits = np.zeros(2 + len(PERCENTS))
     for _ in range(SEEDS):
-        found = sampled(draw(rng, n))
+        found = compute_statistics(draw(rng, n))
         assert found is not None
         truths = [mean, deviation, *(quantile(0.01 * percent) for percent in PERCENTS)]
         told = [found.mean, found.deviation, *(one for _, one in found.percentiles)]
@@ -83,29 +85,31 @@ def test_intervals_of_indices_hold_the_truth_as_often_as_they_say(
     f: Callable[[Array], Array], truths: tuple[Array, Array], law: str, n: int
 ) -> None:
     """From the least number of samples on that have intervals; they are not wide for nothing."""
-    laws = [Drawn(name, law, 0.0, 1.0, "") for name in "xyz"]  # type: ignore[arg-type]
+    laws = [RandomVariable(name, law, 0.0, 1.0, "") for name in "xyz"]  # type: ignore[arg-type]
     hits, seeds = np.zeros((3, 2)), 60
     for seed in range(seeds):
-        draws = draws_of(laws, n, seed, indices=True)
+        draws = make_draws(laws, n, seed, indices=True)
         plans = np.arange(n) % draws.repetitions if draws.repetitions > 1 else None
-        found = sobol_indices(f(draws.values).reshape(n, 5), plans)
+        found = compute_sobol_indices(f(draws.values).reshape(n, 5), plans)
         assert found is not None
         hits += [
             [holds(one.first, first), holds(one.total, total)] for one, first, total in zip(found, *truths, strict=True)
         ]
-    assert (hits / seeds).min() >= binom.ppf(1e-4, seeds, SURE) / seeds and (hits / seeds).mean() >= SURE - 0.01
+    assert (hits / seeds).min() >= binom.ppf(1e-4, seeds, CONFIDENCE) / seeds and (
+        hits / seeds
+    ).mean() >= CONFIDENCE - 0.01
 
 
 def test_few_samples_have_indices_without_intervals() -> None:
-    rows = np.random.default_rng(5).random((LEAST_BOUNDED, 4))
-    few, enough = sobol_indices(rows[:-1]), sobol_indices(rows)
+    rows = np.random.default_rng(5).random((MIN_BOUNDED, 4))
+    few, enough = compute_sobol_indices(rows[:-1]), compute_sobol_indices(rows)
     assert few is not None and few[0].first.low is None and few[0].total.high is None
     assert enough is not None and enough[0].first.low is not None
 
 
 def test_the_percentile_interval_is_that_of_the_binomial_law() -> None:
     """Of 20 draws at most 5 lie below the median in 2.07 % of samples, at most 6 in 5.77 %: the 6th to the 15th."""
-    found = sampled(np.arange(1.0, 21.0))
+    found = compute_statistics(np.arange(1.0, 21.0))
     assert found is not None
     median = dict(found.percentiles)[50.0]
     assert (median.value, median.low, median.high) == (10.5, 6.0, 15.0)
@@ -114,8 +118,12 @@ def test_the_percentile_interval_is_that_of_the_binomial_law() -> None:
 
 
 def test_few_numbers_have_no_interval() -> None:
-    assert sampled(np.array([1.0])) is None
-    found = sampled(np.array([1.0, 2.0]))
+    assert compute_statistics(np.array([1.0])) is None
+    found = compute_statistics(np.array([1.0, 2.0]))
     assert found is not None and found.mean.value == 1.5 and found.deviation.low is None
-    same = sampled(np.full(10, 3.0))
-    assert same is not None and same.deviation == Estimated(0.0, 0.0, 0.0) and same.mean == Estimated(3.0, 3.0, 3.0)
+    same = compute_statistics(np.full(10, 3.0))
+    assert (
+        same is not None
+        and same.deviation == BoundedEstimate(0.0, 0.0, 0.0)
+        and same.mean == BoundedEstimate(3.0, 3.0, 3.0)
+    )

@@ -117,13 +117,13 @@ def test_between_shapes_there_is_no_centroid() -> None:
 def test_what_is_joined_is_not_compared_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """Many shapes in one another: once a pair at most, all cuts together; 500 boxes and 200 cuts took minutes."""
     calls: list[object] = []
-    apart = outlines.apart
+    apart = outlines.are_separate
 
     def counted(*given: Any) -> Any:
         calls.append(given)
         return apart(*given)
 
-    monkeypatch.setattr(outlines, "apart", counted)
+    monkeypatch.setattr(outlines, "are_separate", counted)
     boxes = ", ".join(f"{{type: box, center: [{i / 40}, 0, 0], size: [0.4, 0.1, 0.1], density: 1}}" for i in range(40))
     found = solved(
         "heun: 1\nground: {points: {O: [0, 0, 0]}}\nbodies:\n"

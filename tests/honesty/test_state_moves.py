@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.output.tables.heading import write_heading
+from heuncli.output.tables.heading import format_heading
 from heuncli.results.results import Results
 from tests.shared.scenes import solved
 
@@ -29,7 +29,7 @@ def found(text: str, initial: str = "") -> Results:
 
 
 def line(results: Results) -> str:
-    return next((line for line in write_heading(results).splitlines() if line.startswith("moves")), "")
+    return next((line for line in format_heading(results).splitlines() if line.startswith("moves")), "")
 
 
 def test_a_forgotten_jack() -> None:

@@ -20,8 +20,8 @@ def told(text: str) -> str:
     """What is left out, and what is not, of a scene whose numbers are the same in full."""
     both = pair(load("scene.yaml", text))
     same(both)
-    reduced = both.small.setup.reduced
-    return "\n".join((*reduced.told, *reduced.kept)) if reduced is not None else ""
+    reduced = both.small.setup.reduction
+    return "\n".join((*reduced.explanations, *reduced.exceptions)) if reduced is not None else ""
 
 
 def bodies(*lines: str) -> str:
@@ -153,7 +153,7 @@ WIRE = HEAD + bodies(
 def test_a_wire_costs_as_many_steps_as_a_rod() -> None:
     """A hundredth of a millimetre thick; in full half a million steps follow rounding over its inertia."""
     setup = set_up(load("scene.yaml", WIRE + joints(SWING) + "analysis: {duration: 1, samples: 3}\n"))
-    assert setup.runner.trajectory(MotionTask(np.array([0.0, 0.5, 1.0]), 1e-10)).steps < 60
+    assert setup.runner.run(MotionTask(np.array([0.0, 0.5, 1.0]), 1e-10)).steps < 60
 
 
 def test_the_spin_of_a_wire_does_not_change() -> None:
@@ -207,6 +207,8 @@ def test_a_tripod_that_is_almost_flat(height: float, held: bool) -> None:
     """Its tip is held by a lever of the height: reactions err by rounding over it, and what is nearly loose is kept."""
     text = truss(height)
     setup = set_up(load("scene.yaml", text))
-    found = "\n".join((*setup.reduced.told, *setup.reduced.kept)) if setup.reduced is not None else ""
+    found = (
+        "\n".join((*setup.reduction.explanations, *setup.reduction.exceptions)) if setup.reduction is not None else ""
+    )
     assert ("are held" in found) == held
     assert ("could hardly move" in found) != held

@@ -10,10 +10,10 @@ import pytest
 from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.names import is_name
-from heuncli.scene.file_format.source import read
+from heuncli.scene.file_format.source import read_source
 from heuncli.scene.importers import xml_elements
-from heuncli.scene.importers.names import cleaned, names_of
-from heuncli.scene.importers.xml_elements import DEEPEST, LONGEST_VALUE
+from heuncli.scene.importers.names import assign_names, clean_name
+from heuncli.scene.importers.xml_elements import MAX_ATTRIBUTE_LENGTH, MAX_DEPTH
 from tests.shared.imported import described, imported
 
 LAUGHS = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))
@@ -24,8 +24,8 @@ REFUSED = {
     "parameter entity": ('<!DOCTYPE r [<!ENTITY % x SYSTEM "http://x.invalid/">%x;]><robot/>', "xml-entities"),
     "outer dtd": ('<!DOCTYPE robot SYSTEM "http://x.invalid/a.dtd"><robot/>', "xml-entities"),
     "unknown entity": ("<robot>&x;</robot>", "not-xml"),
-    "deep": ("<a>" * (DEEPEST + 10), "too-deep"),
-    "long": (f'<robot name="{"x" * (LONGEST_VALUE + 1)}"/>', "too-large"),
+    "deep": ("<a>" * (MAX_DEPTH + 10), "too-deep"),
+    "long": (f'<robot name="{"x" * (MAX_ATTRIBUTE_LENGTH + 1)}"/>', "too-large"),
     "empty": (" \n", "not-xml"),
     "cut off": ('<robot name="a"><link', "not-xml"),
     "two roots": ("<robot/><robot/>", "not-xml"),
@@ -60,7 +60,7 @@ def test_of_what_is_no_xml_at_all_is_said_what_is_read(name):
 
 
 def test_more_elements_than_are_read_are_refused_while_they_come(monkeypatch):
-    monkeypatch.setattr(xml_elements, "MOST_ELEMENTS", 1000)
+    monkeypatch.setattr(xml_elements, "MAX_ELEMENTS", 1000)
     with pytest.raises(SpecError, match="more than 1,000 elements") as refused:
         imported("<robot>\n" + "<link name='x'/>\n" * 5000)  # which is cut off, too: so far nobody reads
     assert refused.value.problems[0].location.line == 1001
@@ -103,15 +103,15 @@ def test_names_of_any_script_and_of_none_make_a_spec_that_means_the_same():
     assert len(spec.bodies) == len(texts) and len(spec.joints) == len(texts)
     assert [body.mass for body in spec.bodies.values()] == [1.0] * len(texts)
     assert not spec.warnings
-    data = read("r.yaml", text).data
+    data = read_source("r.yaml", text).data
     assert sorted(data) == sorted(["heun", "title", "parameters", "gravity", "ground", "bodies", "joints", "drives"])
     assert all(set(body) == {"mass", "center", "inertia", "points"} for body in data["bodies"].values())
 
 
 def test_names_that_are_names_keep_themselves():
     """Whatever others are made into, and whichever stands first."""
-    assert names_of("link", ["a-b", "a_b", "a b", "a_b_2"]) == ["a_b_3", "a_b", "a_b_4", "a_b_2"]
-    assert names_of("joint", ["x", "x", "x"]) == ["x", "x_2", "x_3"]
-    assert all(is_name(cleaned(text, "link")) for text in NASTY)
-    many = names_of("link", ["!"] * 20_000)
+    assert assign_names("link", ["a-b", "a_b", "a b", "a_b_2"]) == ["a_b_3", "a_b", "a_b_4", "a_b_2"]
+    assert assign_names("joint", ["x", "x", "x"]) == ["x", "x_2", "x_3"]
+    assert all(is_name(clean_name(text, "link")) for text in NASTY)
+    many = assign_names("link", ["!"] * 20_000)
     assert len(set(many)) == 20_000

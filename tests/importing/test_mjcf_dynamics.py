@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.scene.file_format.load import load
-from heuncli.scene.importers.spec_text import spec_text
+from heuncli.scene.importers.spec_text import format_spec
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.imported import described, imported
@@ -45,7 +45,8 @@ def test_drives_hold_what_mujocos_inverse_dynamics_says(seed):
         drives.append(drive._replace(keys={"joint": joint, coordinate: f"{law} + {accelerations[joint]!r}*t**2/2"}))
     assert len(drives) == model.nv and not machine.left_out
     study = solve(
-        load("tree.yaml", spec_text(machine._replace(drives=tuple(drives)), "tree.yaml")), Options(wanted=REPORTS)
+        load("tree.yaml", format_spec(machine._replace(drives=tuple(drives)), "tree.yaml")),
+        Options(requested_reports=REPORTS),
     )
     data.qpos[:], data.qvel[:], data.qacc[:] = q, v, a
     mujoco.mj_inverse(model, data)
@@ -62,7 +63,7 @@ def test_what_is_let_go_accelerates_as_in_mujoco(seed):
     q, v, _ = random_state(model, rng)
     v[rng.random(model.nv) < 0.3] = 0.0  # a rate of 0 is one, where others are not
     text = imported(tree.model(rest=key(model, q, v)), keyframe="start", free=True)
-    study = solve(load("tree.yaml", text), Options(wanted=REPORTS))
+    study = solve(load("tree.yaml", text), Options(requested_reports=REPORTS))
     data.qpos[:], data.qvel[:] = q, v
     mujoco.mj_forward(model, data)
     mujoco.mj_rnePostConstraint(model, data)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.scene.file_format.load import load
-from heuncli.scene.importers.spec_text import spec_text
+from heuncli.scene.importers.spec_text import format_spec
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.imported import described
@@ -50,7 +50,9 @@ def test_drives_hold_what_mujoco_says(name):
     mujoco.mj_inverse(model, data)
     machine = described(MODELS[name], keyframe="k")
     assert not machine.left_out
-    results = solve(load("m.yaml", spec_text(machine, "m.yaml")), Options(wanted=frozenset({"joints"}))).results
+    results = solve(
+        load("m.yaml", format_spec(machine, "m.yaml")), Options(requested_reports=frozenset({"joints"}))
+    ).results
     found = [results.joints[joint]["drive"][0] for joint in ("turn", "way")]
     near(found, data.qfrc_inverse, float(np.abs(data.qfrc_inverse).max()), 1e-13)
 

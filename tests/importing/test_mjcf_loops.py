@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.scene.file_format.load import load
-from heuncli.scene.importers.spec_text import spec_text
+from heuncli.scene.importers.spec_text import format_spec
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.imported import described
@@ -60,8 +60,8 @@ def test_loops_close_and_are_driven_as_mujocos_own_rows_and_torques_say(seed):
     moved = {
         parameter.name: f"{rng.normal() * 0.02 + _start(model, parameter.name)!r}" for parameter in machine.parameters
     }
-    spec = load("loops.yaml", spec_text(machine._replace(drives=tuple(drives)), "loops.yaml"), overrides=moved)
-    results = solve(spec, Options(wanted=frozenset({"motion", "joints"}))).results
+    spec = load("loops.yaml", format_spec(machine._replace(drives=tuple(drives)), "loops.yaml"), overrides=moved)
+    results = solve(spec, Options(requested_reports=frozenset({"motion", "joints"}))).results
     for number in range(model.njnt):
         name, at = model.joint(number).name, int(model.jnt_qposadr[number])
         block = results.coordinates[name]

@@ -27,7 +27,7 @@ CUP = f"""{HEAD}<body name="arm" pos="0 0 1"><joint name="j" axis="0 1 0"/><geom
 
 def solved(text: str, keyframe: str | None = None, **overrides: str):
     spec = load("m.yaml", imported(text, keyframe=keyframe), overrides=overrides)
-    return solve(spec, Options(wanted=frozenset({"motion", "joints"}))).results
+    return solve(spec, Options(requested_reports=frozenset({"motion", "joints"}))).results
 
 
 def test_what_slides_in_a_loop_starts_on_the_side_of_the_keyframe():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.scene.importers.spec_text import spec_text
+from heuncli.scene.importers.spec_text import format_spec
 from tests.shared.imported import described, imported
 
 FINE = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
@@ -194,7 +194,7 @@ def test_what_other_programs_say_is_left_out_and_listed():
     ]  # fmt: skip
     machine = described(robot(*lines))
     assert [(problem.location.line, problem.code) for problem in machine.left_out] == [(6, "import-left-out")]
-    text = spec_text(machine, "r.yaml")
+    text = format_spec(machine, "r.yaml")
     assert "1 contact in links, 1 collision_checking in links" in text
     assert "j: [0, 0, 1]" in text
 

@@ -37,7 +37,7 @@ def spec_of(text: str):
 
 
 def results_of(text: str):
-    return solve(spec_of(text), Options(wanted=frozenset({"motion", "points", "joints"}))).results
+    return solve(spec_of(text), Options(requested_reports=frozenset({"motion", "points", "joints"}))).results
 
 
 def test_a_planar_joint_leaves_shifting_and_turning_in_its_plane():
@@ -60,7 +60,9 @@ def test_what_shifts_in_a_plane_is_not_turned_over_where_the_plane_is_lifted():
     parts.append(joint("pp", "b", "c", "planar", '<origin xyz="0.3 0 1" rpy="0.2 0.3 0.4"/><axis xyz="1 1 1"/>'))
     lifted = imported(robot(*parts, joint("j", "a", "b", "prismatic", '<axis xyz="1 0 0"/>')))
     for lift in ("0", "1.5", "-2"):
-        found = solve(load("r.yaml", lifted, {"j": f"{lift} m"}), Options(wanted=frozenset({"motion"}))).results
+        found = solve(
+            load("r.yaml", lifted, {"j": f"{lift} m"}), Options(requested_reports=frozenset({"motion"}))
+        ).results
         near(found.bodies["c"]["quaternion"][0], [1, 0, 0, 0], 1.0, 1e-14)
     with pytest.raises(SpecError, match="a planar joint behind j, which turns its plane"):
         imported(robot(*parts, joint("j", "a", "b", "continuous", '<axis xyz="1 0 0"/>')))

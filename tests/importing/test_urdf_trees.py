@@ -30,7 +30,7 @@ def test_an_imported_robot_is_where_its_own_kinematics_has_it(seed):
     text = imported(urdf_text(robot))
     q = {part.name: float(rng.uniform(-2, 2)) for part in robot.movable}
     spec = load("robot.yaml", text, overrides={f"to_{name}": f"{value!r}" for name, value in q.items()})
-    results = solve(spec, Options(wanted=REPORTS)).results
+    results = solve(spec, Options(requested_reports=REPORTS)).results
     frames = frames_at(robot, q)
     size = max(float(np.abs(frame.origin).max()) for frame in frames.values()) + 1.0
     efforts = holding_efforts(robot, frames)

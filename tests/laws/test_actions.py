@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.joint_kinds import JOINTS
-from heuncli.loads.kinetostatics.actions import joint_actions
+from heuncli.loads.kinetostatics.actions import list_joint_actions
 from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.multibody.mechanism.model import GROUND
 from heuncli.study.compose.recovery import Recovery, recover
@@ -40,13 +40,13 @@ def test_actions_enter_at_the_points_of_their_bodies(of: tuple[object, int]) -> 
     """Where a lever lies between, as in a rod, the force runs along it."""
     c, r = recovery(*of)
     seen = 0
-    for action in [*r.applied, *joint_actions(r.joints)]:
-        for end, force, _ in action.on_bodies():
-            if end.point is None or (action.from_ is None and not action.force.any()):
+    for action in [*r.applied_actions, *list_joint_actions(r.joints)]:
+        for end, force, _ in action.iter_ends():
+            if end.point is None or (action.from_end is None and not action.force.any()):
                 continue  # it moves over the body, or is a couple, which may enter anywhere
             seen += 1
             lever = end.position - r.states.point_position(end.body, end.point)
-            off = cross_all(lever, force) if end.apart else lever * c.force[0]
+            off = cross_all(lever, force) if end.is_offset else lever * c.force[0]
             assert np.abs(off).max() <= 1e-9 * max(c.force) * c.length
     assert seen
 
@@ -82,11 +82,11 @@ def test_what_comes_from_outside_ends_in_the_ground(of: tuple[object, int]) -> N
     ma, spin = inertia_loads(mechanism, r.states)
     net = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity - ma
     force, moment = net.sum(axis=1), (np.cross(r.states.centre, net) - spin).sum(axis=1)
-    for action in [*r.applied, *joint_actions(r.joints)]:
-        if action.from_ is None:
+    for action in [*r.applied_actions, *list_joint_actions(r.joints)]:
+        if action.from_end is None:
             force = force + action.force
-            moment = moment + cross_all(action.to.position, action.force) + action.moment
-        elif (on_ground := action.on_ground()) is not None:
+            moment = moment + cross_all(action.to_end.position, action.force) + action.moment
+        elif (on_ground := action.ground_load()) is not None:
             F, M, position = on_ground
             force, moment = force - F, moment - M - cross_all(position, F)
     for k in range(len(TIMES)):
@@ -99,16 +99,18 @@ def test_closure_rows_do_no_work(seed: int) -> None:
     """A row's wrench does no power on the relative motion that its joint leaves free; a driven rod's moves its end."""
     c, r = recovery(doubles.redundant, seed)
     layout, states = r.setup.scene.layout, r.states
-    force, moment = r.recovered.rows["f"], r.recovered.rows["m"]
+    force, moment = r.solutions.rows["f"], r.solutions.rows["m"]
     assert len(layout.rows)
     speed = max(np.abs(states.v).max() + np.abs(states.omega).max() * c.length, 1e-6)  # of some that stand still
     for row, k in enumerate(layout.rows):
         joint = layout.mechanism.joints[k]
         Q = states.point_position(joint.b, joint.q)
         turning = spin(r, joint.b) - spin(r, joint.a)
-        slip = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
+        slip = states.point_velocity(joint.b, Q) - states.point_velocity(joint.a, Q)
         if JOINTS[joint.kind].keeps_distance:
-            slip = states.velocity(joint.b, Q) - states.velocity(joint.a, states.point_position(joint.a, joint.p))
+            slip = states.point_velocity(joint.b, Q) - states.point_velocity(
+                joint.a, states.point_position(joint.a, joint.p)
+            )
         power = np.sum(force[:, row] * slip + moment[:, row] * turning, axis=1)
         assert np.abs(force[:, row]).max() + np.abs(moment[:, row]).max() >= 0.5
         assert np.abs(power).max() <= 1e-8 * speed

@@ -11,7 +11,7 @@ import pytest
 from heuncli.base.records import replace
 from heuncli.multibody.assembly.assemble import assemble
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
-from heuncli.scene.shapes.rotations import from_vector, to_vector
+from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation
 from tests.shared.assemblies import calls, same_motion
 from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
 from tests.shared.drafted_mechanisms import (
@@ -123,8 +123,8 @@ def test_a_start_in_line_is_folded_and_said_so() -> None:
     s = four_bar(1.0, 1.0, 1.02, 3.0)
     a = assemble(s)
     assert largest_gap(s, a) < 1e-15
-    assert any("joint C started in line" in line for line in a.chosen)
-    assert not any("in line" in line for line in assemble(slider_crank(angle=1.0)).chosen)
+    assert any("joint C started in line" in line for line in a.start_choices)
+    assert not any("in line" in line for line in assemble(slider_crank(angle=1.0)).start_choices)
 
 
 def test_moving_alone_closes_a_loop_where_it_can() -> None:
@@ -162,7 +162,7 @@ def test_doubly_held_bodies_are_fitted_between() -> None:
     assert np.all(a.position[2] == [1, 1, 0.5])
     # Of all pairs of closed arms: each turns about the axis that both need, none about itself.
     for i in range(2):
-        assert abs(to_vector(a.rotation[i]) @ (a.rotation[i] @ X)) < 0.2
+        assert abs(vector_from_rotation(a.rotation[i]) @ (a.rotation[i] @ X)) < 0.2
 
 
 def test_a_held_position_turns_its_body() -> None:
@@ -218,7 +218,7 @@ def test_a_loop_whose_bodies_may_not_turn_turns_what_it_hangs_on() -> None:
     a = assemble(s)
     assert largest_gap(s, a) < 1e-14
     assert np.all(a.rotation[1] == R)
-    turn = to_vector(a.rotation[0])
+    turn = vector_from_rotation(a.rotation[0])
     assert a.rotation[0] @ X == pytest.approx(R @ X, abs=1e-14)
     assert turn @ X == pytest.approx(0.0, abs=1e-14)  # the smallest turn of one direction onto another
 
@@ -300,7 +300,7 @@ def test_the_order_of_the_file_does_not_matter_in_loops(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_turning_the_world_turns_the_loop(seed: int) -> None:
-    Q = from_vector(np.random.default_rng(seed).normal(size=3))
+    Q = rotation_from_vector(np.random.default_rng(seed).normal(size=3))
     s = random_loop(seed, 0.1, TURNING)
     turn: Any = Q.__matmul__
     bodies = tuple(

@@ -13,7 +13,7 @@ from heuncli.study.workflow import solve
 from tests.shared.scenes import solved
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
-MOTION = Options(wanted=frozenset({"motion"}))
+MOTION = Options(requested_reports=frozenset({"motion"}))
 
 
 def rotation(q: np.ndarray) -> np.ndarray:

@@ -38,7 +38,7 @@ def test_orders_sum_back_to_the_samples_and_their_powers_add_up(seed: int) -> No
     for name in ("force", "moment"):
         own = values[name]
         k = np.arange(len(own) // 2 + 1)
-        amplitudes = found.effects.nodes.amplitudes(own, k)
+        amplitudes = found.effects.nodes.compute_amplitudes(own, k)
         largest = np.abs(own).max()
         summed = np.real(np.exp(1j * np.outer(values["angles"], k)) @ amplitudes)
         assert np.abs(summed - own).max() < ROUNDING * largest
@@ -71,7 +71,7 @@ def test_a_world_that_is_turned_turns_the_vectors(seed: int) -> None:
             assert np.abs(R @ a - b).max() < SETTLED * here.residual[name].peak
         for row, turned in zip(here.orders[name][:4], there.orders[name][:4], strict=True):
             assert turned.with_turn == pytest.approx(row.with_turn, rel=1e-9, abs=1e-9 * here.residual[name].peak)
-            assert turned.against == pytest.approx(row.against, rel=1e-9, abs=1e-9 * here.residual[name].peak)
+            assert turned.against_turn == pytest.approx(row.against_turn, rel=1e-9, abs=1e-9 * here.residual[name].peak)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

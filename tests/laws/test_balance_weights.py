@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.asked import AskedWeight
-from heuncli.analyses.balancing.results import BalanceResults, PlacedWeight
+from heuncli.analyses.balancing.asked import WeightRequest
+from heuncli.analyses.balancing.results import BalanceResults, CounterweightResult
 from heuncli.base.errors import SolveError
 from heuncli.base.records import replace
 from tests.shared.cycling import balance_of, four_bar
 
 SEEDS = range(3)
 PLACES = {
-    "crank": (AskedWeight("crank", "A", 0.05),),
-    "coupler": (AskedWeight("coupler", "B", 0.03),),
-    "crank and coupler": (AskedWeight("crank", "A", None), AskedWeight("coupler", "C", 0.2)),
-    "rocker": (AskedWeight("rocker", "D", 0.04),),
+    "crank": (WeightRequest("crank", "A", 0.05),),
+    "coupler": (WeightRequest("coupler", "B", 0.03),),
+    "crank and coupler": (WeightRequest("crank", "A", None), WeightRequest("coupler", "C", 0.2)),
+    "rocker": (WeightRequest("rocker", "D", 0.04),),
 }
 
 
@@ -27,11 +27,11 @@ def linkage(seed: int) -> dict[str, Any]:
     return four_bar(np.random.default_rng(seed))
 
 
-def with_points(scene: dict[str, Any], weights: tuple[PlacedWeight, ...]) -> dict[str, Any]:
+def with_points(scene: dict[str, Any], weights: tuple[CounterweightResult, ...]) -> dict[str, Any]:
     """The scene with bodies that hang on to others by a weld: a point mass each, as who builds it would draw it."""
     own = copy.deepcopy(scene)
     for k, weight in enumerate(weight for weight in weights if weight.mass > 0.0):
-        place = weight.at.tolist()
+        place = weight.position.tolist()
         own["bodies"][f"w{k}"] = {
             "mass": weight.mass,
             "center": [0, 0, 0],
@@ -59,10 +59,10 @@ def test_a_weight_leaves_what_it_promised(seed: int, places: str, what: str) -> 
     assert own is not None
     there = balance_of(with_points(scene, own.weights))
     for name in ("force", "moment"):
-        told = own.after[name].rms
+        told = own.loads_with[name].rms
         assert told == pytest.approx(there.residual[name].rms, rel=1e-9)
     assert sum_of(there, what, 0.1) <= sum_of(found, what, 0.1) * (1.0 + 1e-12)
-    before = own.before["drive"].rms
+    before = own.loads_without["drive"].rms
     assert before == pytest.approx(found.residual["torque"].rms, rel=1e-9)  # nothing else loads this linkage
 
 
@@ -79,12 +79,12 @@ def test_no_weight_beside_it_leaves_less(places: str) -> None:
         assert sum_of(balance_of(with_points(scene, lighter)), "mix", 0.1) > best
 
 
-def scaled(weight: PlacedWeight, factor: float) -> PlacedWeight:
+def scaled(weight: CounterweightResult, factor: float) -> CounterweightResult:
     """The weight with another mass at its place, as another product at the same radius is."""
     return replace(weight, mass=factor * weight.mass)
 
 
 def test_a_weight_that_hangs_on_its_radius_asks_for_it() -> None:
     with pytest.raises(SolveError, match="hangs on its radius") as error:
-        balance_of(linkage(0), weights=(AskedWeight("coupler", "B", None),))
+        balance_of(linkage(0), weights=(WeightRequest("coupler", "B", None),))
     assert error.value.problems[0].code == "radius-needed"

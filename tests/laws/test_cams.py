@@ -37,7 +37,7 @@ def test_the_coordinate_is_the_lift(joint: str, contact: str) -> None:
     own = study(carried_cam(joint, contact))
     path = own.setup.scene.mechanism.couplings[0].rows[0].parts[0].cam.lift
     shaft, follow = (own.results.coordinates[name] for name in ("shaft", "follow"))
-    L, first, second = (part[:, 0] for part in path.at(shaft["angle"]))
+    L, first, second = (part[:, 0] for part in path.evaluate(shaft["angle"]))
     x, speed = ("travel", "speed") if joint == "slide" else ("angle", "rate")
     near(follow[x], L, 0.1, 1e-12)
     near(follow[speed], first * shaft["rate"], 1.0, 1e-11)
@@ -51,7 +51,7 @@ def test_the_force_stands_across_the_flank(joint: str, contact: str) -> None:
     states = own.recovery.states
     f, disc = (next(i for i, b in enumerate(own.setup.scene.mechanism.bodies) if b.name == n) for n in ("f", "disc"))
     on = own.results.couplings["cam"]["on"]["f"]
-    passing = states.velocity(f, on["point"]) - states.velocity(disc, on["point"])
+    passing = states.point_velocity(f, on["point"]) - states.point_velocity(disc, on["point"])
     power = np.sum(on["force"] * passing, axis=1)
     near(power, 0.0, float(np.abs(on["force"]).max() * np.abs(passing).max()), 1e-11)
 
@@ -60,7 +60,7 @@ def test_the_force_stands_across_the_flank(joint: str, contact: str) -> None:
 def test_the_tangent_is_that_of_the_motion(joint: str, contact: str) -> None:
     """d(ydot)/dy along the motion itself, against differences of ydot."""
     runner = study(carried_cam(joint, contact)).setup.runner
-    y, space = runner.moving.layout.y0, runner.moving.workspace
+    y, space = runner.integrated_scene.layout.y0, runner.integrated_scene.workspace
     along, _ = slope(space, 0.0, y)
     h = 1e-5 / np.abs(along).max()
     beside = [slope(space, 0.0, y + k * h * along)[0] for k in (-2, -1, 1, 2)]
@@ -134,7 +134,7 @@ def test_a_follower_on_the_axis_of_its_disc() -> None:
     place = {layout.mechanism.joints[f.joint].name: (f.q, f.u) for f in layout.freedoms if f.joint >= 0}
     y = np.zeros(len(layout.y0))
     y[0], y[place["shaft"][0]], y[place["shaft"][1]], y[place["follow"][0]] = 1.0, 0.3, 9.0, -0.1
-    told = Freedoms(layout, 0.0, ()).measured(y)
-    lift, slope_there, _ = scene.mechanism.couplings[0].rows[0].parts[0].cam.lift.at(0.3)
+    told = Freedoms(layout, 0.0, ()).measure(y)
+    lift, slope_there, _ = scene.mechanism.couplings[0].rows[0].parts[0].cam.lift.evaluate(0.3)
     near(told.gaps, [-0.1 - lift[0]], 0.1, 1e-12)
     near(told.rates, [-9.0 * slope_there[0]], 1.0, 1e-12)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.study.ask.measure import peak
+from heuncli.study.ask.measure import find_peak
 from tests.shared.scenes import study
 
 P, CLOSE = 1000.0, (1e-14, 1e-12, 2e-12, 3e-12, 5e-12, 1e-11, 3e-11, 1e-10, 3e-10, 1e-9, 1e-6)
@@ -32,10 +32,10 @@ sections: {{beam: {{body: beam, from: A, to: B, count: 11}}}}
 def test_no_shear_is_larger_than_the_load(first: float, apart: float) -> None:
     """They are a couple P d, which the supports take by P d / L: Q1 = -P d outside, P - P d between them."""
     solved = study(BEAM.replace("FIRST", repr(first)).replace("SECOND", repr(first + apart)))
-    greatest, least = (peak(solved, "sections.beam.Q1", how).value for how in ("max", "min"))
+    greatest, least = (find_peak(solved, "sections.beam.Q1", how).value for how in ("max", "min"))
     rounding = 1e-12 * P
     assert -P * apart - rounding <= least <= rounding
     assert least - rounding <= greatest <= P + rounding
     if apart > 1e-7:
         assert greatest == pytest.approx(P - P * apart, abs=rounding)
-    assert abs(peak(solved, "sections.beam.M2", "max").value) <= P * apart + rounding
+    assert abs(find_peak(solved, "sections.beam.M2", "max").value) <= P * apart + rounding

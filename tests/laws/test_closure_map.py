@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.multibody.response import carried, columns, jacobian
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.multibody.response import jacobian, multiplier_joint_loads, solve_columns
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.tables import vectors
-from heuncli.scene.shapes.rotations import from_vector
+from heuncli.multibody.tree.tables import vector_array
+from heuncli.scene.shapes.rotations import rotation_from_vector
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import resample
 from tests.oracle.turns import Array, cross
@@ -40,7 +40,7 @@ class Poses(NamedTuple):
 
 
 @cache
-def solved(make: Callable[[int], Case], seed: int) -> tuple[Case, Setup, Recovered]:
+def solved(make: Callable[[int], Case], seed: int) -> tuple[Case, Setup, Evaluation]:
     """A random scene's run, recovered at its instants."""
     c = make(seed)
     return c, c.study.setup, resample(c.study.setup.runner, c.study.history, np.array(TIMES))
@@ -57,7 +57,7 @@ def gaps(layout: Layout, at: Poses) -> Array:
 
     found = []
     for row in layout.tables["closures"]:
-        e, g, p, q = (vectors(row[name]) for name in "egpq")
+        e, g, p, q = (vector_array(row[name]) for name in "egpq")
         D = place(row["b"], q) - place(row["a"], p)
         e, g = direction(row["a"], e), direction(row["b"], g)
         found.append({kernel.GUIDE: e @ D, kernel.DOT: e @ g, kernel.ROD: np.sqrt(D @ D)}[int(row["kind"])])
@@ -66,7 +66,7 @@ def gaps(layout: Layout, at: Poses) -> Array:
 
 def moved(layout: Layout, at: Poses, body: int, turn: Array, shift: Array) -> Poses:
     """All that hangs on a body, itself included, turned about its joint point and shifted."""
-    R, r, T = at.R.copy(), at.r.copy(), from_vector(turn)
+    R, r, T = at.R.copy(), at.r.copy(), rotation_from_vector(turn)
     for i in range(len(r)):
         above = i
         while above > body:
@@ -85,7 +85,7 @@ def free_motions(layout: Layout, at: Poses) -> list[tuple[int, Array, Array]]:
         for freedom in layout.tables["freedoms"][body["first_freedom"] : body["end_freedom"]]:
             in_body = freedom["kind"] == kernel.TURN_IN_BODY
             of = i if in_body else body["parent"]
-            s = vectors(freedom["direction"]) * (1 - freedom["driven"])
+            s = vector_array(freedom["direction"]) * (1 - freedom["driven"])
             s = s if of < 0 else at.R[of] @ s
             found.append((i, np.zeros(3), s) if freedom["kind"] == kernel.SHIFT else (i, s, np.zeros(3)))
     return found
@@ -119,7 +119,7 @@ def test_carried_loads_hold_the_multipliers(of: tuple[Callable[[int], Case], int
     layout, rng = setup.scene.layout, np.random.default_rng(of[1])
     n_b, n_t = len(layout.place), len(TIMES)
     lambdas = rng.uniform(-PUSH, PUSH, (n_t, 3, len(layout.rows)))
-    loads = carried(setup.runner.workspace, recovered.times, recovered.states, lambdas, n_b)
+    loads = multiplier_joint_loads(setup.runner.workspace, recovered.times, recovered.states, lambdas, n_b)
     assert loads.shape == (n_t, 3, n_b, 6) and loads.any()
     for k, j in np.ndindex(n_t, 3):
         r = recovered.bodies["r"][k]
@@ -136,7 +136,7 @@ def test_carried_loads_hold_the_multipliers(of: tuple[Callable[[int], Case], int
             put(int(layout.bodies["parent"][i]), r[i], -force, -moment)
         for row, x, of_row in zip(layout.tables["closures"], lambdas[k, j], recovered.rows[k], strict=True):
             b = int(row["b"])
-            Q = vectors(row["q"])
+            Q = vector_array(row["q"])
             Q = Q if b < 0 else r[b] + recovered.bodies["R"][k, b] @ Q
             put(b, Q, x * of_row["f"], x * of_row["m"])
             put(int(row["a"]), Q, -x * of_row["f"], -x * of_row["m"])
@@ -152,7 +152,7 @@ def test_free_directions_take_what_the_jacobian_says(of: tuple[Callable[[int], C
     layout, rng = setup.scene.layout, np.random.default_rng(of[1])
     lambdas = rng.uniform(-PUSH, PUSH, (len(TIMES), 1, len(layout.rows)))
     at = setup.runner.workspace, recovered.times, recovered.states
-    loads = carried(*at, lambdas, len(layout.place))[:, 0]
+    loads = multiplier_joint_loads(*at, lambdas, len(layout.place))[:, 0]
     found = jacobian(at[0], layout, *at[1:])
     J = found.block(np.arange(found.shape[0]), np.arange(found.shape[1]))
     for k in range(len(TIMES)):
@@ -167,10 +167,12 @@ def test_what_was_asked_in_between_changes_nothing() -> None:
     _, setup, recovered = solved(doubles.redundant, 2003)
     layout, runner = setup.scene.layout, setup.runner
     at = recovered.times, recovered.states
-    before = runner.recovered(*at)
-    carried(runner.workspace, *at, np.full((len(TIMES), 2, len(layout.rows)), 7.0), len(layout.place))
+    before = runner.evaluate(*at)
+    multiplier_joint_loads(runner.workspace, *at, np.full((len(TIMES), 2, len(layout.rows)), 7.0), len(layout.place))
     jacobian(runner.workspace, layout, *at)
-    columns(runner.workspace, 0.0, recovered.states[0], np.ones((2, len(layout.place), 6)), np.array([True, False]))
-    after = runner.recovered(*at)
+    solve_columns(
+        runner.workspace, 0.0, recovered.states[0], np.ones((2, len(layout.place), 6)), np.array([True, False])
+    )
+    after = runner.evaluate(*at)
     for name in ("states", "bodies", "freedoms", "loads", "rows", "gap"):
         assert getattr(before, name).tobytes() == getattr(after, name).tobytes()

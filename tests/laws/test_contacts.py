@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.contacts.complementarity import complementary
-from heuncli.motion.integration.contacts.restitution import MOST_ROUNDS, Struck, strikes
+from heuncli.motion.integration.contacts.complementarity import solve_complementarity
+from heuncli.motion.integration.contacts.restitution import MAX_ROUNDS, ContactImpulses, solve_contact_impulses
 from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts
-from heuncli.motion.integration.contacts.touching import Touching
+from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
@@ -27,7 +27,7 @@ G = 10.0
 def motion(text: str, last: float, tolerance: float = 1e-10) -> Trajectory:
     setup = set_up(load("scene.yaml", text))
     assert setup.method is not None
-    return setup.runner.trajectory(MotionTask(np.linspace(0.0, last, 11), tolerance, method=setup.method))
+    return setup.runner.run(MotionTask(np.linspace(0.0, last, 11), tolerance, method=setup.method))
 
 
 # ---- the problem of complementarity
@@ -39,7 +39,7 @@ def test_complementarity(seed: int) -> None:
     W = rng.standard_normal((n, rank)) * 10.0 ** rng.uniform(-3, 3, (n, 1))  # contacts of any unit
     A, q = W @ W.T, W @ rng.standard_normal(rank)  # rates of a motion: then there is an answer
     size = np.sqrt(np.diag(A))
-    found = complementary(A, q, 1e-12 * (size + np.abs(q)))
+    found = solve_complementarity(A, q, 1e-12 * (size + np.abs(q)))
     w = q + A @ found.z
     assert (found.z >= 0.0).all()
     assert (w >= -1e-9 * (size * np.linalg.norm(found.z * size) + np.abs(q))).all()
@@ -50,7 +50,7 @@ def test_complementarity(seed: int) -> None:
 def test_what_cannot_be_held_apart_is_refused() -> None:
     A = np.array([[1.0, -1.0], [-1.0, 1.0]])  # a wedge between two walls that close
     with pytest.raises(SolveError, match="holds them apart"):
-        complementary(A, np.array([-1.0, -1.0]), np.full(2, 1e-12))
+        solve_complementarity(A, np.array([-1.0, -1.0]), np.full(2, 1e-12))
 
 
 @pytest.mark.parametrize("impacts", ["simultaneous", "sequential"])
@@ -62,9 +62,11 @@ def test_energy_never_grows(seed: int, impacts: ImpactModel) -> None:
     W, v = rng.standard_normal((n, rank)), rng.standard_normal(rank)
     none = np.zeros((n, 1, 6))
     e = rng.uniform(0.0, 1.0, n) if seed % 2 else np.full(n, rng.choice([0.0, 0.5, 1.0]))
-    touch = Touching(np.arange(n), none, W @ v, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n))
+    touch = TouchingContacts(np.arange(n), none, W @ v, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n))
     try:
-        found = strikes(touch, W @ W.T, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool), impacts)
+        found = solve_contact_impulses(
+            touch, W @ W.T, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool), impacts
+        )
     except EndlessImpacts:
         assert (e == 1.0).all() and rank < n  # a cage without play
         return
@@ -72,7 +74,7 @@ def test_energy_never_grows(seed: int, impacts: ImpactModel) -> None:
     assert (found.impulses >= 0.0).all()
     assert (W @ after >= -1e-9).all()
     assert after @ after <= (v @ v) * (1.0 + 1e-12)
-    if (e == 1.0).all() and (impacts == "sequential" or found.count.sum() < MOST_ROUNDS):
+    if (e == 1.0).all() and (impacts == "sequential" or found.count.sum() < MAX_ROUNDS):
         assert after @ after == pytest.approx(v @ v)
 
 
@@ -92,11 +94,13 @@ def test_each_contact_takes_its_own_restitution(seed: int) -> None:
         assert beside.impulses == pytest.approx([*alone.impulses, bears], rel=1e-14)
 
 
-def struck(A: Array, rate: Array, e: Array) -> Struck:
+def struck(A: Array, rate: Array, e: Array) -> ContactImpulses:
     """Contacts that close."""
     n = len(rate)
-    touch = Touching(np.arange(n), np.zeros((n, 1, 6)), rate, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n))
-    return strikes(touch, A, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool))
+    touch = TouchingContacts(
+        np.arange(n), np.zeros((n, 1, 6)), rate, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n)
+    )
+    return solve_contact_impulses(touch, A, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool))
 
 
 # ---- a ball on a floor
@@ -117,15 +121,15 @@ def test_a_ball_comes_to_rest(e: float, floor: float) -> None:
     """After infinitely many strikes in a finite time: t (1 + 2e / (1 - e)), told to the rounding of its height."""
     run = motion(BALL.format(at=floor + 1.0, speed=0, floor=floor, e=e), 6.0)
     first = math.sqrt(2.0 / G)
-    for k, blow in enumerate(run.blows[:8]):
+    for k, blow in enumerate(run.impulse_events[:8]):
         assert blow.time == pytest.approx(first * (1.0 + 2.0 * sum(e**i for i in range(1, k + 1))), rel=1e-12)
         assert blow.kinetic[1] == pytest.approx(20.0 * e ** (2 * k + 2), rel=1e-9)
-    assert run.blows[-1].time == pytest.approx(first * (1.0 + 2.0 * e / (1.0 - e)), abs=1e-5)
+    assert run.impulse_events[-1].time == pytest.approx(first * (1.0 + 2.0 * e / (1.0 - e)), abs=1e-5)
     assert run.holding[-1].tolist() == [1.0]
     assert run.states[-1][:2].tolist() == pytest.approx([floor, 0.0], abs=1e-13)
     assert any("rests" in note for note in run.notes)
     count = math.log(1e14) / (2.0 * math.log(1.0 / e))  # heights from 1 to the rounding of places
-    assert len(run.blows) == pytest.approx(count, abs=4)
+    assert len(run.impulse_events) == pytest.approx(count, abs=4)
 
 
 @pytest.mark.parametrize("speed", [0.0, 1.0, -1.0])
@@ -133,10 +137,10 @@ def test_a_start_at_the_limit(speed: float) -> None:
     """It rests there, leaves it, or strikes at once."""
     run = motion(BALL.format(at=0, speed=speed, floor=0, e=0.5), 6.0)
     if speed == 0.0:
-        assert not run.blows and run.holding[0].tolist() == [1.0]
+        assert not run.impulse_events and run.holding[0].tolist() == [1.0]
     else:
-        assert run.blows[0].time == (0.0 if speed < 0.0 else pytest.approx(0.2, rel=1e-12))
-        assert run.blows[0].kinetic == (pytest.approx(1.0), pytest.approx(0.25))
+        assert run.impulse_events[0].time == (0.0 if speed < 0.0 else pytest.approx(0.2, rel=1e-12))
+        assert run.impulse_events[0].kinetic == (pytest.approx(1.0), pytest.approx(0.25))
 
 
 def test_a_plastic_strike_rests_and_is_let_go() -> None:
@@ -144,11 +148,11 @@ def test_a_plastic_strike_rests_and_is_let_go() -> None:
     text = BALL.format(at=1, speed=0, floor=0, e=0).replace("analysis: {duration: 6", "analysis: {duration: 9")
     run = motion(text + 'forces: {lift: {type: torque, joint: guide, value: "3*t"}}\n', 9.0)
     changes = run.segments.ends[:-1]
-    assert len(run.blows) == 1 and run.blows[0].kinetic[1] == pytest.approx(0.0, abs=1e-25)
+    assert len(run.impulse_events) == 1 and run.impulse_events[0].kinetic[1] == pytest.approx(0.0, abs=1e-25)
     assert changes[-1] == pytest.approx(20.0 / 3.0, rel=1e-9)
     t = 9.0 - 20.0 / 3.0
     assert run.states[-1][0] == pytest.approx(3.0 * t**3 / 12.0, rel=1e-8)  # 2 z'' = 3 t - 20
-    assert run.holding_at(np.array([0.1, 3.0, 8.0])).ravel().tolist() == [0.0, 1.0, 0.0]
+    assert run.find_holding(np.array([0.1, 3.0, 8.0])).ravel().tolist() == [0.0, 1.0, 0.0]
 
 
 # ---- four ropes carry a plate
@@ -207,9 +211,12 @@ def test_starts_of_ropes(body: str, rope: str, closed: float, blows: int) -> Non
     text = ROPE.replace("BODY", body).replace("ROPE, ", "" if "null" in rope else f"{rope}, ")
     run = motion(text, 0.1)
     assert run.holding[0].tolist() == [closed]
-    assert len(run.blows) == blows
+    assert len(run.impulse_events) == blows
     if blows:
-        assert run.blows[0].time == 0.0 and run.blows[0].kinetic == (pytest.approx(4.0), pytest.approx(1.0))
+        assert run.impulse_events[0].time == 0.0 and run.impulse_events[0].kinetic == (
+            pytest.approx(4.0),
+            pytest.approx(1.0),
+        )
 
 
 @pytest.mark.heavy
@@ -218,9 +225,9 @@ def test_replays_know_what_was_closed() -> None:
     text = BALL.format(at=1, speed=0, floor=0, e=0.5)
     setup = set_up(load("scene.yaml", text))
     assert setup.method is not None
-    run = setup.runner.trajectory(MotionTask(np.linspace(0.0, 3.0, 4), 1e-9, method=setup.method))
+    run = setup.runner.run(MotionTask(np.linspace(0.0, 3.0, 4), 1e-9, method=setup.method))
     times = np.unique(np.concatenate([np.linspace(0.0, 3.0, 40), run.ends[:-1]]))
-    other = setup.runner.trajectory(MotionTask(times, 1e-9, method=setup.method))
+    other = setup.runner.run(MotionTask(times, 1e-9, method=setup.method))
     assert np.array_equal(setup.runner.resample(run, times), other.states)
 
 
@@ -238,6 +245,6 @@ analysis: {duration: 6, samples: 31}
 """,
         6.0,
     )
-    times = [blow.time for blow in run.blows]
-    assert {name for blow in run.blows for name in blow.names} == {"gate"}
+    times = [blow.time for blow in run.impulse_events]
+    assert {name for blow in run.impulse_events for name in blow.names} == {"gate"}
     assert times == pytest.approx(list(itertools.accumulate([0.3, 2 / 3, 4 / 3, 8 / 3])), rel=1e-10)

@@ -7,13 +7,13 @@ import pytest
 
 from heuncli.output.figures.bars import WholeBar
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import about
+from heuncli.scene.shapes.rotations import rotation_matrix_about
 from heuncli.study.ask.study import Study
 from tests.shared.drawn_bars import drawn, panels_of
 from tests.shared.drawn_panels import edges, heights
 from tests.shared.scenes import near, study
 
-R = about(np.array([2.0, -1.0, 3.0]) / np.sqrt(14.0), 1.1)
+R = rotation_matrix_about(np.array([2.0, -1.0, 3.0]) / np.sqrt(14.0), 1.1)
 
 
 def flail(turned: Array | None = None, faster: float = 1.0, ends: str = "from: a, to: e") -> Study:
@@ -23,7 +23,7 @@ def flail(turned: Array | None = None, faster: float = 1.0, ends: str = "from: a
     def world(*vector: float) -> list[float]:
         return [float(x) for x in turn @ np.array(vector)]
 
-    start = turn @ about(np.array([0.0, 1.0, 0.0]), 0.6)
+    start = turn @ rotation_matrix_about(np.array([0.0, 1.0, 0.0]), 0.6)
     c = faster
     return study(f"""
 heun: 1
@@ -58,7 +58,7 @@ def plain() -> Study:
 def test_the_world_turned_leaves_them_as_they_are(plain: Study) -> None:
     """All that is drawn, to a pixel; the curves at an instant to the error of the motion."""
     turned = flail(R)
-    mine, its = (WholeBar(one, "along").at(0.25) for one in (plain, turned))
+    mine, its = (WholeBar(one, "along").make_lines(0.25) for one in (plain, turned))
     for name in QUANTITIES:
         near(its[name].values, mine[name].values, 200.0, 1e-8)
     mine_drawn, its_drawn = (panels_of(one, "along") for one in (plain, turned))
@@ -73,7 +73,7 @@ def test_faster_by_c_they_grow_by_its_square(plain: Study, c: float) -> None:
     """k -> c² k, sigma -> c sigma: the same picture, only the numbers on its axes are others."""
     fast = flail(faster=c)
     for t in (0.0, 0.17, 0.4):
-        mine, its = WholeBar(plain, "along").at(t), WholeBar(fast, "along").at(t / c)
+        mine, its = WholeBar(plain, "along").make_lines(t), WholeBar(fast, "along").make_lines(t / c)
         for name in QUANTITIES:
             near(its[name].values, c**2 * mine[name].values, 200.0 * c**2, 1e-8)
     mine_drawn, its_drawn = panels_of(plain, "along"), panels_of(fast, "along")
@@ -113,7 +113,10 @@ sections: {along: {body: bar, from: a, to: d, count: 5}}
 @pytest.mark.heavy
 def test_told_from_the_other_end_forces_turn_over() -> None:
     """From end to start: N stays, and every place is told from there; the pictures say the same of the bar."""
-    mine, its = WholeBar(flail(), "along").at(0.1), WholeBar(flail(ends="from: e, to: a"), "along").at(0.1)
+    mine, its = (
+        WholeBar(flail(), "along").make_lines(0.1),
+        WholeBar(flail(ends="from: e, to: a"), "along").make_lines(0.1),
+    )
     s = np.linspace(0.01, 0.79, 50)
     s = s[(np.abs(s - 0.3) > 1e-6) & (np.abs(s - 0.5) > 1e-6)]
     for name, sign in (("N", 1.0), ("T", 1.0), ("Q1", -1.0)):  # e1 is the same, n and e2 are turned over

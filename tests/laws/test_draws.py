@@ -9,15 +9,15 @@ import pytest
 from scipy import stats
 from scipy.stats import qmc
 
-from heuncli.analyses.variants.axes import AxisError, Drawn, ParameterAxis
-from heuncli.analyses.variants.draws import draws_of, unbalanced
-from heuncli.analyses.variants.plans import plan_of
+from heuncli.analyses.variants.axes import AxisError, ParameterAxis, RandomVariable
+from heuncli.analyses.variants.draws import make_draws, warn_unbalanced
+from heuncli.analyses.variants.plans import make_axes_plan
 
 SEEDS = [0, 1, 2024]
 
 
-def law(name: str, kind: str, a: float, b: float, unit: str = "") -> Drawn:
-    return Drawn(name, kind, a, b, unit)  # type: ignore[arg-type]
+def law(name: str, kind: str, a: float, b: float, unit: str = "") -> RandomVariable:
+    return RandomVariable(name, kind, a, b, unit)  # type: ignore[arg-type]
 
 
 BOX = [(-1.0, 3.0), (0.1, 0.2), (-1e3, 1e4)]
@@ -25,7 +25,7 @@ BOX = [(-1.0, 3.0), (0.1, 0.2), (-1e3, 1e4)]
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_several_sobol_are_the_one_sequence_that_scipy_draws(seed: int) -> None:
-    drawn = draws_of([law(name, "sobol", *ends) for name, ends in zip("xyz", BOX, strict=True)], 64, seed)
+    drawn = make_draws([law(name, "sobol", *ends) for name, ends in zip("xyz", BOX, strict=True)], 64, seed)
     low, high = np.transpose(BOX)
     own = qmc.Sobol(3, seed=np.random.default_rng(seed)).random(64)
     assert np.array_equal(drawn.values, qmc.scale(own, low, high))
@@ -33,7 +33,7 @@ def test_several_sobol_are_the_one_sequence_that_scipy_draws(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_several_lhs_are_the_one_hypercube_that_scipy_draws(seed: int) -> None:
-    drawn = draws_of([law(name, "lhs", *ends) for name, ends in zip("xyz", BOX, strict=True)], 50, seed)
+    drawn = make_draws([law(name, "lhs", *ends) for name, ends in zip("xyz", BOX, strict=True)], 50, seed)
     low, high = np.transpose(BOX)
     own = qmc.LatinHypercube(3, seed=np.random.default_rng(seed)).random(50)
     assert np.array_equal(drawn.values, qmc.scale(own, low, high))
@@ -44,22 +44,22 @@ def test_several_lhs_are_the_one_hypercube_that_scipy_draws(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_normal_beside_them_is_a_coordinate_of_their_plan(seed: int) -> None:
     laws = [law("x", "normal", 5.0, 2.0), law("u", "uniform", 0.0, 1.0), law("y", "sobol", 0.0, 1.0)]
-    drawn = draws_of(laws, 128, seed).values
+    drawn = make_draws(laws, 128, seed).values
     own = qmc.Sobol(2, seed=np.random.default_rng(seed)).random(128)
     assert np.array_equal(drawn[:, 2], own[:, 1])
     theirs = stats.norm(5.0, 2.0).ppf(own[:, 0])
     assert np.allclose(drawn[:, 0], theirs, rtol=0.0, atol=100.0 * np.finfo(float).eps)
-    assert np.array_equal(drawn[:, 1], draws_of([laws[1]], 128, seed).values[:, 0])  # a uniform one is not
+    assert np.array_equal(drawn[:, 1], make_draws([laws[1]], 128, seed).values[:, 0])  # a uniform one is not
 
 
 def test_a_seed_draws_these_numbers_for_ever() -> None:
     """The bits of PCG64 by the definition of its output, and the mean and deviation they are turned by."""
     bits = np.random.PCG64(np.random.SeedSequence(7, spawn_key=(0, ord("d")))).random_raw(3)
     u = [(int(word >> 12) + 0.5) / 2**52 for word in bits.tolist()]
-    assert draws_of([law("d", "uniform", 0.0, 1.0)], 3, 7).values[:, 0].tolist() == u
+    assert make_draws([law("d", "uniform", 0.0, 1.0)], 3, 7).values[:, 0].tolist() == u
     normal = [100.0 + 0.1 * NormalDist().inv_cdf(x) for x in u]
-    assert draws_of([law("d", "normal", 100.0, 0.1)], 3, 7).values[:, 0].tolist() == normal
-    assert draws_of([law("d", "uniform", 0.0, 1.0)], 2).values[:, 0].tolist() == [
+    assert make_draws([law("d", "normal", 100.0, 0.1)], 3, 7).values[:, 0].tolist() == normal
+    assert make_draws([law("d", "uniform", 0.0, 1.0)], 2).values[:, 0].tolist() == [
         0.28854231059985513,
         0.615607697444169,
     ]
@@ -67,19 +67,19 @@ def test_a_seed_draws_these_numbers_for_ever() -> None:
 
 def test_neither_more_samples_nor_other_parameters_change_what_is_drawn() -> None:
     d, e, r = law("d", "normal", 100.0, 0.1), law("e", "normal", 1.0, 1.0), law("r", "uniform", 1.0, 2.0)
-    few, more = draws_of([d, r], 10, 3).values, draws_of([e, r, d], 99, 3)
+    few, more = make_draws([d, r], 10, 3).values, make_draws([e, r, d], 99, 3)
     assert np.array_equal(few, more.values[:10, [2, 1]])
     assert not np.isclose(more.values[:, 0], (more.values[:, 2] - 100.0) / 0.1 + 1.0).any()  # nor are two the same
     sobol = [law("x", "sobol", 0.0, 1.0), law("y", "normal", 0.0, 1.0)]
-    assert np.array_equal(draws_of(sobol, 16, 3).values, draws_of(sobol, 64, 3).values[:16])
+    assert np.array_equal(make_draws(sobol, 16, 3).values, make_draws(sobol, 64, 3).values[:16])
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("beside", [[], [law("s", "sobol", 0.0, 1.0)], [law("s", "lhs", 0.0, 1.0)]])
-def test_numbers_follow_their_law(seed: int, beside: list[Drawn]) -> None:
+def test_numbers_follow_their_law(seed: int, beside: list[RandomVariable]) -> None:
     """By the largest distance of their distribution from the law's, which chance passes once in 10,000 seeds."""
     laws = [law("x", "normal", -3.0, 0.5), law("y", "uniform", 2.0, 4.0), *beside]
-    values = draws_of(laws, 1024, seed).values
+    values = make_draws(laws, 1024, seed).values
     assert stats.kstest(values[:, 0], stats.norm(-3.0, 0.5).cdf).pvalue > 1e-4
     assert stats.kstest(values[:, 1], stats.uniform(2.0, 2.0).cdf).pvalue > 1e-4
     assert abs(stats.spearmanr(values[:, 0], values[:, 1]).statistic) < 4.0 / np.sqrt(1024)
@@ -88,7 +88,7 @@ def test_numbers_follow_their_law(seed: int, beside: list[Drawn]) -> None:
 @pytest.mark.parametrize("kind", ["uniform", "lhs", "sobol"])
 def test_saltellis_plan_exchanges_one_parameter_after_the_other(kind: str) -> None:
     laws = [law("x", kind, 0.0, 1.0), law("y", kind, 5.0, 6.0), law("n", "normal", 0.0, 1.0)]
-    drawn = draws_of(laws, 16, 1, indices=True)
+    drawn = make_draws(laws, 16, 1, indices=True)
     assert drawn.each == 5 and drawn.values.shape == (80, 3)
     A, B, *exchanged = drawn.values.reshape(16, 5, 3).transpose(1, 0, 2)
     assert not np.isin(A, B).any()
@@ -97,35 +97,39 @@ def test_saltellis_plan_exchanges_one_parameter_after_the_other(kind: str) -> No
         assert np.array_equal(rows[:, i], B[:, i]) and np.array_equal(rows[:, others], A[:, others])
     if kind == "sobol":  # of A and B together, as scipy.stats.sobol_indices has it; of 16 plans in turn
         own = qmc.Sobol(6, seed=np.random.default_rng((1, 3))).random(2)
-        more = draws_of(laws, 32, 1, indices=True).values.reshape(32, 5, 3)
+        more = make_draws(laws, 32, 1, indices=True).values.reshape(32, 5, 3)
         assert np.array_equal(more[[3, 19], 0, 0], own[:, 0]) and np.array_equal(more[[3, 19], 1, 1], own[:, 4] + 5.0)
         assert np.array_equal(more[:16], drawn.values.reshape(16, 5, 3))  # it goes on with more samples
     assert drawn.repetitions == (1 if kind == "uniform" else 16)
 
 
 def test_every_combination_of_the_other_axes_gets_the_same_samples() -> None:
-    draws = draws_of([law("d", "normal", 100.0, 0.1, "mm")], 4, 0)
-    plan = plan_of([ParameterAxis("n", ("1 rpm", "2 rpm")), ParameterAxis("L", ("0.1", "0.2", "0.3"))], draws=draws)
-    rows = [plan.values(number) for number in range(plan.size)]
+    draws = make_draws([law("d", "normal", 100.0, 0.1, "mm")], 4, 0)
+    plan = make_axes_plan(
+        [ParameterAxis("n", ("1 rpm", "2 rpm")), ParameterAxis("L", ("0.1", "0.2", "0.3"))], draws=draws
+    )
+    rows = [plan.find_values(number) for number in range(plan.size)]
     assert plan.size == 24 and [row["n"] for row in rows] == ["1 rpm"] * 12 + ["2 rpm"] * 12
     assert [row["d"] for row in rows] == [f"{float(d)!r} mm" for d in draws.values[:, 0]] * 6
-    zipped = plan_of([ParameterAxis("n", ("1", "2")), ParameterAxis("L", ("3", "4"))], together=True, draws=draws)
-    assert zipped.size == 8 and [zipped.values(k)["L"] for k in (0, 3, 4, 7)] == ["3", "3", "4", "4"]
+    zipped = make_axes_plan(
+        [ParameterAxis("n", ("1", "2")), ParameterAxis("L", ("3", "4"))], together=True, draws=draws
+    )
+    assert zipped.size == 8 and [zipped.find_values(k)["L"] for k in (0, 3, 4, 7)] == ["3", "3", "4", "4"]
 
 
 def test_what_cannot_be_drawn_is_refused() -> None:
     with pytest.raises(AxisError, match="lhs and sobol in one sweep"):
-        draws_of([law("x", "lhs", 0.0, 1.0), law("y", "sobol", 0.0, 1.0)], 8)
+        make_draws([law("x", "lhs", 0.0, 1.0), law("y", "sobol", 0.0, 1.0)], 8)
     with pytest.raises(AxisError, match="expected 2 or more"):
-        draws_of([law("x", "lhs", 0.0, 1.0)], 1)
+        make_draws([law("x", "lhs", 0.0, 1.0)], 1)
     with pytest.raises(AxisError, match="15,000,000 variants; at most 10,000,000"):
-        draws_of([law("x", "uniform", 0.0, 1.0)], 5_000_000, indices=True)
+        make_draws([law("x", "uniform", 0.0, 1.0)], 5_000_000, indices=True)
     with pytest.raises(AxisError, match="expected a number from 0 on"):
-        draws_of([law("x", "uniform", 0.0, 1.0)], 8, -1)
+        make_draws([law("x", "uniform", 0.0, 1.0)], 8, -1)
 
 
 def test_a_sobol_sequence_that_is_cut_off_is_told() -> None:
     sobol = [law("x", "sobol", 0.0, 1.0)]
-    assert unbalanced(sobol, 1024) == "" and unbalanced([law("x", "lhs", 0.0, 1.0)], 1000) == ""
-    assert "512 and 1024" in unbalanced(sobol, 1000)
-    assert len(draws_of(sobol, 1000).values) == 1000  # with no warning of SciPy's
+    assert warn_unbalanced(sobol, 1024) == "" and warn_unbalanced([law("x", "lhs", 0.0, 1.0)], 1000) == ""
+    assert "512 and 1024" in warn_unbalanced(sobol, 1000)
+    assert len(make_draws(sobol, 1000).values) == 1000  # with no warning of SciPy's

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.scene.shapes.inertia import second_moment, tensor
+from heuncli.scene.shapes.inertia import inertia_tensor, second_moment
 from tests.shared.clouds import (
     Body,
     Cloud,
@@ -42,8 +42,8 @@ def test_16_to_21_one_body(seed: int) -> None:
     """M_v = J σ; its rate is the moment; in the body's components (dM/dt) + σ × M; Euler's rows in principal axes."""
     c = cloud(seed)
     b: Body = body_of(c)
-    near(tensor(b.T) @ b.sigma, b.M, 1.0, EXACT)  # (18), and J and T give each other
-    near(second_moment(tensor(b.T)), b.T, 1.0, EXACT)
+    near(inertia_tensor(b.T) @ b.sigma, b.M, 1.0, EXACT)  # (18), and J and T give each other
+    near(second_moment(inertia_tensor(b.T)), b.T, 1.0, EXACT)
     near(derivative(lambda t: momentum(c, t)), b.Mk, 1.0, EXACT)  # (17); (16) is its integral
     inner = derivative(lambda t: rotation(c.coordinates(t)[:3]).T @ momentum(c, t))
     near(inner + np.cross(b.body(b.sigma), b.body(b.M)), b.body(b.Mk), 1.0, EXACT)  # (19), (28)

@@ -13,7 +13,7 @@ from heuncli.results.results import Array, Block, Results
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 
@@ -22,7 +22,7 @@ WANTED = frozenset({"joints", "motion", "foundation", "shares", "impulses"})
 
 
 def solved(path: Path | str, axes: str) -> Study:
-    return solve(load(str(path)), Options(wanted=WANTED, axes=axes))
+    return solve(load(str(path)), Options(requested_reports=WANTED, axes=axes))
 
 
 def attitude(results: Results, end: str) -> Array:
@@ -45,11 +45,11 @@ def same(told: Block, world: Block, R: Array) -> None:
 @pytest.mark.parametrize("name", SOLVED)
 def test_the_vectors_are_the_same(name: str, axes: str) -> None:
     world, told = (solved(SPECS / f"{name}.yaml", which).results for which in ("world", axes))
-    labels = labels_of(load(str(SPECS / f"{name}.yaml")))
+    labels = make_labels(load(str(SPECS / f"{name}.yaml")))
     assert told.model["axes"] == axes
     assert "axes" not in world.model
     for joint, block in world.joints.items():
-        end = labels.joints[joint].from_ if axes == "from" else labels.joints[joint].to
+        end = labels.joints[joint].first_end if axes == "from" else labels.joints[joint].second_end
         R = attitude(world, end)
         same(told.joints[joint], block, R)
         for cause, share in block["shares"].items():

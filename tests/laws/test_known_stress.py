@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.loads.kinetostatics.bodies import body_states
-from heuncli.loads.redundancy.count import counted, counted_without_loads
-from heuncli.loads.redundancy.self_stress import self_stress
-from heuncli.motion.integration.run.runner import ready
-from heuncli.multibody.mechanism.build import build, forms_of
-from heuncli.multibody.tree.frame import without_loads
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.loads.redundancy.count import count_self_stresses, count_without_loads
+from heuncli.loads.redundancy.self_stress import find_self_stress
+from heuncli.motion.integration.run.runner import make_runner
+from heuncli.multibody.mechanism.build import build, make_forms
+from heuncli.multibody.tree.frame import remove_loads
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.scene.file_format.load import load
 from tests.shared.bits import bits
@@ -26,25 +26,25 @@ LOADED = (
 @pytest.mark.parametrize("name", LOADED)
 def test_loads_have_no_say_in_what_is_held_twice(name: str) -> None:
     spec = load(SPECS / f"{name}.yaml")
-    scene, runner = ready(prepare(build(spec, forms_of(spec))))
+    scene, runner = make_runner(prepare(build(spec, make_forms(spec))))
     drives = tuple(joint.drive.value for joint in scene.mechanism.joints if joint.drive is not None)
-    bare = counted_without_loads(without_loads(scene.layout), drives, runner.start_holding)
-    assert [*bits(bare)] == [*bits(counted(runner))]
+    bare = count_without_loads(remove_loads(scene.layout), drives, runner.start_holding)
+    assert [*bits(bare)] == [*bits(count_self_stresses(runner))]
 
 
 def test_self_stresses_are_taken_over_at_the_same_pose_alone() -> None:
     spec = load(SPECS / "bricard.yaml")
-    scene, runner = ready(prepare(build(spec, forms_of(spec))))
-    known = counted(runner).here
+    scene, runner = make_runner(prepare(build(spec, make_forms(spec))))
+    known = count_self_stresses(runner).start_stress
     assert known is not None
-    here = runner.recovered(np.zeros(1), scene.layout.y0[None, :])
-    states = body_states(scene.layout, here)
-    found = self_stress(runner, here, states, known)
+    here = runner.evaluate(np.zeros(1), scene.layout.y0[None, :])
+    states = make_body_states(scene.layout, here)
+    found = find_self_stress(runner, here, states, known)
     assert found is known.stress
-    assert [*bits(found)] == [*bits(self_stress(runner, here, states))]
+    assert [*bits(found)] == [*bits(find_self_stress(runner, here, states))]
     moved = scene.layout.y0.copy()
     moved[0] += 1e-6
-    there = runner.recovered(np.zeros(1), moved[None, :])
-    assert self_stress(runner, there, body_states(scene.layout, there), known) is not known.stress
-    later = runner.recovered(np.ones(1), scene.layout.y0[None, :])
-    assert self_stress(runner, later, body_states(scene.layout, later), known) is not known.stress
+    there = runner.evaluate(np.zeros(1), moved[None, :])
+    assert find_self_stress(runner, there, make_body_states(scene.layout, there), known) is not known.stress
+    later = runner.evaluate(np.ones(1), scene.layout.y0[None, :])
+    assert find_self_stress(runner, later, make_body_states(scene.layout, later), known) is not known.stress

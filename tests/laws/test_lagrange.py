@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.coordinates import candidates, chosen, picked
-from heuncli.analyses.lagrange.equations import VelocityTerms, partials_of
-from heuncli.analyses.lagrange.instant import Instant, instant_of
+from heuncli.analyses.lagrange.coordinates import choose_coordinates, make_candidate_rows, select_independent
+from heuncli.analyses.lagrange.equations import VelocityTerms, make_partials
+from heuncli.analyses.lagrange.instant import Instant, make_instant
 from heuncli.analyses.lagrange.results import LagrangeResults
-from heuncli.analyses.lagrange.study import LagrangeQuestion
-from heuncli.analyses.lagrange.study import told as told_at
+from heuncli.analyses.lagrange.study import LagrangeOptions
+from heuncli.analyses.lagrange.study import to_results as told_at
 from heuncli.motion.integration.evaluator import CAUSES
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.motion.linearisation.linearise import linearised
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.linearise import linearise
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.loops import loop_scene
@@ -41,8 +41,8 @@ def scene_of(kind: str, seed: int) -> dict[str, Any]:
 
 def looked_at(kind: str, seed: int, **asked: Any) -> tuple[Instant, LagrangeResults]:
     spec = load("scene.yaml", to_yaml(scene_of(kind, seed)))
-    at = instant_of(spec, None, None)
-    return at, told_at(spec, at, LagrangeQuestion(**asked))
+    at = make_instant(spec, None, None)
+    return at, told_at(spec, at, LagrangeOptions(**asked))
 
 
 @pytest.mark.parametrize(("kind", "seed"), SCENES)
@@ -66,14 +66,16 @@ def test_the_equations_are_those_of_the_run(kind: str, seed: int) -> None:
 
 def matrices(at: Instant, names: tuple[str, ...], moved: float, rates: np.ndarray[Any, Any]) -> tuple[Any, Any, Any]:
     """e at the place to which so long a motion at these rates leads, and what makes C there."""
-    layout = at.freed.layout
-    by = chosen(at.freed.scene, at.found, at.freed.driven, names)
-    state = displaced(layout, at.state, moved * (by.S @ rates))
-    here = at.freed.runner.recovered(np.array([at.t]), state[None, :], holding=at.holding)
-    found = linearised(layout, at.t, here.states[0], at.holding)
-    by = chosen(at.freed.scene, found, at.freed.driven, names)
+    layout = at.freed_scene.layout
+    by = choose_coordinates(at.freed_scene.scene, at.linear_equations, at.freed_scene.driven_coordinates, names)
+    state = displace(layout, at.state, moved * (by.S @ rates))
+    here = at.freed_scene.runner.evaluate(np.array([at.t]), state[None, :], holding=at.holding)
+    found = linearise(layout, at.t, here.states[0], at.holding)
+    by = choose_coordinates(at.freed_scene.scene, found, at.freed_scene.driven_coordinates, names)
     epsilon = by.S.T @ found.mass @ by.S
-    terms = VelocityTerms(at.freed, by, partials_of(layout, found, by.S), epsilon, at.t, here.states[0], at.holding)
+    terms = VelocityTerms(
+        at.freed_scene, by, make_partials(layout, found, by.S), epsilon, at.t, here.states[0], at.holding
+    )
     return epsilon, terms, by
 
 
@@ -101,7 +103,9 @@ def test_the_symbols_make_the_matrix(kind: str, seed: int) -> None:
     assert np.abs(by_symbols - found.coriolis_matrix).max() <= 1e-9 * size
     assert np.abs(found.gamma - found.gamma.transpose(0, 2, 1)).max() == 0.0
     assert found.alpha is not None
-    free = np.einsum("ilk,l,k->i", found.alpha, found.rates, found.rates) + found.eta @ (found.total + found.drives)
+    free = np.einsum("ilk,l,k->i", found.alpha, found.rates, found.rates) + found.eta @ (
+        found.total_force + found.drives
+    )
     assert np.abs(free - found.accelerations).max() <= 1e-9 * max(np.abs(found.accelerations).max(), 1.0)
 
 
@@ -110,16 +114,18 @@ def test_other_coordinates(seed: int) -> None:
     """With other coordinates, q' = R r', e becomes R' e R, k and C by parts R' k; the energy stays."""
     at, found = looked_at("loop of pins", seed)
     spec = load("scene.yaml", to_yaml(scene_of("loop of pins", seed)))
-    by = chosen(at.freed.scene, at.found, at.freed.driven, found.names)
-    rows = candidates(at.freed.layout, at.found)
+    by = choose_coordinates(at.freed_scene.scene, at.linear_equations, at.freed_scene.driven_coordinates, found.names)
+    rows = make_candidate_rows(at.freed_scene.layout, at.linear_equations)
     scaled = {name: row @ by.S for name, row in rows.items()}
-    others = picked(scaled, [[name for name in scaled if name not in found.names], list(scaled)], len(found.names))
+    others = select_independent(
+        scaled, [[name for name in scaled if name not in found.names], list(scaled)], len(found.names)
+    )
     R = np.linalg.inv(np.array([scaled[name] for name in others]))
-    second = told_at(spec, at, LagrangeQuestion(coordinates=tuple(others)))
+    second = told_at(spec, at, LagrangeOptions(coordinates=tuple(others)))
     size = np.abs(R).max() ** 2 * np.abs(found.epsilon).max()
     assert np.abs(second.epsilon - R.T @ found.epsilon @ R).max() <= 1e-9 * size
-    assert np.abs(second.total - R.T @ found.total).max() <= 1e-9 * np.abs(R).max() * max(
-        np.abs(found.total).max(), 1.0
+    assert np.abs(second.total_force - R.T @ found.total_force).max() <= 1e-9 * np.abs(R).max() * max(
+        np.abs(found.total_force).max(), 1.0
     )
     assert second.energy == pytest.approx(found.energy, rel=1e-9)
 
@@ -131,13 +137,13 @@ WITH_BALLS = {1, 5, 1004}  # among the loops: turns about the world's axes have 
 def test_forces_are_what_their_causes_accelerate(kind: str, seed: int) -> None:
     """k by virtual work is e times the accelerations that each cause alone makes of the scene without drives."""
     at, found = looked_at(kind, seed)
-    layout, mechanism = at.freed.layout, at.freed.layout.mechanism
-    by = chosen(at.freed.scene, at.found, at.freed.driven, found.names)
-    causes = at.freed.runner.recovered(np.array([at.t]), at.state[None, :], causes=True, holding=at.holding).causes
+    layout, mechanism = at.freed_scene.layout, at.freed_scene.layout.mechanism
+    by = choose_coordinates(at.freed_scene.scene, at.linear_equations, at.freed_scene.driven_coordinates, found.names)
+    causes = at.freed_scene.runner.evaluate(np.array([at.t]), at.state[None, :], causes=True, holding=at.holding).causes
     assert causes is not None
     made = found.epsilon @ by.rows @ causes.freedoms["udot"][0].T  # (f, causes)
     alone: dict[str, Any] = {}
-    for applied, own in mechanism.load_rows():
+    for applied, own in mechanism.iter_load_rows():
         alone[applied.name] = alone.get(applied.name, 0.0) + made[:, own].sum(axis=1)
     alone["gravity"] = made[:, len(layout.tables["loads"]) + CAUSES.index("gravity")]
     size = max(float(np.abs(k).max()) for k in alone.values()) + 1e-12

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.motion.linearisation.linearise import Linearised, linearised
-from heuncli.multibody.tree.layout import places_of_rates
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
+from heuncli.multibody.tree.layout import rate_indices
 from heuncli.results.results import Array
-from heuncli.study.solve.singular_start import rates_of
+from heuncli.study.solve.singular_start import rate_derivatives
 from tests.shared.loops import loop
 from tests.shared.rolling_scenes import rolling
 from tests.shared.scenes import study
@@ -27,16 +27,18 @@ CASES += [("rolling", seed) for seed in (2, 5, 7)]
 
 def accelerations(runner: Runner, t: float, state: Array, holding: Array) -> Array:
     """Of the undriven freedoms, by the kernel that computes."""
-    place = places_of_rates(runner.layout)
-    found = runner.recovered(np.array([t]), state[None, :], holding=holding)
-    return rates_of(runner.layout, found)[place[place >= 0]]
+    place = rate_indices(runner.layout)
+    found = runner.evaluate(np.array([t]), state[None, :], holding=holding)
+    return rate_derivatives(runner.layout, found)[place[place >= 0]]
 
 
-def differences(runner: Runner, t: float, found: Linearised, along: Array, rates: Array, holding: Array) -> Array:
+def differences(
+    runner: Runner, t: float, found: LinearisedEquations, along: Array, rates: Array, holding: Array
+) -> Array:
     """d accelerations along displacements and rates that the closures admit, by extrapolated differences."""
     table = []
     for h in STEPS:
-        ends = [displaced(runner.layout, found.state, s * h * along, s * h * rates) for s in (1.0, -1.0)]
+        ends = [displace(runner.layout, found.state, s * h * along, s * h * rates) for s in (1.0, -1.0)]
         a, b = (accelerations(runner, t, end, holding) for end in ends)
         table.append((a - b) / (2.0 * h))
     for k in range(1, len(STEPS)):
@@ -49,15 +51,15 @@ def differences(runner: Runner, t: float, found: Linearised, along: Array, rates
 def test_against_differences(kind: str, seed: int) -> None:
     """Trees and loops of every kind of joint and load, in motion: along random displacements, and changes of rates."""
     run = OF_KIND[kind](seed).study
-    runner, history = run.setup.runner, run.history.recovered
+    runner, history = run.setup.runner, run.history.solutions
     t, holding = float(history.times[-1]), history.holding[-1]
-    found = linearised(runner.layout, t, history.states[-1], holding)
+    found = linearise(runner.layout, t, history.states[-1], holding)
     rng = np.random.default_rng(seed)
     x = rng.uniform(-1.0, 1.0, found.tangent.shape[1])
     ways = [(found.tangent @ x, found.drift @ x), (0.0 * found.tangent @ x, found.tangent @ x)]
-    if found.posed is not None:  # what rolls comes to more poses than its speeds lead to at once
-        y = rng.uniform(-1.0, 1.0, found.posed.tangent.shape[1])
-        ways.append((found.posed.tangent @ y, found.posed.drift @ y))
+    if found.pose_directions is not None:  # what rolls comes to more poses than its speeds lead to at once
+        y = rng.uniform(-1.0, 1.0, found.pose_directions.tangent.shape[1])
+        ways.append((found.pose_directions.tangent @ y, found.pose_directions.drift @ y))
     for along, rates in ways:
         exact = found.by_place @ along + found.by_rate @ rates
         near = differences(runner, t, found, along, rates, holding)
@@ -92,9 +94,9 @@ def test_in_the_plane_as_in_space(reduce: bool) -> None:
     """The planar sweep and the spatial one have the same derivatives."""
     runner = study({**beam(4), "space": "planar"}, reduce=reduce).setup.runner
     assert runner.layout.flat is reduce
-    flat = linearised(runner.layout, 0.0, runner.layout.y0)
+    flat = linearise(runner.layout, 0.0, runner.layout.y0)
     space = study(beam(4), reduce=False).setup.runner
-    full = linearised(space.layout, 0.0, space.layout.y0)
+    full = linearise(space.layout, 0.0, space.layout.y0)
     for name in ("accelerations", "by_place", "by_rate", "mass"):
         a, b = getattr(flat, name), getattr(full, name)
         assert np.abs(a - b).max() <= 1e-13 * np.abs(b).max()
@@ -107,7 +109,7 @@ def test_stiffness_is_symmetric_at_rest() -> None:
     for spring in scene["forces"].values():
         spring["length"] = float(np.hypot(1.3, 0.1))  # at ease
     runner = study(scene).setup.runner
-    found = linearised(runner.layout, 0.0, runner.layout.y0)
+    found = linearise(runner.layout, 0.0, runner.layout.y0)
     assert np.abs(found.accelerations).max() <= 1e-11
     K = -found.mass @ found.by_place
     assert np.abs(K - K.T).max() <= 1e-13 * np.abs(K).max()
@@ -116,7 +118,7 @@ def test_stiffness_is_symmetric_at_rest() -> None:
     assert np.linalg.eigvalsh(K).min() > 0.0
 
 
-def slider(**loads: Any) -> Linearised:
+def slider(**loads: Any) -> LinearisedEquations:
     """Of a mass on a guide at rest at the origin, with loads."""
     scene = {
         "ground": {"points": {"O": [0, 0, 0]}},
@@ -125,7 +127,7 @@ def slider(**loads: Any) -> Linearised:
         "forces": loads,
     }
     runner = study(scene).setup.runner
-    return linearised(runner.layout, 0.0, runner.layout.y0)
+    return linearise(runner.layout, 0.0, runner.layout.y0)
 
 
 def test_friction_begins_as_a_damper() -> None:
@@ -146,4 +148,4 @@ def test_a_state_of_another_layout_is_refused(more: int) -> None:
     layout = study(beam(2)).setup.runner.layout
     state = np.concatenate([layout.y0, np.zeros(1)])[: layout.n_state + more]
     with pytest.raises(ValueError, match=f"{layout.n_state} numbers"):
-        linearised(layout, 0.0, state)
+        linearise(layout, 0.0, state)

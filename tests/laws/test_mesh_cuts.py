@@ -7,8 +7,8 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Matrix, Shape, Vec
-from heuncli.scene.meshes.reading import mesh_of
-from heuncli.scene.shapes.forms import Form, form
+from heuncli.scene.meshes.reading import read_closed_mesh
+from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
 from tests.shared import polyhedra
 from tests.shared import triangles as t
 from tests.shared.solids import beyond, carried, difference, rotation, unit, vec
@@ -27,13 +27,13 @@ BODIES = {
 
 def body(
     triangles: Array, *, scale: float = 1.0, at: Vec = (0.0, 0.0, 0.0), axes: Matrix = IDENTITY, density: float = 2.0
-) -> Form:
+) -> CompositeSolid:
     """The form of a mesh, whose coordinates are those of the file to all digits."""
-    mesh = mesh_of(t.obj(triangles).encode(), "body.obj")
-    return form([Shape("mesh", density=density, mesh=mesh, scale=scale, at=at, rotation=axes)])
+    mesh = read_closed_mesh(t.obj(triangles).encode(), "body.obj")
+    return make_composite_solid([Shape("mesh", density=density, mesh=mesh, scale=scale, at=at, rotation=axes)])
 
 
-def planes(f: Form, corners: Array, rng: np.random.Generator) -> list[tuple[Array, Array]]:
+def planes(f: CompositeSolid, corners: Array, rng: np.random.Generator) -> list[tuple[Array, Array]]:
     """Normals, any, along axes and across edges; offsets at random, and through corners, so through edges and faces."""
     found = []
     corners = np.unique(corners.reshape(-1, 3), axis=0)
@@ -52,7 +52,7 @@ def test_two_pieces_make_the_whole_wherever_the_plane_lies(name: str) -> None:
     f = body(BODIES[name])
     for n, d in planes(f, BODIES[name], np.random.default_rng(1)):
         for one, other in zip(beyond(f, n, d), beyond(f, -n, -d), strict=True):
-            assert difference(one + other, f.whole(), f.whole()) < 1e-14
+            assert difference(one + other, f.whole_inertia(), f.whole_inertia()) < 1e-14
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -66,11 +66,13 @@ def test_a_piece_goes_over_smoothly_where_the_plane_meets_corners_edges_and_face
     for n, at in ((unit(normals[k]), a[k]), (across, a[k]), (unit(np.array([0.3, -0.5, 0.8])), corners[-1])):
         d = float(at @ n) + hair * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
         lower, _, there, _, upper = beyond(f, n, d)
-        area = f.parts[0].area(n, d)[0]
+        area = f.parts[0].section_area(n, d)[0]
         for one, other, middle in ((lower, there, area[1]), (there, upper, area[3])):
-            assert one[3, 3] - other[3, 3] == pytest.approx(middle * hair, abs=1e-14 * f.whole()[3, 3] + 10.0 * hair**2)
+            assert one[3, 3] - other[3, 3] == pytest.approx(
+                middle * hair, abs=1e-14 * f.whole_inertia()[3, 3] + 10.0 * hair**2
+            )
         reach = 1.0 + float((corners**2).sum(axis=1).max())  # of 1, x and x x
-        assert np.abs(lower - upper).max() <= 2.0 * hair * reach * max(area) + 1e-14 * np.abs(f.whole()).max()
+        assert np.abs(lower - upper).max() <= 2.0 * hair * reach * max(area) + 1e-14 * np.abs(f.whole_inertia()).max()
 
 
 def clipped(triangles: Array, n: Array, d: float, density: float) -> Array:
@@ -97,7 +99,7 @@ def test_a_piece_is_that_of_tetrahedra_clipped_one_by_one(name: str) -> None:
         low, high = f.extent(n)
         d = rng.uniform(low, high, 2)
         for piece, height in zip(beyond(f, n, d), d.tolist(), strict=True):
-            assert difference(piece, clipped(triangles, n, height, 2.0), f.whole()) < 1e-12
+            assert difference(piece, clipped(triangles, n, height, 2.0), f.whole_inertia()) < 1e-12
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -108,8 +110,8 @@ def test_a_piece_loses_what_the_plane_passes_over(name: str) -> None:
         levels = np.unique(np.round(BODIES[name].reshape(-1, 3) @ n, 12))
         a, b = levels[:-1] + 1e-11, levels[1:] - 1e-11
         at = np.concatenate([a, 0.5 * (a + b), b])
-        area, first = (part.reshape(3, len(a), -1) for part in f.parts[0].area(n, at))
-        P = f.pieces(n, np.concatenate([a, b]), np.zeros(2 * len(a))).reshape(2, -1, 4, 4)
+        area, first = (part.reshape(3, len(a), -1) for part in f.parts[0].section_area(n, at))
+        P = f.piece_inertias(n, np.concatenate([a, b]), np.zeros(2 * len(a))).reshape(2, -1, 4, 4)
         lost, weight = P[0] - P[1], (b - a)[:, None] / 6.0
         assert np.allclose(weight * (area[0] + 4.0 * area[1] + area[2]), lost[:, 3:, 3], rtol=1e-9, atol=1e-13)
         assert np.allclose(weight * (first[0] + 4.0 * first[1] + first[2]), lost[:, :3, 3], rtol=1e-9, atol=1e-13)
@@ -123,26 +125,29 @@ def test_a_mesh_turns_moves_and_grows_with_its_keys(name: str) -> None:
     axes = tuple(vec(row) for row in R)
     there = body(BODIES[name], scale=0.25, at=vec(p), axes=axes)  # type: ignore[arg-type]
     S = np.diag([0.25] * 3 + [1.0])
-    assert difference(0.25**3 * carried(S @ f.whole() @ S, R, p), there.whole(), there.whole()) < 1e-14
+    assert (
+        difference(0.25**3 * carried(S @ f.whole_inertia() @ S, R, p), there.whole_inertia(), there.whole_inertia())
+        < 1e-14
+    )
     for n, d in planes(f, BODIES[name], rng)[:4]:
         offsets = 0.25 * d + (R @ n) @ p
         for one, other in zip(beyond(f, n, d), beyond(there, R @ n, offsets), strict=True):
-            assert difference(0.25**3 * carried(S @ one @ S, R, p), other, there.whole()) < 2e-14
+            assert difference(0.25**3 * carried(S @ one @ S, R, p), other, there.whole_inertia()) < 2e-14
 
 
 def test_a_box_of_triangles_is_a_box() -> None:
     low, high = np.array([-0.2, 0.1, 0.3]), np.array([0.4, 0.9, 0.7])
     f, box = (
         body(t.box(low, high)),
-        form([Shape("box", center=vec(0.5 * (low + high)), size=vec(high - low), density=2.0)]),
+        make_composite_solid([Shape("box", center=vec(0.5 * (low + high)), size=vec(high - low), density=2.0)]),
     )
     rng = np.random.default_rng(5)
     for _ in range(20):
         n = unit(rng.normal(size=3))
         d = rng.uniform(*box.extent(n), 6)
         side = np.ones(6)
-        assert difference(f.whole(), box.whole(), box.whole()) < 1e-15
-        assert np.allclose(f.pieces(n, d, side), box.pieces(n, d, side), rtol=0.0, atol=1e-15)
+        assert difference(f.whole_inertia(), box.whole_inertia(), box.whole_inertia()) < 1e-15
+        assert np.allclose(f.piece_inertias(n, d, side), box.piece_inertias(n, d, side), rtol=0.0, atol=1e-15)
         one, other = f.cross_sections(n, d, side), box.cross_sections(n, d, side)
         assert np.allclose(one.area, other.area, atol=1e-5)
         assert np.allclose(one.centroid, other.centroid, atol=1e-5)
@@ -151,14 +156,14 @@ def test_a_box_of_triangles_is_a_box() -> None:
 
 @pytest.mark.parametrize("inner", [0.0, 0.3])
 def test_a_cylinder_of_triangles_errs_as_the_square_of_its_facets(inner: float) -> None:
-    exact = form([Shape("cylinder", from_=(0.0, 0.0, 0.0), to=(0.0, 0.0, 1.2), radius=0.5, inner_radius=inner or None,
+    exact = make_composite_solid([Shape("cylinder", from_=(0.0, 0.0, 0.0), to=(0.0, 0.0, 1.2), radius=0.5, inner_radius=inner or None,
                         density=2.0)])  # fmt: skip
     n, d = unit(np.array([0.7, 0.2, 0.5])), np.array([0.1, 0.3, 0.6])
     errors = []
     for count in (40, 80, 160):
         f = body(t.cylinder(count, 0.5, 1.2, inner))
         pieces = zip(beyond(f, n, d), beyond(exact, n, d), strict=True)
-        errors.append(max(difference(one, other, exact.whole()) for one, other in pieces))
+        errors.append(max(difference(one, other, exact.whole_inertia()) for one, other in pieces))
     assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2.0, 2.0], abs=0.1)
 
 
@@ -173,7 +178,7 @@ def test_regions_are_counted_through_holes_and_parts() -> None:
     ring, rod = body(BODIES["ring"]), Shape("rod", from_=(0.0, 0.0, -1.0), to=(0.0, 0.0, 1.0), mass=1.0)
     # what stands within the hull of a mesh's outline counts as one with it
     far = Shape("cylinder", from_=(9.0, 0.0, -1.0), to=(9.0, 0.0, 1.0), radius=0.5, density=1.0)
-    both = Form((*ring.parts, *form([rod, far]).parts), ring.near)
+    both = CompositeSolid((*ring.parts, *make_composite_solid([rod, far]).parts), ring.tolerance)
     assert both.cross_sections(z, np.array([0.01, 0.5]), np.zeros(2)).regions.tolist() == [2, 2]
 
 

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.modes.study import require_no_time, state_of
+from heuncli.analyses.modes.study import find_state, require_time_independent
 from heuncli.base.errors import SolveError
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.motion.linearisation.oscillations import Mode, oscillations
-from heuncli.motion.linearisation.reduced_equations import idle_spins
-from heuncli.motion.linearisation.steady_motion import Looked, carried_on
-from heuncli.multibody.tree.layout import places_of_rates
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.oscillations import Mode, find_modes
+from heuncli.motion.linearisation.reduced_equations import find_massless_spins
+from heuncli.motion.linearisation.steady_motion import LinearisedState, continue_motion
+from heuncli.multibody.tree.layout import rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
@@ -28,15 +28,15 @@ SMALL = 1e-5  # of turns, of the size, and of both a second: what is not linear 
 SPECS = sorted(path.name for path in (ROOT / "specs").glob("*.yaml"))
 
 
-def started(here: Looked, x: Array, rate: Array) -> Array:
+def started(here: LinearisedState, x: Array, rate: Array) -> Array:
     """The state displaced along x, at its own rates changed by `rate`."""
-    return displaced(here.layout, here.found.state, x, rate)
+    return displace(here.layout, here.linear.state, x, rate)
 
 
-def moved(here: Looked, state: Array, y0: Array) -> Array:
+def moved(here: LinearisedState, state: Array, y0: Array) -> Array:
     """How far the freedoms of a state are from those of another: small turns of balls, and differences."""
     layout = here.layout
-    place = places_of_rates(layout)
+    place = rate_indices(layout)
     order = {u: k for k, u in enumerate(place[place >= 0].tolist())}
     out = np.zeros(len(order))
     for freedom in layout.tables["freedoms"]:
@@ -58,18 +58,18 @@ def test_a_run_follows_its_modes(name: str) -> None:
     """Of all specs at rest: a quarter of a period, or until exp(l t) has grown or died by a third."""
     setup = set_up(load(ROOT / "specs" / name), reduce=False)
     try:
-        require_no_time(setup)
-        here, *_ = state_of(setup)
+        require_time_independent(setup)
+        here, *_ = find_state(setup)
     except SolveError:
         pytest.skip("neither at rest nor steady")
-    if here.layout.driven or here.found.omega.any() or here.found.velocities.any():
+    if here.layout.has_laws or here.linear.omega.any() or here.linear.velocities.any():
         pytest.skip("is driven, or moves")
-    for mode in oscillations(here.system, here.loose):
+    for mode in find_modes(here.system, here.indifferent):
         if mode.kind != "free":
             follow(here, mode)
 
 
-def follow(here: Looked, mode: Mode) -> None:
+def follow(here: LinearisedState, mode: Mode) -> None:
     """A run from a little along a mode against its exponential."""
     value = mode.eigenvalue
     amplitude = SMALL / max(1.0, abs(value))
@@ -77,16 +77,18 @@ def follow(here: Looked, mode: Mode) -> None:
     start = started(here, x.real, (value * x).real)
     until = 0.3 / abs(value.real) if value.imag == 0.0 else 0.25 / mode.frequency
     times = np.array([0.0, 0.5, 1.0]) * until
-    run = here.runner.trajectory(MotionTask(times, 1e-13, method=DOP853, start=start))
+    run = here.runner.run(MotionTask(times, 1e-13, method=DOP853, start=start))
     for t, state in zip(run.times, run.states, strict=True):
         wanted = (np.exp(value * t) * x).real
-        off = here.weights * (moved(here, state, here.found.state) - wanted)
+        off = here.weights * (moved(here, state, here.linear.state) - wanted)
         assert np.abs(without_idle(here, off)).max() <= 1e2 * SMALL * amplitude
 
 
-def without_idle(here: Looked, off: Array) -> Array:
+def without_idle(here: LinearisedState, off: Array) -> Array:
     """Differences by the weights, less those along spins that no inertia resists: a motion does not determine them."""
-    spins = [here.weights * (here.found.tangent @ spin.along) for spin in idle_spins(here.scene, here.found)]
+    spins = [
+        here.weights * (here.linear.tangent @ spin.tangent) for spin in find_massless_spins(here.scene, here.linear)
+    ]
     if not spins:
         return off
     idle = np.array(spins).T
@@ -115,9 +117,9 @@ STEADY = {
 @pytest.mark.parametrize("name", STEADY)
 def test_a_steady_run_follows_its_modes(name: str) -> None:
     """Beside a motion that goes on steadily another one, seen by what turns along: exp(l t), rates to fit."""
-    here, *_ = state_of(set_up(load("scene.yaml", to_yaml(STEADY[name])), reduce=False))
+    here, *_ = find_state(set_up(load("scene.yaml", to_yaml(STEADY[name])), reduce=False))
     system = here.system
-    for mode in oscillations(system, here.loose):
+    for mode in find_modes(system, here.indifferent):
         if mode.kind == "free":
             continue
         value = mode.eigenvalue
@@ -125,13 +127,11 @@ def test_a_steady_run_follows_its_modes(name: str) -> None:
         rate = system.tangent @ (value * xi - system.A11 @ xi) + system.drift @ xi
         amplitude = SMALL / np.abs(np.concatenate([here.weights * mode.shape, here.weights * rate])).max()
         times = np.array([0.0, 0.5, 1.0]) * 0.3 / abs(value)
-        start = displaced(here.layout, here.found.state, amplitude * mode.shape.real, amplitude * rate.real)
-        runs = [
-            here.runner.trajectory(MotionTask(times, 1e-13, method=DOP853, start=y)) for y in (start, here.found.state)
-        ]
+        start = displace(here.layout, here.linear.state, amplitude * mode.shape.real, amplitude * rate.real)
+        runs = [here.runner.run(MotionTask(times, 1e-13, method=DOP853, start=y)) for y in (start, here.linear.state)]
         for t, state, beside in zip(times, runs[0].states, runs[1].states, strict=True):
             wanted = (amplitude * np.exp(value * t) * mode.shape).real
-            found = carried_on(here, t)[1].T @ moved(here, state, beside)
+            found = continue_motion(here, t)[1].T @ moved(here, state, beside)
             # in the mass matrix's measure: spins of points, which have no inertia, go as they like
             off = np.abs(system.tangent.T @ system.mass @ (found - wanted)).max()
             assert off <= 1e2 * SMALL * amplitude * np.abs(xi).max()

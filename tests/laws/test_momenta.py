@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.scene.shapes.rotations import hat
+from heuncli.scene.shapes.rotations import cross_matrix
 from tests.oracle.masses import mass_of
 from tests.shared.scenes import solved
 from tests.shared.trees import ABOUT, SOME, tree
@@ -108,7 +108,7 @@ def test_rodrigues_vectors(angle: float) -> None:
     axis, body = turned(angle)
     k = body["rodrigues"][0]
     assert np.abs(k - math.tan(angle / 2.0) * axis).max() <= 1e-13 * (1.0 + math.tan(angle / 2.0) ** 2)
-    attitude = (np.eye(3) + hat(k)) @ np.linalg.inv(np.eye(3) - hat(k))
+    attitude = (np.eye(3) + cross_matrix(k)) @ np.linalg.inv(np.eye(3) - cross_matrix(k))
     assert np.abs(attitude - body["rotation"][0]).max() <= 1e-13
 
 

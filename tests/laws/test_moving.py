@@ -46,13 +46,13 @@ def test_states_blows_and_replays(name: str) -> None:
     between = 0.5 * (times[1:] + times[:-1])
     runs, replays = [], []
     for runner in (setup.runner, elsewhere(setup.runner)):
-        runs.append(runner.trajectory(MotionTask(times, 1e-12)))
+        runs.append(runner.run(MotionTask(times, 1e-12)))
         replays.append(runner.resample(runs[-1], between))
     here, there = runs
-    assert len(here.blows) == len(there.blows)
+    assert len(here.impulse_events) == len(there.impulse_events)
     scale = max(1.0, float(np.abs(here.states).max()))
     assert there.states == pytest.approx(here.states, abs=1e-9 * scale)
     assert replays[1] == pytest.approx(replays[0], abs=1e-9 * scale)
-    for one, other in zip(here.blows, there.blows, strict=True):
+    for one, other in zip(here.impulse_events, there.impulse_events, strict=True):
         assert other.time == pytest.approx(one.time, abs=1e-9)
-        assert other.after == pytest.approx(one.after, abs=1e-8 * scale)
+        assert other.after_state == pytest.approx(one.after_state, abs=1e-8 * scale)

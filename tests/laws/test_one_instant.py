@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.sharing import same
-from heuncli.scene.file_format.source import read
-from heuncli.study.ask.measure import peak, searched
+from heuncli.scene.file_format.sharing import is_same
+from heuncli.scene.file_format.source import read_source
+from heuncli.study.ask.measure import find_peak, search_peaks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -24,38 +24,38 @@ LEFT_OUT = ("expect", "report", "cases", "impulses")  # of a scene as it stands 
 
 def at_its_start(path: Path) -> str:
     """The text of a scene of which the instant of its start is asked for."""
-    data = {key: value for key, value in read(str(path), None).data.items() if key not in LEFT_OUT}
+    data = {key: value for key, value in read_source(str(path), None).data.items() if key not in LEFT_OUT}
     return json.dumps(data | {"analysis": {"type": "state"}})
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_states_that_were_compared_are_those_found_afresh(path: Path) -> None:
     study = solve(load(str(path), at_its_start(path)), Options())
-    afresh = recover(study.setup, study.history.recovered, study.options.least_norm)
+    afresh = recover(study.setup, study.history.solutions, study.options.least_norm)
     for name in BODIES:
-        assert same(getattr(study.recovery.states, name), getattr(afresh.states, name)), name
+        assert is_same(getattr(study.recovery.states, name), getattr(afresh.states, name)), name
     for own, other in zip(study.recovery.unsplit, afresh.unsplit, strict=True):
         assert own.joint is other.joint
         for name in JOINTS:
-            assert same(getattr(own, name), getattr(other, name)), (own.joint.name, name)
+            assert is_same(getattr(own, name), getattr(other, name)), (own.joint.name, name)
         for stop, beside in zip(own.stops, other.stops, strict=True):
-            assert same((stop.value, stop.unit), (beside.value, beside.unit))
+            assert is_same((stop.value, stop.unit), (beside.value, beside.unit))
 
 
 @pytest.mark.parametrize("how", ["max", "min", "abs"])
 @pytest.mark.parametrize("path", ["joints.end.force", "joints.end.force.y", "sections.lower.N", "joints.low.moment"])
 def test_the_extreme_of_one_instant_is_what_a_search_finds(path: str, how: str) -> None:
     study = solve(load(str(ROOT / "heuncli" / "starters" / "truss.yaml")), Options())
-    of_vectors = study.numbers(path).of_vectors
+    of_vectors = study.find_numbers(path).is_vector
 
     def columns(results: object) -> object:
-        values = study.numbers(path).values
+        values = study.find_numbers(path).values
         return ((values**2).sum(axis=-1) if of_vectors else values).reshape(1, -1)
 
-    low, high = searched(study, path, columns, (-1.0, 1.0), None)  # type: ignore[arg-type]
-    found = peak(study, path, how)
+    low, high = search_peaks(study, path, columns, (-1.0, 1.0), None)  # type: ignore[arg-type]
+    found = find_peak(study, path, how)
     lower = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
     value = (low if lower else high).value
     wanted = abs(value) ** 0.5 if of_vectors else abs(value) if how == "abs" else value
-    assert found.at == low.at == high.at == 0.0
+    assert found.time == low.time == high.time == 0.0
     assert abs(found.value - wanted) <= 1e-15 * abs(wanted)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import GROUND
-from heuncli.multibody.response import Columns, blows, columns
+from heuncli.multibody.response import Columns, solve_columns, solve_impulses
 from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.loops import loop
@@ -19,14 +19,14 @@ CASES = [("tree", seed) for seed in (0, 1, 4, 6, 8, 9)] + [("loop", seed) for se
 ROUNDING = 1e-12  # of the largest of all columns: they cancel in the sum
 
 
-def recovered(kind: str, seed: int) -> tuple[Study, Recovered]:
+def recovered(kind: str, seed: int) -> tuple[Study, Evaluation]:
     """A random scene in motion: its last instant."""
     study = (tree if kind == "tree" else loop)(seed).study
-    history = study.history.recovered
-    return study, study.setup.runner.recovered(history.times[-1:], history.states[-1:])
+    history = study.history.solutions
+    return study, study.setup.runner.evaluate(history.times[-1:], history.states[-1:])
 
 
-def load_columns(study: Study, found: Recovered) -> Array:
+def load_columns(study: Study, found: Evaluation) -> Array:
     """Every applied load alone, (n, bodies, 6): moment about the joint point and force on each body."""
     layout, bodies = study.setup.runner.layout, found.bodies[0]
     out = np.zeros((len(layout.tables["loads"]), len(bodies), 6))
@@ -38,8 +38,10 @@ def load_columns(study: Study, found: Recovered) -> Array:
     return out
 
 
-def answers(study: Study, found: Recovered, loads: Array, inertial: list[bool]) -> Columns:
-    return columns(study.setup.runner.workspace, float(found.times[0]), found.states[0], loads, np.array(inertial))
+def answers(study: Study, found: Evaluation, loads: Array, inertial: list[bool]) -> Columns:
+    return solve_columns(
+        study.setup.runner.workspace, float(found.times[0]), found.states[0], loads, np.array(inertial)
+    )
 
 
 @pytest.mark.parametrize(("kind", "seed"), CASES)
@@ -98,7 +100,7 @@ def test_causes_add_up(kind: str, seed: int) -> None:
     """A column a cause: every load, velocities, drives, weight; each load's as alone, together all."""
     study, found = recovered(kind, seed)
     at = found.times, found.states
-    found, whole = study.setup.runner.recovered(*at), study.setup.runner.recovered(*at, causes=True)
+    found, whole = study.setup.runner.evaluate(*at), study.setup.runner.evaluate(*at, causes=True)
     assert whole.causes is not None
     for name in ANSWERS:
         np.testing.assert_array_equal(whole.bodies[name], found.bodies[name])  # with causes as without
@@ -125,19 +127,19 @@ def test_a_blow_is_what_its_loads_would_accelerate_at_rest(kind: str, seed: int)
     loads = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, found.bodies.shape[1], 6))
     jumps = np.zeros((2, len(layout.freedoms) + len(layout.rows)))
     at = float(found.times[0]), found.states[0]
-    told = blows(workspace, *at, loads, jumps)
-    alone = columns(workspace, *at, loads, np.array([False, False]))
-    assert told.idle == 0
+    told = solve_impulses(workspace, *at, loads, jumps)
+    alone = solve_columns(workspace, *at, loads, np.array([False, False]))
+    assert told.massless_count == 0
     assert told.unmet.max() <= ROUNDING
     for name in ANSWERS:
         largest = max(float(np.abs(alone.bodies[name]).max()), 1.0)
         near(told.columns.bodies[name], alone.bodies[name], largest, 100 * ROUNDING)
     # the drives' accelerations as jumps, and no impulse: the share of the drives
     driven = layout.tables["freedoms"]["driven"] > 0
-    whole = study.setup.runner.recovered(found.times, found.states, causes=True).causes
+    whole = study.setup.runner.evaluate(found.times, found.states, causes=True).causes
     assert whole is not None
     rates = np.concatenate([np.where(driven, found.freedoms["udot"][0], 0.0), np.zeros(len(layout.rows))])[None, :]
-    alone = blows(workspace, *at, np.zeros_like(loads[:1]), rates).columns
+    alone = solve_impulses(workspace, *at, np.zeros_like(loads[:1]), rates).columns
     for name in ANSWERS:
         largest = max(float(np.abs(whole.bodies[name]).max()), 1.0)
         near(alone.bodies[name][0], whole.bodies[name][0, -2], largest, 100 * ROUNDING)

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.tables.page import page_of
+from heuncli.output.tables.page import make_page
 from heuncli.results.results import Array
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.study.search.open_between import OpenBetween, verdicts
+from heuncli.study.search.open_between import VerdictsBetween, find_verdicts
 from heuncli.study.workflow import solve
 from tests.oracle.published import windows
 from tests.shared.scenes import moving, study
@@ -41,10 +41,12 @@ analysis: {duration: 1, samples: 5}
 
 def columns_of(found: Study) -> StudyColumns:
     """All that the tables tell of a run, as the columns of a search that has seen its grid."""
-    page = page_of(found.results, labels_of(found.spec), found.magnitudes)
-    searched = ColumnSearch(page.columns, page.groups(), page.errors()[: len(page.groups())], page.even())
+    page = make_page(found.results, make_labels(found.spec), found.magnitudes)
+    searched = ColumnSearch(
+        page.make_columns, page.make_groups(), page.find_errors()[: len(page.make_groups())], page.magnitude_columns()
+    )
     columns = StudyColumns(found, searched, WANTED, None)
-    columns.columns(found.search_times)
+    columns.sample(found.search_times)
     return columns
 
 
@@ -57,12 +59,12 @@ def between(found: Study) -> tuple[StudyColumns, Array]:
 def told_and_found(found: Study) -> tuple[Array, Array, int]:
     """The columns as they follow from the grid, and as a look at each instant finds them; how many did follow."""
     columns, at = between(found)
-    told = columns.columns(at)
-    columns.verdicts = None  # type: ignore[assignment]
-    looked = columns.columns(at)
+    told = columns.sample(at)
+    columns.grid_verdicts = None  # type: ignore[assignment]
+    looked = columns.sample(at)
     columns = columns_of(found)
-    assert columns.verdicts is not None
-    return told, looked, int(columns.verdicts.tells(found.recovery_at(at, WANTED).recovered).sum())
+    assert columns.grid_verdicts is not None
+    return told, looked, int(columns.grid_verdicts.covers(found.find_recovery(at, WANTED).solutions).sum())
 
 
 @pytest.mark.parametrize("name", ["bricard", "four_bar", "flat_four_bar", "engine", "press", "hammered_four_bar"])
@@ -88,8 +90,8 @@ def test_a_contact_that_closes_opens_more() -> None:
     """Where a stop closes on one of two hinges the verdict is another on either side of the strike."""
     found = study(STRUCK)
     columns, at = between(found)
-    assert columns.verdicts is not None
-    closed = found.recovery_at(at, WANTED).recovered.holding[:, 0] > 0.0
+    assert columns.grid_verdicts is not None
+    closed = found.find_recovery(at, WANTED).solutions.holding[:, 0] > 0.0
     told, looked, followed = told_and_found(found)
     np.testing.assert_array_equal(told, looked)
     assert closed.any() and not closed.all() and followed > 0
@@ -111,12 +113,15 @@ def test_cuts_of_a_body_held_twice(count: int) -> None:
     np.testing.assert_array_equal(told, looked)
     assert followed > 0 and np.isnan(looked).any()
     columns, at = between(found)
-    recovery, tells = found.recovery_at(at, WANTED), columns.verdicts
+    recovery, tells = found.find_recovery(at, WANTED), columns.grid_verdicts
     assert tells is not None
-    recovery = recovery.at(tells.tells(recovery.recovered))
+    recovery = recovery.select(tells.covers(recovery.solutions))
     named = [
         x.sections["run"]["open"]
-        for x in (found.reports_of(recovery.as_told(), WANTED, tells), found.reports_of(recovery, WANTED))
+        for x in (
+            found.compose_reports(recovery.without_open_search(), WANTED, tells),
+            found.compose_reports(recovery, WANTED),
+        )
     ]
     assert named[0] == named[1] and "N" in named[0] and "force.x" in named[0]
 
@@ -126,16 +131,16 @@ def test_disagreement_is_looked_at(what: str) -> None:
     """Where the two sides differ in rank, in being singular or in what is open, instants between are looked at."""
     found = study(moving(windows(1, 0.3, 1.0), (0.0, 0.2), 1e-6))
     columns, at = between(found)
-    tells = columns.verdicts
-    assert tells is not None and tells.tells(found.recovery_at(at, WANTED).recovered).all()
-    whole = verdicts(columns.grid[0], WANTED)
+    tells = columns.grid_verdicts
+    assert tells is not None and tells.covers(found.find_recovery(at, WANTED).solutions).all()
+    whole = find_verdicts(columns.grid[0], WANTED)
     assert whole is not None
     changed = {
         "dependent": whole._replace(dependent=whole.dependent + (np.arange(len(whole.times)) % 2)),
         "ordinary": whole._replace(ordinary=np.arange(len(whole.times)) % 2 > 0),
         "open": whole._replace(open=tuple(None if mask is None else mask & odd(mask) for mask in whole.open)),
     }[what]
-    assert not OpenBetween([changed]).tells(found.recovery_at(at, WANTED).recovered).any()
+    assert not VerdictsBetween([changed]).covers(found.find_recovery(at, WANTED).solutions).any()
 
 
 def odd(mask: Array) -> Array:
@@ -146,7 +151,7 @@ def odd(mask: Array) -> Array:
 def test_a_split_is_found_at_each_instant() -> None:
     """A split by least norm turns with the pose: nothing of it is taken from the grid."""
     found = study(moving(windows(1, 0.3, 1.0), (0.0, 0.2), 1e-6), least_norm=True)
-    assert columns_of(found).verdicts is None
+    assert columns_of(found).grid_verdicts is None
 
 
 @pytest.mark.heavy

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.over import over
+from heuncli.analyses.lagrange.over import find_inertia_curve
 from heuncli.app.commands.lagrange import course_page
-from heuncli.app.commands.lagrange.options import range_of
+from heuncli.app.commands.lagrange.options import parse_range
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.table_units import Units
 from tests.shared.folders import ROOT
@@ -57,8 +57,8 @@ def test_a_range_is_its_instants(way: str) -> None:
     """Below and above the start, over more than a turn; turns are counted, which the turn spring feels."""
     text = FOUR_BAR.format(**WAYS[way])
     spec = load("scene.yaml", text)
-    found = over(spec, range_of("A.angle=-200deg:400deg/7", spec))
-    assert found.rate == pytest.approx(7.0, rel=1e-12) and found.driven == (way == "driven")
+    found = find_inertia_curve(spec, parse_range("A.angle=-200deg:400deg/7", spec))
+    assert found.rate == pytest.approx(7.0, rel=1e-12) and found.is_driven == (way == "driven")
     for i, phi in enumerate(found.values.tolist()):
         one = told(text.replace("phi: 50 deg", f"phi: {phi!r}"), coordinates=("A.angle",))
         assert found.epsilon[i] == pytest.approx(one.epsilon[0, 0], abs=DIGITS)
@@ -74,15 +74,17 @@ TURN = 0.01642669572178526  # kg m^2, of its crank over a whole turn
 
 @pytest.mark.parametrize("words", ["0:360deg/73", "0:360deg/2", "720deg:0/5", "0:180deg/7", "-360deg:0/18"])
 def test_the_mean_is_of_the_range_not_of_its_values(words: str) -> None:
-    assert over(SLIDER_CRANK, range_of(f"main.angle={words}", SLIDER_CRANK)).mean == pytest.approx(TURN, rel=1e-7)
+    assert find_inertia_curve(SLIDER_CRANK, parse_range(f"main.angle={words}", SLIDER_CRANK)).mean == pytest.approx(
+        TURN, rel=1e-7
+    )
 
 
 @pytest.mark.heavy
 def test_a_mean_that_does_not_settle_is_not_told() -> None:
     """Beside dead centres, at 0.2 and 0.4 m, the inertia of the slider is without bound."""
-    found = over(SLIDER_CRANK, range_of("guide.travel=0.2001:0.39999/4", SLIDER_CRANK))
-    assert np.isnan(found.mean) and course_page.block(found)["mean"] is None
-    assert "no mean that settles" in course_page.write(found, Units())
+    found = find_inertia_curve(SLIDER_CRANK, parse_range("guide.travel=0.2001:0.39999/4", SLIDER_CRANK))
+    assert np.isnan(found.mean) and course_page.to_block(found)["mean"] is None
+    assert "no mean that settles" in course_page.render_page(found, Units())
 
 
 TIPPER = """
@@ -101,7 +103,7 @@ drives: {oil: {joint: ram, speed: 0.1}}
 def test_over_the_length_of_a_rod() -> None:
     """What a tipper's cylinder moves: J (dphi/dl)^2 by the triangle of hinge, foot and lift; its weight m g dy/dl."""
     spec = load("tipper.yaml", TIPPER)
-    found = over(spec, range_of("ram.length=0.7 m:1.2/6", spec))
+    found = find_inertia_curve(spec, parse_range("ram.length=0.7 m:1.2/6", spec))
     a, b, J = 1.3, 1.6, 700 + 900 * (1.5**2 + 0.4**2)
     l = found.values
     at_hinge = np.arccos((a**2 + b**2 - l**2) / (2 * a * b))  # between hinge-foot and hinge-lift
@@ -109,4 +111,4 @@ def test_over_the_length_of_a_rod() -> None:
     by_length = l / (a * b * np.sin(at_hinge))
     assert found.epsilon == pytest.approx(J * by_length**2, rel=1e-11)
     lever = 1.5 * np.cos(turned) - 0.4 * np.sin(turned)
-    assert found.total == pytest.approx(-900 * 9.81 * lever * by_length, rel=1e-11)
+    assert found.total_force == pytest.approx(-900 * 9.81 * lever * by_length, rel=1e-11)

@@ -11,16 +11,23 @@ import numpy as np
 import pytest
 
 from heuncli.base.records import replace
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.multibody.response import Columns, Jacobian, blows, carried, columns, jacobian
+from heuncli.multibody.response import (
+    Columns,
+    Jacobian,
+    jacobian,
+    multiplier_joint_loads,
+    solve_columns,
+    solve_impulses,
+)
 from heuncli.multibody.tree.flat import moves_in_plane
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.study.model.setup import draw, set_up
+from heuncli.study.model.setup import build_with_cuts, set_up
 from tests.shared.planar_scenes import flat_scene
 from tests.shared.scenes import near
 
@@ -40,8 +47,8 @@ class Both:
         assert layout.flat
         self.plane, self.space = Runner(layout), Runner(replace(layout, flat=False))
         self.times = np.array(spec.analysis.times)
-        self.run = self.plane.trajectory(MotionTask(self.times, 1e-6))
-        self.found = self.plane.recovered(self.times, self.run.states)
+        self.run = self.plane.run(MotionTask(self.times, 1e-6))
+        self.found = self.plane.evaluate(self.times, self.run.states)
         self.states = self.found.states
         self.allowed = ROUNDING / float(np.sqrt(self.found.pivot.min()))
         self.rng = np.random.default_rng(seed)
@@ -84,17 +91,17 @@ some = pytest.mark.parametrize("seed", SEEDS)
 def test_states(seed: int) -> None:
     """Motion, loads, reactions in the plane, multipliers, drives, gaps; with a column a cause."""
     scene = both(seed)
-    plane, space = (r.recovered(scene.times, scene.states, causes=True) for r in (scene.plane, scene.space))
+    plane, space = (r.evaluate(scene.times, scene.states, causes=True) for r in (scene.plane, scene.space))
     for name in ("bodies", "freedoms", "loads", "rows"):
         same(getattr(plane, name), getattr(space, name), scene.allowed)
     assert plane.causes is not None and space.causes is not None
     same_columns(plane.causes, space.causes, scene.allowed)
     np.testing.assert_allclose(plane.pivot, space.pivot, rtol=1e-9)
-    np.testing.assert_array_equal(plane.idle, space.idle)
+    np.testing.assert_array_equal(plane.massless_count, space.massless_count)
     nothing_across(plane)
 
 
-def nothing_across(found: Recovered) -> None:
+def nothing_across(found: Evaluation) -> None:
     """What there is none of is zero, not rounding."""
     for name in ("omega", "alpha", "joint_moment"):
         assert not found.bodies[name][..., :2].any()
@@ -109,7 +116,7 @@ def test_runs(seed: int) -> None:
     Those that land on a strike do not count: whether a strike is met by one or three of them rounding decides.
     """
     scene = both(seed)
-    space = scene.space.trajectory(MotionTask(scene.times, 1e-6))
+    space = scene.space.run(MotionTask(scene.times, 1e-6))
     near(scene.run.states, space.states, max(1.0, float(np.abs(space.states).max())), 1e-7)
     plane_steps, space_steps = (
         np.count_nonzero(np.diff(run.ends, prepend=0.0) > LANDING * scene.times[-1]) for run in (scene.run, space)
@@ -125,14 +132,14 @@ def test_columns_and_blows(seed: int) -> None:
     loads[2, :, [2, 3, 4]] = 0.0
     t, y = float(scene.times[-1]), scene.states[-1]
     flags = np.array([False, True, False])
-    plane, space = (columns(r.workspace, t, y, loads, flags) for r in (scene.plane, scene.space))
+    plane, space = (solve_columns(r.workspace, t, y, loads, flags) for r in (scene.plane, scene.space))
     same_columns(plane, space, scene.allowed)
     near(plane.bodies["alpha"][2], 0.0, 1.0, scene.allowed)
     near(plane.bodies["a"][2], 0.0, 1.0, scene.allowed)
     layout = scene.plane.layout
     driven = np.append(layout.tables["freedoms"]["driven"] > 0, layout.tables["closures"]["program"]["count"] > 0)
     jumps = scene.rng.uniform(-1.0, 1.0, (3, len(driven))) * driven
-    jumped, wanted = (blows(r.workspace, t, y, loads, jumps) for r in (scene.plane, scene.space))
+    jumped, wanted = (solve_impulses(r.workspace, t, y, loads, jumps) for r in (scene.plane, scene.space))
     same_columns(jumped.columns, wanted.columns, scene.allowed)
     assert jumped.unmet.max() <= scene.allowed
 
@@ -147,7 +154,7 @@ def test_jacobians_and_self_stress(seed: int) -> None:
     pair: list[Jacobian] = [jacobian(workspace, layout, *at) for workspace in paths]
     near(pair[0].entries, pair[1].entries, max(1.0, float(np.abs(pair[1].entries).max(initial=0.0))), ROUNDING)
     given = scene.rng.uniform(-1.0, 1.0, (len(scene.times), 2, len(layout.rows)))
-    held, wanted = (carried(workspace, *at, given, scene.bodies) for workspace in paths)
+    held, wanted = (multiplier_joint_loads(workspace, *at, given, scene.bodies) for workspace in paths)
     near(held[..., 2:5], wanted[..., 2:5], max(1.0, float(np.abs(wanted).max(initial=0.0))), ROUNDING)
 
 
@@ -187,8 +194,8 @@ def test_what_rounding_leaves_of_an_inertia_is_none(inertia: float, idle: int) -
     """A block that slides across its arm takes its whole mass out of the arm's turn: no inertia, or the arm's own."""
     for angle in np.linspace(0.1, 1.4, 12).tolist():
         x, y = 3.0 * np.cos(angle), 3.0 * np.sin(angle)
-        mechanism, _ = draw(load("scene.yaml", WEIGHTLESS.format(inertia=inertia, x=x, y=y)))
+        mechanism, _ = build_with_cuts(load("scene.yaml", WEIGHTLESS.format(inertia=inertia, x=x, y=y)))
         layout = prepare(mechanism).layout  # before any inertia is lent
         assert layout.flat
         for runner in (Runner(layout), Runner(replace(layout, flat=False))):
-            assert runner.recovered(np.zeros(1), layout.y0[None]).idle[0] == idle
+            assert runner.evaluate(np.zeros(1), layout.y0[None]).massless_count[0] == idle

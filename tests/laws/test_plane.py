@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.motion.integration.run.runner import ready
+from heuncli.motion.integration.run.runner import make_runner
 from heuncli.multibody.reduction.model import Reduction
 from heuncli.multibody.reduction.plane import step as plane
 from heuncli.multibody.tree.prepare import PreparedScene, prepare
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.study.model.setup import draw
+from heuncli.study.model.setup import build_with_cuts
 from tests.oracle.values import to_yaml
 from tests.shared.flat_in_any_plane import PLANES, flat
 
@@ -23,8 +23,8 @@ INSTANTS = np.array([0.0, 0.4, 1.3])
 
 
 def prepared(scene: dict[str, Any]) -> PreparedScene:
-    mechanism, _ = draw(load("scene.yaml", to_yaml(scene)))
-    return ready(prepare(mechanism))[0]
+    mechanism, _ = build_with_cuts(load("scene.yaml", to_yaml(scene)))
+    return make_runner(prepare(mechanism))[0]
 
 
 def reduction(scene: PreparedScene) -> Reduction:
@@ -37,18 +37,20 @@ def elsewhere(small: PreparedScene, rng: np.random.Generator) -> Array:
     """States beside the start, closed."""
     layout = small.layout
     states = layout.y0 + 0.05 * rng.normal(size=(len(INSTANTS), layout.n_state))
-    evaluator = Evaluator(ready(small)[0].layout)
+    evaluator = Evaluator(make_runner(small)[0].layout)
     for _ in range(2):  # what is far from closed is closed to rounding by the second
-        states = evaluator.recovered(INSTANTS, states).states
+        states = evaluator.evaluate(INSTANTS, states).states
     return states
 
 
 def compare(scene: PreparedScene, found: Reduction, seed: int) -> None:
-    E = plane.view(scene, next(n for n in plane.candidates(scene) if not any(plane.departures(plane.view(scene, n))))).E
-    small, own = (Evaluator(ready(s)[0].layout) for s in (found.scene, scene))
+    E = plane.make_view(
+        scene, next(n for n in plane.iter_normals(scene) if not any(plane.iter_departures(plane.make_view(scene, n))))
+    ).E
+    small, own = (Evaluator(make_runner(s)[0].layout) for s in (found.scene, scene))
     states = elsewhere(found.scene, np.random.default_rng(seed))
     embedded = found.embed(INSTANTS, states)
-    flat, full = small.recovered(INSTANTS, states), own.recovered(INSTANTS, embedded)
+    flat, full = small.evaluate(INSTANTS, states), own.evaluate(INSTANTS, embedded)
     assert np.abs(full.gap).max() <= 1e-12 * scene.layout.size
     assert np.abs(full.states - embedded).max() <= 1e-12 * max(1.0, np.abs(embedded).max())
     scale = max(1.0, *(float(np.abs(full.bodies[name]).max()) for name in ("a", "alpha", "omega", "v")))

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.multibody.response import tangent, workspace_of
+from heuncli.multibody.response import make_workspace, tangent
 from heuncli.results.results import Array, Results
 from tests.shared import reducible
 from tests.shared.dual_tangent import dual_tangent
@@ -101,9 +101,9 @@ def test_a_law_is_that_of_the_points_told(family: str, seed: int) -> None:
     for name, point in full.results.points.items():
         near(small.results.points[name]["position"], point["position"], 1.0, 1e-8)
     if seed == 0:  # some seconds each
-        layout = small.setup.runner.moving.layout
+        layout = small.setup.runner.integrated_scene.layout
         state, wanted = dual_tangent(layout, 0.0, layout.y0)
-        near(tangent(workspace_of(layout), 0.0, state), wanted, 1.0 + float(np.abs(wanted).max()), 1e-10)
+        near(tangent(make_workspace(layout), 0.0, state), wanted, 1.0 + float(np.abs(wanted).max()), 1e-10)
 
 
 def test_the_families_are_reduced() -> None:
@@ -111,8 +111,8 @@ def test_the_families_are_reduced() -> None:
     told = []
     for family in ("welded", "carried", "flat"):
         setup = study(with_law(family, 1)[0]).setup
-        assert setup.reduced is not None
-        told.append(" ".join(setup.reduced.told))
+        assert setup.reduction is not None
+        told.append(" ".join(setup.reduction.explanations))
     assert "welded" in told[0]
     assert "part of the ground" in told[1]
     assert "plane" in told[2]

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.motion.integration.integrated_scene import smaller
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.integrated_scene import integrate_reduced
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.motion.integration.run.runner import Runner, ready
+from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.reduction import immobile_bodies, spins, welded_bodies
-from heuncli.multibody.reduction.model import Reduced, Reduction
+from heuncli.multibody.reduction.model import ReducedScene, Reduction
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -124,19 +124,21 @@ CASES = [pytest.param(name, seed, marks=pytest.mark.heavy) for name in FAMILIES 
 def test_points_accelerate_alike(name: str, seed: int) -> None:
     """All that is left: bodies by their names, points of theirs; and a state comes back from where it was embedded."""
     make, step = FAMILIES[name]
-    scene, runner = ready(set_up(load("scene.yaml", to_yaml(scene_of(make, seed))), reduce=False).scene)
+    scene, runner = make_runner(set_up(load("scene.yaml", to_yaml(scene_of(make, seed))), reduce=False).scene)
     found = step(scene)
     if not isinstance(found, Reduction):
         pytest.skip("nothing to leave out here")
-    left, own = ready(found.scene)
-    run = Runner(scene.layout, smaller(own, Reduced((found,), ()))).trajectory(MotionTask(np.array(TIMES), 1e-8))
+    left, own = make_runner(found.scene)
+    run = Runner(scene.layout, integrate_reduced(own, ReducedScene((found,), ()))).run(
+        MotionTask(np.array(TIMES), 1e-8)
+    )
     states = np.array([found.restrict(t, state) for t, state in zip(TIMES, run.states, strict=True)])
-    large, small = runner.recovered(run.times, run.states), own.recovered(run.times, states)
+    large, small = runner.evaluate(run.times, run.states), own.evaluate(run.times, states)
     assert large.gap.max() <= 1e-9 * runner.layout.size
     near(found.embed(run.times, states), run.states, max(1.0, float(np.abs(run.states).max())), 1e-12)
     begin = found.embed(np.zeros(1), left.layout.y0[None, :])[0]
     near(begin, scene.layout.y0, max(1.0, float(np.abs(begin).max())), 1e-9)
-    free = spins.spins_of(scene) if name == "spins" else {}
+    free = spins.find_constant_spins(scene) if name == "spins" else {}
     for i, body in enumerate(left.mechanism.bodies):
         j = next(n for n, b in enumerate(scene.mechanism.bodies) if b.name == body.name)
         center = scene.mechanism.bodies[j].center
@@ -147,7 +149,7 @@ def test_points_accelerate_alike(name: str, seed: int) -> None:
                 near(one, other, max(1.0, float(np.abs(here[2]).max())), 1e-7)
 
 
-def at(found: Recovered, layout: Layout, body: int, point: Array) -> tuple[Array, Array, Array]:
+def at(found: Evaluation, layout: Layout, body: int, point: Array) -> tuple[Array, Array, Array]:
     """Place, velocity and acceleration (less that of gravity) of a body's point."""
     rows = found.bodies[:, layout.place[body]]
     arm = rows["R"] @ (point - layout.reference[layout.place[body]])
@@ -162,7 +164,7 @@ def test_all_that_is_told_is_the_same(name: str, seed: int) -> None:
     make = partial(wires, kind=Rods) if name == "spins" else FAMILIES[name][0]
     scene = scene_of(make, seed)
     reduced, whole = study(scene), study(scene, reduce=False)
-    if reduced.setup.reduced is None or not reduced.setup.reduced.steps:
+    if reduced.setup.reduction is None or not reduced.setup.reduction.steps:
         pytest.skip("nothing to leave out here")
     known = {"angular_acceleration"} if name == "spins" else set()  # a wire's own: rounding over its inertia
     for block in ("bodies", "joints", "foundation", "energy"):

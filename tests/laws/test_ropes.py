@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.multibody.response import tangent, workspace_of
+from heuncli.multibody.response import make_workspace, tangent
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
@@ -94,7 +94,7 @@ def test_tangent_as_dual_numbers_tell(scene, slip: str) -> None:  # type: ignore
     for t in (0.0, 0.1):
         start = layout.y0 + (0.2 * rng.standard_normal(layout.n_state) if t else 0.0)
         state, exact = dual_tangent(layout, t, start)
-        assert np.abs(tangent(workspace_of(layout), t, state) - exact).max() <= 1e-12 * np.abs(exact).max()
+        assert np.abs(tangent(make_workspace(layout), t, state) - exact).max() <= 1e-12 * np.abs(exact).max()
 
 
 @KINDS

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from heuncli.base.errors import SolveError
-from heuncli.multibody.response import tangent, workspace_of
+from heuncli.multibody.response import make_workspace, tangent
 from heuncli.multibody.tree.layout import Layout
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
@@ -74,7 +74,7 @@ def laid_out(seed: int, loops: int, drives: int) -> Layout:
         except SolveError as error:
             assert error.problems[0].code == "friction-open"
         else:
-            return s.runner.moving.layout
+            return s.runner.integrated_scene.layout
     raise AssertionError("all open")
 
 
@@ -84,7 +84,7 @@ def laid_out(seed: int, loops: int, drives: int) -> Layout:
 def test_its_derivative_is_that_of_dual_numbers(seed: int, loops: int, drives: int) -> None:
     layout = laid_out(seed, loops, drives)
     state = np.array(layout.y0)
-    at = workspace_of(layout)
+    at = make_workspace(layout)
     at.configure_at(0.0, state)
     state, wanted = dual_tangent(layout, 0.0, state)
     found = tangent(at, 0.0, state)

@@ -13,7 +13,7 @@ import pytest
 
 from heuncli.results.results import Results
 from heuncli.scene.file_format.load import load
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from tests.oracle.masses import Plane, cut, moved
 from tests.oracle.turns import Array, random_rotation, random_unit, unit
 from tests.shared.bars import HEAD
@@ -371,7 +371,7 @@ sections: {{run: {{body: bar, from: a, to: b, count: 3}}}}
     found = solved(bar).sections["run"]
     near(found["M2"][0], [-29.43, -29.43 / 4, 0.0], 29.43, 1e-12)
     near(found["Q1"][0], [-29.43, -29.43 / 2, 0.0], 29.43, 1e-12)
-    (heading,) = (info.first_axis for info in labels_of(load("bar.yaml", bar)).sections.values())
+    (heading,) = (info.first_axis for info in make_labels(load("bar.yaml", bar)).sections.values())
     assert heading.startswith("body y") and ("nearest to body x" in heading) == (abs(slope) > 1e-9)
 
 

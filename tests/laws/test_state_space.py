@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.coordinates import accelerations, chosen
-from heuncli.analyses.lagrange.instant import Instant, instant_of
-from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange, told
+from heuncli.analyses.lagrange.coordinates import choose_coordinates, compute_accelerations
+from heuncli.analyses.lagrange.instant import Instant, make_instant
+from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange, to_results
 from heuncli.base.errors import SolveError
-from heuncli.loads.kinetostatics.bodies import body_states
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.motion.linearisation.linearise import linearised
-from heuncli.multibody.tree.layout import places_of_rates
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.linearise import linearise
+from heuncli.multibody.tree.layout import rate_indices
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.loops import loop_scene
@@ -27,24 +27,26 @@ PINS: dict[str, Any] = {"kinds": ("pin", "slide"), "free": 0.0}
 
 def at_rates(at: Instant, names: tuple[str, ...], dq: Any, rates: Any) -> Any:
     """q'' at coordinates moved by dq, with these rates."""
-    layout, runner = at.freed.layout, at.freed.runner
-    by = chosen(at.freed.scene, at.found, at.freed.driven, names)
-    moved = displaced(layout, at.state, by.S @ dq)
+    layout, runner = at.freed_scene.layout, at.freed_scene.runner
+    by = choose_coordinates(at.freed_scene.scene, at.linear_equations, at.freed_scene.driven_coordinates, names)
+    moved = displace(layout, at.state, by.S @ dq)
     times = np.array([at.t])
-    y = runner.recovered(times, moved[None], holding=at.holding).states[0].copy()
-    there = chosen(at.freed.scene, linearised(layout, at.t, y, at.holding), at.freed.driven, names)
-    place = places_of_rates(layout)
+    y = runner.evaluate(times, moved[None], holding=at.holding).states[0].copy()
+    there = choose_coordinates(
+        at.freed_scene.scene, linearise(layout, at.t, y, at.holding), at.freed_scene.driven_coordinates, names
+    )
+    place = rate_indices(layout)
     y[place[place >= 0]] = there.S @ rates
-    found = runner.recovered(times, y[None], holding=at.holding)
-    return accelerations(layout, names, body_states(layout, found))[0]
+    found = runner.evaluate(times, y[None], holding=at.holding)
+    return compute_accelerations(layout, names, make_body_states(layout, found))[0]
 
 
 @pytest.mark.parametrize(("kind", "seed"), [*(("tree", k) for k in range(10)), *(("loop", k) for k in range(10))])
 def test_by_differences(kind: str, seed: int) -> None:
     scene, _ = tree_scene(seed, **PINS) if kind == "tree" else loop_scene(seed, **PINS)
     spec = load("scene.yaml", to_yaml({**scene, "analysis": {"type": "state"}}))
-    at = instant_of(spec, None, None)
-    found = told(spec, at, LagrangeQuestion(state_space=True))
+    at = make_instant(spec, None, None)
+    found = to_results(spec, at, LagrangeOptions(state_space=True))
     assert found.state_space is not None
     f = len(found.names)
     steps = H * np.eye(f)
@@ -92,12 +94,12 @@ HELD = {  # an arm that is driven, and a pendulum that hangs on it: the one move
 @pytest.mark.parametrize("driven", HELD)
 def test_what_a_drive_exerts_holds_it(driven: str) -> None:
     still, moved = (load("scene.yaml", HELD[driven].replace("{acceleration}", word)) for word in ("0", "1"))
-    at = instant_of(still, None, None)
-    given, held = (told(still, at, LagrangeQuestion(state_space=True, inputs=words)) for words in (("oil",), ()))
+    at = make_instant(still, None, None)
+    given, held = (to_results(still, at, LagrangeOptions(state_space=True, inputs=words)) for words in (("oil",), ()))
     assert given.state_space is not None and held.state_space is not None
-    free = [i for i, is_driven in enumerate(given.driven) if not is_driven]
+    free = [i for i, is_driven in enumerate(given.is_driven) if not is_driven]
     assert np.allclose(held.state_space.offset[len(free) :], given.accelerations[free], rtol=1e-11, atol=1e-11)
-    jump = told(moved, instant_of(moved, None, None), LagrangeQuestion()).accelerations - given.accelerations
+    jump = to_results(moved, make_instant(moved, None, None), LagrangeOptions()).accelerations - given.accelerations
     assert np.allclose(given.state_space.B[len(jump) :, 0], jump, rtol=1e-11, atol=1e-11)
 
 
@@ -121,7 +123,9 @@ def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
     """z = L exp(i p) + c exp(i (p + q)) of the tip: dz'/dp = i z', dz'/dq = -(p' + q') c exp(i (p + q))."""
     spec = load("scene.yaml", PENDULUM)
     outputs = ("b.tip.x", "b.tip.y", "b.tip.vx", "b.tip.vy")
-    space = told(spec, instant_of(spec, None, None), LagrangeQuestion(state_space=True, outputs=outputs)).state_space
+    space = to_results(
+        spec, make_instant(spec, None, None), LagrangeOptions(state_space=True, outputs=outputs)
+    ).state_space
     assert space is not None
     first, second = 1.1 * np.exp(0.7j), (0.9 + 0.2j) * np.exp(1j * (0.7 - 1.4))
     by_pose = np.array([1j * (first + second), 1j * second])
@@ -150,4 +154,4 @@ def test_where_a_load_has_no_derivative_there_are_no_matrices(law: str, said: st
         "forces": {"pull": {"type": "torque", "joint": "g", "value": law}},
     }
     with pytest.raises(SolveError, match=f"forces.pull {said}"):
-        lagrange(load("scene.yaml", to_yaml(scene)), LagrangeQuestion(state_space=True))
+        solve_lagrange(load("scene.yaml", to_yaml(scene)), LagrangeOptions(state_space=True))

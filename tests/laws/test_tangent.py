@@ -37,8 +37,8 @@ analysis: {duration: 1, samples: 2}
 def tangent_at_start(text: str) -> tuple[Array, Array]:
     """The tangent at the start, and the state there."""
     s = study(text)
-    layout = s.setup.runner.moving.layout
-    return tangent(s.setup.runner.moving.workspace, 0.0, layout.y0), layout.y0
+    layout = s.setup.runner.integrated_scene.layout
+    return tangent(s.setup.runner.integrated_scene.workspace, 0.0, layout.y0), layout.y0
 
 
 def test_a_pendulum() -> None:

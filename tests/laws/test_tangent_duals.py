@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.multibody.response import tangent, workspace_of
+from heuncli.multibody.response import make_workspace, tangent
 from heuncli.multibody.tree.layout import Layout
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
@@ -184,7 +184,7 @@ def test_as_dual_numbers_tell(kind: str, which: Any) -> None:
     for t in (0.0, 0.1):
         start = layout.y0 + (MOVED * rng.standard_normal(layout.n_state) if t else 0.0)
         state, exact = dual_tangent(layout, t, start)
-        found = tangent(workspace_of(layout), t, state)
+        found = tangent(make_workspace(layout), t, state)
         assert np.abs(found - exact).max() <= 1e-12 * np.abs(exact).max()
 
 
@@ -193,7 +193,7 @@ def test_a_limit_of_a_path_that_holds() -> None:
     layout = scene_of("text", HELD)
     start = layout.y0 + MOVED * np.random.default_rng(1).standard_normal(layout.n_state)
     state, exact = dual_tangent(layout, 0.1, start, closed=1.0)
-    at = workspace_of(layout)
+    at = make_workspace(layout)
     at.hold([1.0])
     found = tangent(at, 0.1, state)
     assert np.abs(found - exact).max() <= 1e-12 * np.abs(exact).max()

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.probing.numerics.twists import closure_rows, mass_matrix, twists
-from heuncli.loads.equilibrium.coordinates import coordinates_of
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.motion.linearisation.linearise import linearised
+from heuncli.analyses.probing.numerics.twists import closure_rows, compute_twists, mass_matrix
+from heuncli.loads.equilibrium.coordinates import make_coordinates
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.linearisation.linearise import linearise
 from heuncli.multibody.response import jacobian
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import Setup, set_up
@@ -18,21 +18,21 @@ SCENES = ("bricard", "cardan", "crane", "double", "excavator", "lift", "slider_c
 ROUNDED = 1e-13  # hundreds of roundings of sums whose terms are of the order of 1
 
 
-def moving(name: str) -> tuple[Setup, Recovered]:
+def moving(name: str) -> tuple[Setup, Evaluation]:
     """A scene with rates at random, and the kernel's answers."""
     found = set_up(load(str(SPECS / f"{name}.yaml")), reduce=False)
     layout = found.scene.layout
     state = layout.y0.copy()
-    rates = coordinates_of(layout).rates
+    rates = make_coordinates(layout).rates
     state[rates] += np.random.default_rng(1901).uniform(-1.0, 1.0, len(rates))
-    return found, found.runner.recovered(np.zeros(1), state[None])
+    return found, found.runner.evaluate(np.zeros(1), state[None])
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_velocities_are_twists_times_rates(name: str) -> None:
     found, at = moving(name)
     layout, bodies = found.scene.layout, at.bodies[0]
-    own = twists(layout, at)
+    own = compute_twists(layout, at)
     rates = np.zeros(layout.answer_count)
     for k in np.flatnonzero(layout.bodies["ball"]):
         first = int(layout.bodies["answer_at"][k])
@@ -53,7 +53,7 @@ def test_closure_rows_are_the_kernels(name: str) -> None:
     layout = found.scene.layout
     if not layout.rows:
         return
-    J = closure_rows(twists(layout, at), at)
+    J = closure_rows(compute_twists(layout, at), at)
     freedoms = layout.tables["freedoms"]
     J[:, :, freedoms["answer_at"][freedoms["driven"] == 1]] = 0.0
     kernel = jacobian(found.runner.workspace, layout, at.times, at.states)
@@ -65,7 +65,7 @@ def test_closure_rows_are_the_kernels(name: str) -> None:
 def test_the_mass_matrix_is_that_of_dual_numbers(name: str) -> None:
     found, at = moving(name)
     layout = found.scene.layout
-    own = coordinates_of(layout).answers
-    M = mass_matrix(twists(layout, at))[0][np.ix_(own, own)]
-    wanted = linearised(layout, 0.0, at.states[0]).mass
+    own = make_coordinates(layout).result_indices
+    M = mass_matrix(compute_twists(layout, at))[0][np.ix_(own, own)]
+    wanted = linearise(layout, 0.0, at.states[0]).mass
     assert np.abs(M - wanted).max() <= ROUNDED * float(np.abs(wanted).max())

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.analyses.variants.prepared import Variants
+from heuncli.analyses.variants.prepared import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
@@ -119,7 +119,7 @@ def values_of(spec: Spec) -> Iterator[dict[str, str]]:
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_a_variant_has_the_bits_of_a_fresh_run(path: Path) -> None:
     short = shortened(path)
-    variants = Variants(path, overrides=short)
+    variants = VariantSolver(path, overrides=short)
     for values in values_of(variants.spec):
         fresh = told(lambda: solve(load(path, overrides={**short, **values}, checking=False)))  # noqa: B023 - at once
         assert told(lambda: variants.solve(values)) == fresh, values  # noqa: B023
@@ -129,11 +129,11 @@ def test_a_variant_has_the_bits_of_a_fresh_run(path: Path) -> None:
 @pytest.mark.parametrize("text", STRUCTURE, ids=["pins", "planar"])
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_order_of_variants_does_not_matter(text: str, seed: int) -> None:
-    options = Options(wanted=frozenset({"joints", "sections", "energy"})) if seed else Options()
+    options = Options(requested_reports=frozenset({"joints", "sections", "energy"})) if seed else Options()
     given = [*STRUCTURE[text]]
     fresh = [told(lambda: solve(load("x.yaml", text, values, checking=False), options)) for values in given]  # noqa: B023
     assert any(one[0] is SpecError for one in fresh)
-    variants = Variants("x.yaml", text, options=options)
+    variants = VariantSolver("x.yaml", text, options=options)
     order = [*range(len(given)), *range(len(given))]
     random.Random(seed).shuffle(order)
     for k in order:

@@ -32,7 +32,7 @@ def named_fields(model: type[Entry]) -> dict[str, Field]:
 
 def top_keys() -> list[str]:
     """The keys of a spec's top level."""
-    return [*named_fields(f.HeadEntry), *f.READ_BEFORE, *f.ENTRIES, *f.SINGLE, "expect"]
+    return [*named_fields(f.HeadEntry), *f.BLOCKS_READ_FIRST, *f.ENTRY_BLOCKS, *f.SINGLE_BLOCKS, "expect"]
 
 
 def pairs(models: Mapping[str, type[Entry]]) -> dict[tuple[str, str], Field]:
@@ -71,21 +71,21 @@ SPELLED = {"*": "·", "^2": "²", "^3": "³", "^4": "⁴"}
 
 def unit_of_value(name: str, value: fields.ReadValue) -> str | None:
     """The unit that the manual writes for a kind of scene/file_format/fields.py; None where other keys decide it."""
-    if value.dimension is None or isinstance(value, fields.Component):
+    if value.dimension is None or isinstance(value, fields.DirectionComponent):
         return None
     unit = u.si_unit(value.dimension)
     if value.dimension == u.NUMBER and not name.startswith("Angle"):
         unit = "1"
     for typed, written in SPELLED.items():
         unit = unit.replace(typed, written)
-    return f"{unit}, in time" if isinstance(value, fields.InTime) else unit
+    return f"{unit}, in time" if isinstance(value, fields.TimeFunction) else unit
 
 
 UNITS = {
     id(value): unit_of_value(name, value)
     for name, kind in vars(fields).items()
     for value in getattr(kind, "__metadata__", ())
-    if isinstance(value, fields.ReadValue)
+    if isinstance(value, fields.ValueReader)
 }
 
 
@@ -103,7 +103,7 @@ def values(field: Field) -> Iterator[fields.ReadValue]:
 def within(annotation: Any) -> Iterator[fields.ReadValue]:
     """The values within an annotation; those of models apart."""
     for value in getattr(annotation, "__metadata__", ()):
-        if isinstance(value, fields.ReadValue):
+        if isinstance(value, fields.ValueReader):
             yield value
     for part in get_args(annotation):
         yield from within(part)

@@ -5,9 +5,9 @@ The cases are solved where the tables are asked for, not where this is imported.
 
 from __future__ import annotations
 
-from heuncli.analyses.published.cases import case_of
-from heuncli.analyses.published.files import names
-from heuncli.app.commands.check.references_told import digits_of, farthest, kinds_of
+from heuncli.analyses.published.cases import read_case
+from heuncli.analyses.published.files import list_names
+from heuncli.app.commands.check.references_told import format_digits, format_largest_difference, list_kinds
 from tests.manual.tables import Table
 from tests.shared.manual import README
 from tests.shared.published import compared_case
@@ -15,17 +15,17 @@ from tests.shared.published import compared_case
 
 def row(name: str) -> tuple[str, ...]:
     """The line of a case."""
-    case, tables = case_of(name), compared_case(name)
+    case, tables = read_case(name), compared_case(name)
     numbers = [one for table in tables for one in table.numbers]
-    told = (str(len(numbers)), kinds_of(case), digits_of(numbers), *farthest(tables))
-    return f"`{name}`", case.about, *told
+    told = (str(len(numbers)), list_kinds(case), format_digits(numbers), *format_largest_difference(tables))
+    return f"`{name}`", case.description, *told
 
 
 def tables() -> tuple[Table, Table]:
     """What stands below the headings Proof and On your machine."""
     head = ("case", "what", "numbers", "which are", "digits", "last digits", "of the largest")
-    sources = [(f"`{name}`", case_of(name).source) for name in names()]
+    sources = [(f"`{name}`", read_case(name).source) for name in list_names()]
     return (
-        Table(README, "Proof", head, [row(name) for name in names()]),
+        Table(README, "Proof", head, [row(name) for name in list_names()]),
         Table("references", "On your machine", ("case", "source"), sources),
     )

@@ -12,11 +12,11 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS, Command
-from heuncli.app.commands.explain.command import PAGES, summary
+from heuncli.app.commands.explain.command import PAGES, read_summary
 from heuncli.base import units as u
-from heuncli.base.joint_kinds import SYNONYMS, TYPES, Kind
+from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.method_rows import METHODS
 from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
@@ -113,10 +113,10 @@ def words() -> Iterator[tuple[str, str]]:
 def joints() -> Iterator[tuple[str, ...]]:
     """What each kind of joint holds and takes."""
     for kind in TYPES.values():
-        yield f"`{kind.name}`", str(kind.rows), quoted(driven(kind)), quoted(kind.loads), ", ".join(kind.synonyms)
+        yield f"`{kind.name}`", str(kind.row_count), quoted(driven(kind)), quoted(kind.loads), ", ".join(kind.synonyms)
 
 
-def driven(kind: Kind) -> list[str]:
+def driven(kind: JointKind) -> list[str]:
     """The keys by which a kind of joint may be driven."""
     rates = {"angle": "rate", "travel": "speed", "length": "speed"}
     return [key for quantity in kind.drives for key in (quantity, rates[quantity])]
@@ -130,7 +130,7 @@ def methods() -> Iterator[tuple[str, ...]]:
 
 def options(command: Command) -> Iterator[tuple[str, str]]:
     """The arguments and options of a command."""
-    for option in (field.option for field in fields_of(command.request)):
+    for option in (field.option for field in list_fields(command.request)):
         value = (option.metavar or "").replace("|", "\\|")
         yield f"`{' '.join([', '.join(option.words), value]).strip()}`", option.help.replace("|", "\\|")
 
@@ -184,7 +184,7 @@ def options_by_word() -> Iterator[tuple[str, str]]:
     """Each option with the commands that know it."""
     known: dict[str, list[str]] = {}
     for command in COMMANDS:
-        for option in (field.option for field in fields_of(command.request)):
+        for option in (field.option for field in list_fields(command.request)):
             for word in option.words:
                 known.setdefault(word, []).append(command.name)
     for word in sorted(known, key=str.lower):
@@ -195,7 +195,7 @@ def options_by_word() -> Iterator[tuple[str, str]]:
 def pages() -> Iterator[tuple[str, str]]:
     """The pages of the manual."""
     for name in PAGES:
-        yield f"[{name}](heuncli/manual/{name}.md)", summary(name)
+        yield f"[{name}](heuncli/manual/{name}.md)", read_summary(name)
 
 
 def groups_of_equations() -> Iterator[tuple[str, str, str]]:

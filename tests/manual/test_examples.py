@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.scene.file_format.source import read
+from heuncli.scene.file_format.source import read_source
 from tests.shared.manual import README, ROOT, TEXTS, blocks
 
 
@@ -122,8 +122,8 @@ def test_parts_of_scenes_belong_to_the_first_one_of_their_page(
     name: str, text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Their entries replace those of the same name; `analysis` and lists are replaced as a whole."""
-    scene = dict(read("scene.yaml", blocks(name, "yaml")[0]).data)
-    for block, given in read("part.yaml", text).data.items():
+    scene = dict(read_source("scene.yaml", blocks(name, "yaml")[0]).data)
+    for block, given in read_source("part.yaml", text).data.items():
         entries = isinstance(given, dict) and block != "analysis"
         scene[block] = {**scene.get(block, {}), **given} if entries else given
     run_and_check(json.dumps(scene), tmp_path, capsys)

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from heuncli.app.commands.explain.command import PAGES, indexed
+from heuncli.app.commands.explain.command import PAGES, find_in_index
 from tests.shared.manual import TEXTS, below
 
 QUESTIONS = [
@@ -44,8 +44,8 @@ QUESTIONS = [
     ("word", "topic", "heading", "answer"), [row[1:] for row in QUESTIONS], ids=[row[0] for row in QUESTIONS]
 )
 def test_two_lookups_find_the_answer(word: str, topic: str, heading: str, answer: str) -> None:
-    assert word in PAGES or re.search(rf"heun explain {topic} \([^)]*\b{re.escape(heading)}\b", indexed(word)), indexed(
-        word
+    assert word in PAGES or re.search(rf"heun explain {topic} \([^)]*\b{re.escape(heading)}\b", find_in_index(word)), (
+        find_in_index(word)
     )
     start, end = below(TEXTS[topic], heading)
     assert answer in " ".join(TEXTS[topic][start:end].split())

@@ -7,10 +7,10 @@ import signal
 
 import pytest
 
-from heuncli.app.cli.entry import INTERRUPTED, OF_SEVERAL
+from heuncli.app.cli.entry import EXIT_CODE_PRIORITY, INTERRUPTED
 from heuncli.app.cli.registry import COMMANDS
 from heuncli.app.commands.explain.command import PAGES
-from heuncli.base.files import ReaderGone
+from heuncli.base.files import ReaderGoneError
 from heuncli.base.units import UNITS
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as document
@@ -78,7 +78,7 @@ def test_the_exit_codes_are_listed() -> None:
     ended = {128 + signal.SIGHUP, 128 + signal.SIGTERM}
     (table,) = tables_below(TEXTS["commands"], "Exit codes")
     told = {int(code) for row in table.splitlines()[2:] for code in re.findall(r"\d+", row.split("|")[1])}
-    assert told == {0, *OF_SEVERAL, INTERRUPTED, ReaderGone.exit_code} | ended
+    assert told == {0, *EXIT_CODE_PRIORITY, INTERRUPTED, ReaderGoneError.exit_code} | ended
 
 
 def test_the_index_names_the_headings_that_it_leads_to() -> None:

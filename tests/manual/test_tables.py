@@ -11,16 +11,16 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.stress import UNKNOWN_SHEAR
 from heuncli.output.tables.export import MOST_NUMBERS
-from heuncli.scene.expressions.grammar import LONGEST as LONGEST_EXPRESSION
+from heuncli.scene.expressions.grammar import MAX_LENGTH as LONGEST_EXPRESSION
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format.entries import NEEDED as NO_DEFAULT
+from heuncli.scene.file_format.entries import REQUIRED as NO_DEFAULT
 from heuncli.scene.file_format.entries import Entry, Field
-from heuncli.scene.file_format.named_files import LARGEST as LARGEST_TABLE
+from heuncli.scene.file_format.named_files import MAX_FILE_SIZE as LARGEST_TABLE
 from heuncli.scene.file_format.resolve import DEFAULT_TOLERANCE
-from heuncli.scene.file_format.rules.analysis import LONGEST as LONGEST_RUN
-from heuncli.scene.file_format.rules.sections import MOST_CUTS
-from heuncli.scene.file_format.semantics import DEFAULT_SAMPLES, MOST_SAMPLES
-from heuncli.scene.file_format.source import LARGEST as LARGEST_SPEC
+from heuncli.scene.file_format.rules.analysis import MAX_DURATION as LONGEST_RUN
+from heuncli.scene.file_format.rules.sections import MAX_CUTS
+from heuncli.scene.file_format.semantics import DEFAULT_SAMPLES, MAX_SAMPLES
+from heuncli.scene.file_format.source import MAX_SIZE as LARGEST_SPEC
 from tests.manual.keys import ALL, CHAPTERS, INLINE, NEEDED, TOP, named_fields, pairs, top_keys, unit_of, words_of
 from tests.manual.tables import TABLES, Table
 from tests.shared.manual import TEXTS, tables_below
@@ -142,8 +142,8 @@ LATE = {  # defaults that are taken after the models are read
 }
 SIZES = (
     ("numbers to export", MOST_NUMBERS),
-    ("samples", MOST_SAMPLES),
-    ("cuts in a run", MOST_CUTS),
+    ("samples", MAX_SAMPLES),
+    ("cuts in a run", MAX_CUTS),
     ("steps", tolerances.MOST_STEPS),
     ("time", LONGEST_RUN),
     ("an expression", LONGEST_EXPRESSION),

@@ -42,7 +42,7 @@ def against(derived: Derived, scene: str, names: tuple[str, ...]) -> None:
     assert found.gamma is not None
     for ours, theirs in (
         (found.epsilon, derived.epsilon), (found.gamma, derived.gamma), (found.coriolis, derived.coriolis),
-        (found.total, derived.forces),
+        (found.total_force, derived.forces),
     ):  # fmt: skip
         assert np.abs(ours - theirs).max() <= DIGITS * max(np.abs(theirs).max(), np.abs(derived.epsilon).max())
 

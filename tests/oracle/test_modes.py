@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.modes.study import state_of
-from heuncli.loads.kinetostatics.bodies import body_states
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.motion.linearisation.steady_motion import Looked
+from heuncli.analyses.modes.study import find_state
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.steady_motion import LinearisedState
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
@@ -46,19 +46,19 @@ def plate() -> dict[str, Any]:
     }  # fmt: skip
 
 
-def inertia_loads(here: Looked, scene: dict[str, Any], along: Array) -> Array:
+def inertia_loads(here: LinearisedState, scene: dict[str, Any], along: Array) -> Array:
     """What the oracle's accelerations, at rest a little along a displacement, do along the reduced motions, (f,)."""
     layout, bodies = here.layout, here.layout.mechanism.bodies
-    state = displaced(layout, here.found.state, along)
-    recovered = here.runner.recovered(np.array([here.t]), state[None, :], holding=here.holding)
-    at = body_states(layout, recovered)
+    state = displace(layout, here.linear.state, along)
+    recovered = here.runner.evaluate(np.array([here.t]), state[None, :], holding=here.holding)
+    at = make_body_states(layout, recovered)
     still = np.zeros(3)
     placed = {b.name: Placed(at.x[0, i], at.R[0, i], still, still) for i, b in enumerate(bodies)}
     answer = solve(model(scene), placed)
     total = np.zeros(here.system.count)
     for i, body in enumerate(bodies):
-        twist = here.found.twists[layout.place[i]] @ here.system.tangent
-        R = here.found.attitudes[layout.place[i]]
+        twist = here.linear.twists[layout.place[i]] @ here.system.tangent
+        R = here.linear.attitudes[layout.place[i]]
         total += twist[3:].T @ (body.mass * answer.acceleration[body.name])
         total += twist[:3].T @ (R @ body.inertia @ R.T @ answer.angular_acceleration[body.name])
     return total
@@ -67,7 +67,7 @@ def inertia_loads(here: Looked, scene: dict[str, Any], along: Array) -> Array:
 def test_a_spatial_loop() -> None:
     scene = plate()
     setup = set_up(load("scene.yaml", to_yaml(scene)), reduce=False)
-    here, *_ = state_of(setup)
+    here, *_ = find_state(setup)
     scale = np.abs(here.weights[:, None] * here.system.tangent).max(axis=0)
     T = here.system.tangent / scale
     K = np.zeros((here.system.count, here.system.count))

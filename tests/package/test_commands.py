@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import heuncli
-from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS, Command
 
 PACKAGE = Path(heuncli.__file__).parent
@@ -45,7 +45,7 @@ def test_every_folder_has_its_row_and_every_row_its_folder_and_its_page() -> Non
     folders = sorted(path.parent.name for path in (PACKAGE / "app" / "commands").glob("*/__init__.py"))
     assert sorted(command.folder or command.name for command in COMMANDS) == folders
     assert all((PACKAGE / "manual" / f"{command.page}.md").exists() for command in COMMANDS)
-    assert all(command.request.__doc__ and fields_of(command.request) for command in COMMANDS)
+    assert all(command.request.__doc__ and list_fields(command.request) for command in COMMANDS)
 
 
 def loaded(*words: str) -> set[str]:

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import pytest
 
-from heuncli.app.cli.registry import command_of
+from heuncli.app.cli.registry import find_command
 from heuncli.app.commands.lagrange.forms import ALWAYS, KEYS
-from heuncli.results.results_schema import quantity
+from heuncli.results.results_schema import find_quantity
 from tests.shared.cited_texts import PACKAGE, TESTS, equations, scopes, texts, tree
 from tests.shared.folders import ROOT
 
@@ -88,10 +88,10 @@ def test_a_user_sees_it(row: Row) -> None:
     for word in words:
         if word.startswith("heun "):
             command = word.removeprefix("heun ")
-            assert command_of(command) is not None, word
+            assert find_command(command) is not None, word
         elif "." in word:
             command = ""
-            assert quantity(word.split(".")) is not None, word
+            assert find_quantity(word.split(".")) is not None, word
         else:
             assert word in JSON_KEYS[command], word
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.records import record, replace
-from heuncli.multibody.kept_stages import FirstStages, LaterStages
+from heuncli.multibody.kept_stages import RecordingStages, ReusingStages
 from heuncli.multibody.stages import Stages
 from heuncli.results.results import Array
 
@@ -39,9 +39,9 @@ def scene(length: float = 0.5, mass: float = 1.0, gravity: float = 9.81, x: floa
 
 
 def test_a_stage_is_run_again_where_what_it_saw_is_another() -> None:
-    first = FirstStages()
+    first = RecordingStages()
     result = first.run(reach, scene())
-    later = LaterStages(first)
+    later = ReusingStages(first)
     assert result.tolist() == reach(scene()).tolist()
     for other in (scene(), scene(mass=3.0), scene(gravity=1.62)):
         assert later.run(reach, other) is result
@@ -58,12 +58,12 @@ def test_what_a_replaced_record_takes_over_counts_where_it_is_looked_at() -> Non
         again = replace(replace(given.bars[0], length=2.0), name="c")
         return again.moment
 
-    first = FirstStages()
+    first = RecordingStages()
     assert first.run(lighter, scene(mass=3.0)) == 12.0
-    seen = first.kept[lighter, ""].looked_at[0]
-    assert seen.stands(scene(mass=3.0, length=7.0, x=1.0))
-    assert not seen.stands(scene(mass=2.0))
-    later = LaterStages(first)
+    seen = first.cached[lighter, ""].traces[0]
+    assert seen.matches(scene(mass=3.0, length=7.0, x=1.0))
+    assert not seen.matches(scene(mass=2.0))
+    later = ReusingStages(first)
     assert later.run(lighter, scene(mass=2.0)) == 8.0
 
 
@@ -74,10 +74,10 @@ def test_a_result_that_holds_input_is_not_kept() -> None:
     def told(given: Scene) -> tuple[Bar, ...]:
         return given.bars
 
-    first = FirstStages()
+    first = RecordingStages()
     for stage in (shortened, told):
         result = first.run(stage, scene())
-        assert not first.kept
+        assert not first.cached
         assert all(type(bar) is Bar for bar in ([result] if isinstance(result, Bar) else result))
 
 
@@ -90,20 +90,20 @@ def test_a_stage_that_asks_for_objects_and_not_for_values_is_not_kept() -> None:
     def by_object(given: Scene) -> str:
         return {id(bar): bar.name for bar in known.bars}[id(given.bars[0])]
 
-    first = FirstStages()
+    first = RecordingStages()
     assert first.run(whose, known) == "its own"
     assert first.run(by_object, known) == "a"
-    assert not first.kept
+    assert not first.cached
 
 
 def test_what_fails_is_not_kept_and_what_is_kept_cannot_be_written_to() -> None:
     def failing(given: Scene) -> None:
         raise ValueError(given.gravity)
 
-    first = FirstStages()
+    first = RecordingStages()
     with pytest.raises(ValueError, match=r"9\.81"):
         first.run(failing, scene())
-    assert (failing, "") not in first.kept
+    assert (failing, "") not in first.cached
     with pytest.raises(ValueError, match="read-only"):
         first.run(reach, scene())[0] = 1.0
 
@@ -124,12 +124,12 @@ def test_a_stage_of_stages_is_kept_as_a_whole_and_else_made_of_those_that_stand(
 
     def of_stages(given: Scene, stages: Stages) -> Array:
         return stages.run(
-            both, given, by=lambda: stages.run(moments, given, stages.run(lengths, given))
+            both, given, fallback=lambda: stages.run(moments, given, stages.run(lengths, given))
         )  # fmt: skip
 
-    first = FirstStages()
+    first = RecordingStages()
     of_stages(scene(), first)
-    later = LaterStages(first)
+    later = ReusingStages(first)
     for other, again in (
         (scene(x=1.0), []),
         (scene(mass=2.0), ["moments"]),
@@ -142,6 +142,6 @@ def test_a_stage_of_stages_is_kept_as_a_whole_and_else_made_of_those_that_stand(
 
 
 def test_a_stage_of_stages_that_give_something_else_is_not_kept() -> None:
-    first = FirstStages()
-    assert first.run(reach, scene(), by=lambda: np.zeros(2)).tolist() == [0.0, 0.0]
-    assert not first.kept
+    first = RecordingStages()
+    assert first.run(reach, scene(), fallback=lambda: np.zeros(2)).tolist() == [0.0, 0.0]
+    assert not first.cached

@@ -57,9 +57,9 @@ def test_what_runs_here_is_what_was_asked_for() -> None:
 
 def test_nothing_compiled_is_plain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(form, "FILES", frozenset({"steps.py"}))
-    assert form.choose("") == "pure"
+    assert form.choose_form("") == "pure"
     with pytest.raises(form.KernelError, match=r"no compiled kernel.*\[kernel-not-compiled\]") as error:
-        form.choose("require")
+        form.choose_form("require")
     assert error.value.exit_code == 2
     assert "C compiler" in str(error.value)
 
@@ -68,14 +68,14 @@ def test_nothing_compiled_is_plain(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_it_is_there(wish: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(form, "FILES", frozenset({"steps.py", f"compiled{EXTENSION_SUFFIXES[0]}"}))
     monkeypatch.setattr(form, "edited_since_compiled", lambda _: [])
-    assert form.choose(wish) == ("pure" if wish == "pure" else "compiled")
+    assert form.choose_form(wish) == ("pure" if wish == "pure" else "compiled")
 
 
 @pytest.mark.parametrize("wish", ["", "pure", "require"])
 def test_modules_that_an_older_heun_compiled_are_not_mixed_in(wish: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(form, "FILES", frozenset({"steps.py", "steps.abi3.so", f"compiled{EXTENSION_SUFFIXES[0]}"}))
     with pytest.raises(form.KernelError, match=r"steps\.abi3\.so, 1 in all.*\[stale-kernel\]"):
-        form.choose(wish)
+        form.choose_form(wish)
 
 
 def version_of(checkout: Path) -> subprocess.CompletedProcess[str]:
@@ -116,13 +116,13 @@ def test_a_message_names_some_of_what_was_edited(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(form, "find_compiled", lambda: "compiled.so")
     monkeypatch.setattr(form, "edited_since_compiled", lambda _: [*"abcdefg"])
     with pytest.raises(form.KernelError, match=r"a\.py, b\.py, c\.py, d\.py, e\.py and 2 more changed since"):
-        form.choose("")
-    assert form.choose("pure") == "pure"
+        form.choose_form("")
+    assert form.choose_form("pure") == "pure"
 
 
 def test_an_unknown_wish_is_an_error() -> None:
     with pytest.raises(form.KernelError, match=r"'fast'; known: pure, compiled, require \[unknown-kernel\]"):
-        form.choose("fast")
+        form.choose_form("fast")
 
 
 def test_the_command_says_so_without_a_traceback() -> None:

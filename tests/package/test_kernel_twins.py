@@ -26,9 +26,9 @@ ROWS = [
 VALUES = ["Vec3", "Mat3", "Sym3", "Ldl3", "Program"]
 
 
-TEXTS = one_module.parse(FOLDER)
-DECLARATIONS = headers.declare(TEXTS)
-INLINED = "\n".join(headers.inlined_functions(TEXTS["algebra"], headers.known_structs(TEXTS)))
+TEXTS = one_module.parse_modules(FOLDER)
+DECLARATIONS = headers.generate_declarations(TEXTS)
+INLINED = "\n".join(headers.generate_inline_functions(TEXTS["algebra"], headers.find_struct_names(TEXTS)))
 
 
 def kind(annotation: ast.expr | None) -> str:
@@ -75,14 +75,14 @@ def test_rows(record: type[structs.Record]) -> None:
     """Field by field, in order; and the NumPy table has the same."""
     wanted = [(name, FOR_C.get(of, of)) for name, of in record.__annotations__.items()]
     assert fields(record.__name__) == wanted
-    assert list(records.type_of(record).names or ()) == [name for name, _ in wanted]
+    assert list(records.struct_dtype(record).names or ()) == [name for name, _ in wanted]
 
 
 @pytest.mark.parametrize("name", VALUES)
 def test_values(name: str) -> None:
     """Vectors, matrices and programs have the same parts for C, in plain Python and for NumPy."""
     of = vars(scene)[name]
-    parts = list(records.type_of(of).names or ())
+    parts = list(records.struct_dtype(of).names or ())
     assert [part for part, _ in fields(name)] == parts
     value = of(*range(len(parts)))
     assert [getattr(value, part) for part in parts] == list(range(len(parts)))
@@ -101,7 +101,7 @@ def test_whole_numbers() -> None:
     wanted: dict[str, int] = {}
     for name, module in TEXTS.items():
         plain: dict[str, object] = {}
-        block = module.body if name in DECLARED else headers.plain_block(module)
+        block = module.body if name in DECLARED else headers.find_plain_block(module)
         exec(ast.unparse(ast.Module([node for node in block if isinstance(node, ast.Assign)], [])), plain)
         wanted |= {key: number for key, number in plain.items() if isinstance(number, int)}
     told = dict(re.findall(r"\b([A-Z]\w*) = (-?\d+)", DECLARATIONS))
@@ -110,9 +110,9 @@ def test_whole_numbers() -> None:
 
 def test_what_a_module_takes_from_another_has_the_same_name_there() -> None:
     """In the one module nothing has two names, and what is not imported would be there all the same."""
-    names = {(module, name) for module, name, _ in one_module.defined_names(TEXTS)}
+    names = {(module, name) for module, name, _ in one_module.iter_defined_names(TEXTS)}
     for module in MODULES:
-        for node in headers.plain_block(TEXTS[module]):
+        for node in headers.find_plain_block(TEXTS[module]):
             if isinstance(node, ast.ImportFrom):
                 assert not [alias.name for alias in node.names if alias.asname], module
                 origin = (node.module or "").removeprefix("heuncli.kernel.")
@@ -212,16 +212,19 @@ cdef class Room:
 def test_what_becomes_of_a_text() -> None:
     module = ast.parse(TEXT)
     texts = TEXTS | {"tree": module}
-    declared = headers.declare(texts)
+    declared = headers.generate_declarations(texts)
     assert DECLARED_OF_IT in declared and TYPE_OF_IT in declared
-    assert headers.floats(module) == [("LEAST", 0.5)]
-    assert headers.library(headers.plain_block(module)) == ["fabs", "NAN"]
-    assert one_module.include(TEXT, module, headers.known_structs(texts)).split("\n") == ["", *INCLUDED.split("\n")]
+    assert headers.find_float_constants(module) == [("LEAST", 0.5)]
+    assert headers.find_library_names(headers.find_plain_block(module)) == ["fabs", "NAN"]
+    assert one_module.convert_module(TEXT, module, headers.find_struct_names(texts)).split("\n") == [
+        "",
+        *INCLUDED.split("\n"),
+    ]
 
 
 def test_every_module_is_included_line_for_line(tmp_path: Path) -> None:
     """So errors name the right line; and what says the same stays as it is, with its time."""
-    package = one_module.write(FOLDER, tmp_path).parent
+    package = one_module.write_sources(FOLDER, tmp_path).parent
     for name in MODULES:
         plain = (FOLDER / f"{name}.py").read_text(encoding="utf-8").splitlines()
         made = (package / f"{name}.pxi").read_text(encoding="utf-8").splitlines()
@@ -229,7 +232,7 @@ def test_every_module_is_included_line_for_line(tmp_path: Path) -> None:
         assert len(made) == len(plain) and kept.count(False) < kept.count(True), name
     first = {path: path.stat().st_mtime_ns for path in package.iterdir()}
     (package / "tree.pxi").write_text("another", encoding="utf-8")
-    one_module.write(FOLDER, tmp_path)
+    one_module.write_sources(FOLDER, tmp_path)
     assert [path.name for path, time in first.items() if path.stat().st_mtime_ns != time] == ["tree.pxi"]
 
 
@@ -241,7 +244,7 @@ def test_answers_fill_their_records() -> None:
 
 def test_a_table_takes_rows_of_different_fields() -> None:
     """What only later rows give is kept, and what a row leaves out is zero."""
-    made = records.table(scene.Closure, [{"a": 1, "length": 2.0}, {"a": 3, "e": (4.0, 5.0, 6.0)}])
+    made = records.make_table(scene.Closure, [{"a": 1, "length": 2.0}, {"a": 3, "e": (4.0, 5.0, 6.0)}])
     assert made["a"].tolist() == [1, 3]
     assert made["length"].tolist() == [2.0, 0.0]
     assert made["e"].tolist() == [(0.0, 0.0, 0.0), (4.0, 5.0, 6.0)]

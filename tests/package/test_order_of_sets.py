@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from heuncli.base.nearest import did_you_mean, listed
+from heuncli.base.nearest import list_words, suggest
 from tests.shared.folders import ROOT
 
 
@@ -51,5 +51,5 @@ def test_the_look_finds_what_it_looks_for() -> None:
 
 def test_hints_list_sets_by_the_alphabet() -> None:
     words = {f"{letter}{letter}" for letter in "qwertzuiopas"}
-    assert listed(words) == ", ".join(sorted(words))
-    assert did_you_mean("xxxxxxxx", frozenset(words), "words") == f"known words: {', '.join(sorted(words))}"
+    assert list_words(words) == ", ".join(sorted(words))
+    assert suggest("xxxxxxxx", frozenset(words), "words") == f"known words: {', '.join(sorted(words))}"

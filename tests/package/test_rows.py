@@ -7,13 +7,13 @@ import pytest
 
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.tree import rows
-from heuncli.multibody.tree.tables import type_of
+from heuncli.multibody.tree.tables import struct_dtype
 
 ROWS = {
     "Body": [rows.BodyRow],
     "Freedom": [rows.FreedomRow],
     "Load": [rows.LoadRow],
-    "Closure": [rows.ClosureRow, rows.ClosurePlaces],
+    "Closure": [rows.ClosureRow, rows.ClosureIndices],
     "Contact": [rows.ContactRow],
     "Counter": [rows.CounterRow],
     "Variable": [rows.VariableRow],
@@ -26,7 +26,7 @@ ROWS = {
 @pytest.mark.parametrize("name", ROWS)
 def test_each_field_is_one_of_the_struct(name: str) -> None:
     given = [field for part in ROWS[name] for field in part.__annotations__]
-    struct = type_of(getattr(kernel, name))
+    struct = struct_dtype(getattr(kernel, name))
     assert len(set(given)) == len(given)
     assert set(given) <= set(struct.names or ())
     for part in ROWS[name]:

@@ -46,7 +46,11 @@ joints:
 analysis: {duration: 0.1, samples: 3}
 """
 # Of the package: only scenes with shapes or sections, with closed chains, with tables; only other commands and options.
-SHAPED = {"heuncli.scene.shapes.forms", "heuncli.loads.kinetostatics.cuts", "heuncli.loads.kinetostatics.sections"}
+SHAPED = {
+    "heuncli.scene.shapes.composite_solid",
+    "heuncli.loads.kinetostatics.cuts",
+    "heuncli.loads.kinetostatics.sections",
+}
 REDUNDANT = {
     "heuncli.loads.redundancy.resolve",
     "heuncli.loads.redundancy.self_stress",
@@ -150,9 +154,7 @@ def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> N
 @pytest.mark.parametrize("words", ["--version", "--help"])
 def test_what_is_answered_at_once_needs_next_to_nothing(words: str) -> None:
     """Beside what Python loads when it starts."""
-    code = (
-        "import os, sys; before = {*sys.modules}; from heuncli.app.cli import at_once; at_once.answered(sys.argv[1:])"
-    )
+    code = "import os, sys; before = {*sys.modules}; from heuncli.app.cli import at_once; fast_path.try_answer(sys.argv[1:])"
     shown = "print(*sorted({*sys.modules} - before), file=sys.stderr)"
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     run = subprocess.run(

@@ -87,7 +87,9 @@ def test_names_are_words_of_the_field(package: str) -> None:
 
 
 def test_a_private_word_would_be_seen() -> None:
-    text = "class Told: ...\ndef beside(of: int, asked_rows: int) -> None: ...\ndef find_speed(speed: int) -> None: ...\n"
+    text = (
+        "class Told: ...\ndef beside(of: int, asked_rows: int) -> None: ...\ndef find_speed(speed: int) -> None: ...\n"
+    )
     assert [line.split(": ")[1].split(" is ")[0] for line in faults(text, "telling/kept.py")] == [
         "telling/kept.py", "Told", "beside", "beside(of)", "beside(asked_rows)",
     ]  # fmt: skip

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.output.snapshots.measure import measured, parse
+from heuncli.output.snapshots.measure import measure_number, parse_measure
 from heuncli.study.ask.study import Study
 from tests.shared.drawn_bars import panels_of
 from tests.shared.drawn_panels import edges, heights, upright_at
@@ -98,5 +98,7 @@ def test_no_shear_is_larger_than_the_load(drive: str) -> None:
     """Nor where it comes to a support, or begins there: the extremes searched along the beam and in time."""
     run = study(SCENE.replace("DRIVE", drive))
     for how in ("min", "max"):
-        assert abs(measured(parse(f"{how} sections.along.Q1"), run)[0].value) == pytest.approx(P, rel=1e-9)
-    assert measured(parse("max sections.along.M2"), run)[0].value == pytest.approx(P * L / 4.0, rel=1e-9)
+        assert abs(measure_number(parse_measure(f"{how} sections.along.Q1"), run)[0].value) == pytest.approx(
+            P, rel=1e-9
+        )
+    assert measure_number(parse_measure("max sections.along.M2"), run)[0].value == pytest.approx(P * L / 4.0, rel=1e-9)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.loads.kinetostatics.section_axes import first_axis
-from heuncli.output.drawing.canvas import Look
+from heuncli.loads.kinetostatics.section_axes import make_first_axis
+from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Blank, Trace
-from heuncli.output.drawing.letters import drawn as in_letters
+from heuncli.output.drawing.letters import draw_text as in_letters
 from heuncli.output.figures.bars import WholeBar
-from heuncli.output.figures.courses import Pictured
-from heuncli.output.figures.diagrams import diagrams
-from heuncli.scene.shapes.rotations import cross
+from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.diagrams import make_diagrams
+from heuncli.scene.shapes.rotations import cross_vectors
 from heuncli.study.quantities.digits import Certainty
 from tests.shared.drawn_bars import HELD_TWICE, SI, drawn, panels_of
 from tests.shared.scenes import study
@@ -35,7 +35,7 @@ sections: {{along: {{body: bar, from: o, to: end, count: 3}}}}
 def test_noise_is_named_as_nothing_and_not_drawn() -> None:
     """A beam askew in space, bent in one plane: what else there is of it is rounding, and told to be 0."""
     pushed = study(CANTILEVER.format(forces="p: {type: force, on: bar.end, vector: [0, -7, 0], frame: body}"))
-    noise = WholeBar(pushed, "along").at(0.0)
+    noise = WholeBar(pushed, "along").make_lines(0.0)
     assert max(np.abs(noise[name].values).max() for name in ("N", "Q2", "T", "M1")) > 0.0, "no rounding to be seen"
     figure = drawn(pushed, "along")
     assert [panel.y.label for panel in figure.panels] == ["Q1 [N]", "M2 [N·m]"]
@@ -77,7 +77,7 @@ def test_what_no_law_decides_is_drawn_as_open_where_it_is() -> None:
 
 def test_in_letters_hatches_are_dots_and_signs_are_plain() -> None:
     """Where a terminal shows no braille: the curve alone has its letter, and the minus is one that it has."""
-    text = in_letters(drawn(study(HELD_TWICE), "along"), Look(80, braille=False, colours=False))
+    text = in_letters(drawn(study(HELD_TWICE), "along"), TerminalStyle(80, has_braille=False, has_colours=False))
     shear = text.partition("Q2 [N]")[2].partition("T [")[0].splitlines()
     assert "\N{MINUS SIGN}" not in text
     assert any("a" in line and "." in line and "+" in line for line in shear)
@@ -100,7 +100,7 @@ def with_errors(errors: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> li
     )
     own = Certainty({("sections", unit): error for unit, error in errors.items()}, {"N": 1e-12, "N·m": 1e-12})
     monkeypatch.setattr(WholeBar, "certain", own)
-    figure = diagrams([Pictured("", study(CANTILEVER.format(forces=forces)))], ["along"], SI)
+    figure = make_diagrams([FigureSource("", study(CANTILEVER.format(forces=forces)))], ["along"], SI)
     words = [item.text for panel in figure.panels for item in panel.items if isinstance(item, Blank)]
     return [*(panel.y.label.partition(" ")[0] for panel in figure.panels), *words, *figure.notes]
 
@@ -121,8 +121,8 @@ def test_which_side_is_in_tension() -> None:
     rng = np.random.default_rng(5)
     for n in rng.normal(size=(20, 3)):
         n /= np.linalg.norm(n)
-        e1 = first_axis(n, None)
-        e2 = cross(n, e1)
+        e1 = make_first_axis(n, None)
+        e2 = cross_vectors(n, e1)
         y = rng.uniform(-1.0, 1.0, size=(400, 2))
         y = np.concatenate([y, -y, y * [-1.0, 1.0], y * [1.0, -1.0]])  # two axes of symmetry
         arms = y @ np.stack([e1, e2])
@@ -151,12 +151,14 @@ def test_moments_are_drawn_on_the_side_in_tension(
         f"b: {{type: force, on: bar.{pushed}, vector: [-3, 0, 0], frame: body}}"
     )
     bent = study(CANTILEVER.format(forces=forces))
-    values = WholeBar(bent, "along").at(0.0)[quantity].values
+    values = WholeBar(bent, "along").make_lines(0.0)[quantity].values
     assert (values > 0.0).all() == positive
     assert np.abs(values) == pytest.approx(0.6, rel=1e-12)
     (panel,) = drawn(bent, "along", tension_side=True).panels
     assert panel.y.label.endswith({"M2": "e1 up", "M1": "e2 up"}[quantity])
     (line,) = [item for item in panel.items if isinstance(item, Trace)]
     assert (line.y > 0.0).all() == up
-    assert bool(panel.y.named) == (quantity == "M2")
-    assert all(float(text) == pytest.approx(-at) for at, text in panel.y.named), "the axis tells the values themselves"
+    assert bool(panel.y.tick_texts) == (quantity == "M2")
+    assert all(float(text) == pytest.approx(-at) for at, text in panel.y.tick_texts), (
+        "the axis tells the values themselves"
+    )

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from heuncli.app.commands.show.command import REPORTS
-from heuncli.output.machine_geometry.coupled_pulls import CoupledPull, coupled_pulls
-from heuncli.output.machine_geometry.machine import Machine, machine_of
-from heuncli.output.machine_geometry.poses import Poses, poses_in
-from heuncli.output.machine_geometry.ropes import lines_of
-from heuncli.output.web_page.moving_page import page_data
+from heuncli.output.machine_geometry.coupled_pulls import CouplingForce, iter_coupling_forces
+from heuncli.output.machine_geometry.machine import Machine, make_machine
+from heuncli.output.machine_geometry.poses import Poses, extract_poses
+from heuncli.output.machine_geometry.ropes import iter_rope_lines
+from heuncli.output.web_page.moving_page import make_page_data
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
@@ -61,16 +61,16 @@ analysis: {duration: 0.1, samples: 2}
 
 @cache
 def of_spec(name: str) -> Study:
-    return solve(load(SPECS / f"{name}.yaml", checking=False), Options(wanted=REPORTS))
+    return solve(load(SPECS / f"{name}.yaml", checking=False), Options(requested_reports=REPORTS))
 
 
 def seen(study: Study) -> tuple[Machine, Poses]:
-    return machine_of(study.spec, scene=study.setup.scene), poses_in(study.results)
+    return make_machine(study.spec, scene=study.setup.scene), extract_poses(study.results)
 
 
-def pulls(study: Study) -> dict[tuple[str, str], CoupledPull]:
+def pulls(study: Study) -> dict[tuple[str, str], CouplingForce]:
     """By coupling and body; of belts the last strand."""
-    return {(one.name, one.on): one for one in coupled_pulls(*seen(study), study.results.couplings)}
+    return {(one.name, one.body): one for one in iter_coupling_forces(*seen(study), study.results.couplings)}
 
 
 def length(line: Array) -> float:
@@ -79,26 +79,26 @@ def length(line: Array) -> float:
 
 @pytest.mark.parametrize("text", [HOIST, (SPECS / "tower_crane.yaml").read_text()], ids=["hoist", "crane"])
 def test_a_rope_is_drawn_as_long_as_it_is_and_hangs_together(text: str) -> None:
-    study = solve(load("rope.yaml", text, checking=False), Options(wanted=REPORTS))
+    study = solve(load("rope.yaml", text, checking=False), Options(requested_reports=REPORTS))
     machine, poses = seen(study)
     (rope,) = machine.ropes
     (coupling,) = study.setup.scene.mechanism.couplings
-    lines = list(lines_of(rope, poses, 0))
+    lines = list(iter_rope_lines(rope, poses, 0))
     law = coupling.law
     whole = sum(row.length or 0.0 for row in coupling.rows) if law is None else law.derivatives(0.0)[0]
-    arcs = [line for arc, line in zip(rope.arcs, lines[len(rope.strands) :], strict=True) if arc.body != "drum"]
-    counted = sum(map(length, lines[: len(rope.strands)] + arcs))  # what lies on the drum counts by its turn
+    arcs = [line for arc, line in zip(rope.arcs, lines[len(rope.spans) :], strict=True) if arc.body != "drum"]
+    counted = sum(map(length, lines[: len(rope.spans)] + arcs))  # what lies on the drum counts by its turn
     assert counted == pytest.approx(whole, rel=2e-4)  # arcs are drawn in steps of 0.1 rad
     ends = np.array([line[[0, -1]] for line in lines])
-    for arc, line in zip(rope.arcs, lines[len(rope.strands) :], strict=True):
-        assert line[[0, -1]] == pytest.approx(ends[[arc.before, arc.before + 1], [1, 0]], abs=1e-12)
+    for arc, line in zip(rope.arcs, lines[len(rope.spans) :], strict=True):
+        assert line[[0, -1]] == pytest.approx(ends[[arc.span, arc.span + 1], [1, 0]], abs=1e-12)
 
 
 def test_a_ropes_ends_and_sheaves_on_the_ground_stand_on_it() -> None:
     """Away from where the rope pulls: the end at A up and to the left, the sheave S down."""
-    study = solve(load("rope.yaml", HOIST), Options(wanted=REPORTS))
+    study = solve(load("rope.yaml", HOIST), Options(requested_reports=REPORTS))
     machine, poses = seen(study)
-    stood = {mark.told: mark.stands(poses) for mark in machine.marks}
+    stood = {mark.description: mark.locate(poses) for mark in machine.marks}
     (end, away), (sheave, off) = stood["hoist: on the ground"], stood["hoist: a sheave on the ground"]
     assert end[0] == pytest.approx([1.5, 0.0, 5.0]) and sheave[0] == pytest.approx([1.2, 0.0, 6.0])
     assert away[0] == pytest.approx((end[0] - sheave[0]) / np.linalg.norm(end[0] - sheave[0]))
@@ -106,17 +106,17 @@ def test_a_ropes_ends_and_sheaves_on_the_ground_stand_on_it() -> None:
 
 
 def test_stops_and_latches_stand_where_their_coordinates_come_to() -> None:
-    study = solve(load("stops.yaml", STOPPED), Options(wanted=REPORTS))
+    study = solve(load("stops.yaml", STOPPED), Options(requested_reports=REPORTS))
     machine, poses = seen(study)
-    found = {(mark.name, round(float(mark.stands(poses)[0][0, 0]), 6)): mark for mark in machine.marks}
+    found = {(mark.name, round(float(mark.locate(poses)[0][0, 0]), 6)): mark for mark in machine.marks}
     out = 0.3  # of the arm's 0.5 m to its centre of mass
     for angle, sense in ((-0.2, -1.0), (1.0, 1.0)):
-        place, way = found["wall", round(1.0 + out * np.cos(angle), 6)].stands(poses)
+        place, way = found["wall", round(1.0 + out * np.cos(angle), 6)].locate(poses)
         assert place == pytest.approx(np.tile([1.0 + out * np.cos(angle), out * np.sin(angle), 0.0], (2, 1)))
         assert way[0] / out == pytest.approx([-sense * np.sin(angle), sense * np.cos(angle), 0.0])
     for name, x, symbol in (("buffer", 0.0, "stop"), ("buffer", 2.0, "stop"), ("click", 2.0, "latch"),
                             ("notch", 1.0, "latch")):  # fmt: skip
-        place, way = found[name, x].stands(poses)
+        place, way = found[name, x].locate(poses)
         assert found[name, x].symbol == symbol and place[0] == pytest.approx([x, 3.0, 0.0])
         assert way[0] == pytest.approx([-1.0 if x == 0.0 else 1.0, 0.0, 0.0])
 
@@ -125,8 +125,8 @@ def test_roads_lie_where_wheels_touch_them_at_all_instants() -> None:
     study = of_spec("cart")
     machine, poses = seen(study)
     for mark in machine.marks:
-        name = mark.told.partition(":")[0]
-        place, way = mark.stands(poses)
+        name = mark.description.partition(":")[0]
+        place, way = mark.locate(poses)
         assert mark.symbol == "road" and way == pytest.approx(np.tile([0.0, 0.0, -1.0], (len(place), 1)))
         assert place == pytest.approx(study.results.couplings[name]["on"]["ground"]["point"], abs=1e-12)
 
@@ -140,24 +140,24 @@ def test_a_coupling_pulls_once_on_what_it_moves_and_a_rope_on_each_along_its_lin
     assert {on for _, on in found} == {"trolley", "hook", "ground"}
     one, other = found["hoist", "trolley"], found["hoist", "hook"]
     assert one.forces == pytest.approx(-other.forces, abs=1e-6) and (other.forces[:, 1] > 0.0).all()
-    assert one.places[:, 0] == pytest.approx(crane.results.bodies["trolley"]["center"][:, 0])  # in the middle of both
+    assert one.points[:, 0] == pytest.approx(crane.results.bodies["trolley"]["center"][:, 0])  # in the middle of both
 
 
 def test_both_strands_of_a_belt_pull_what_its_bearing_holds() -> None:
     study = of_spec("belt_drive")
-    strands = list(coupled_pulls(*seen(study), study.results.couplings))
-    assert [(one.name, one.on) for one in strands] == [("belt", "fan")] * 2
+    strands = list(iter_coupling_forces(*seen(study), study.results.couplings))
+    assert [(one.name, one.body) for one in strands] == [("belt", "fan")] * 2
     held = study.results.joints["hub"]["force"]
     assert sum(one.forces for one in strands) == pytest.approx(-held, abs=1e-6 * float(np.abs(held).max()))
     hub = study.results.joints["hub"]["point"]
-    turning = sum(np.cross(one.places - hub, one.forces)[:, 2] for one in strands)
+    turning = sum(np.cross(one.points - hub, one.forces)[:, 2] for one in strands)
     radius = study.spec.couplings["belt"].radii[1]  # type: ignore[union-attr]
     assert turning == pytest.approx(radius * np.asarray(study.results.couplings["belt"]["force"]), abs=1e-9)
 
 
 def test_a_page_holds_the_ends_of_ropes_at_each_frame_and_what_stands_still_once() -> None:
     study = of_spec("tower_crane")
-    data = page_data(study, Units())
+    data = make_page_data(study, Units())
     scene, count = data["scene"], data["count"]
     (rope,) = scene["ropes"]
     ends = places(rope["ends"]).reshape(count, rope["count"], 2, 3)
@@ -166,6 +166,6 @@ def test_a_page_holds_the_ends_of_ropes_at_each_frame_and_what_stands_still_once
     assert falls.mean(axis=1) == pytest.approx(trolley[:, 0], abs=1e-5) and np.ptp(trolley[:, 0]) > 1.0
     assert {pull["on"] for pull in scene["pulls"]} == {"trolley", "hook", "ground"}
     assert [(own["joint"], own["symbols"], own["slides"]) for own in scene["acting"]] == [(0, ("sliding",) * 2, True)]
-    stopped = page_data(solve(load("stops.yaml", STOPPED), Options(wanted=REPORTS)), Units())["scene"]
+    stopped = make_page_data(solve(load("stops.yaml", STOPPED), Options(requested_reports=REPORTS)), Units())["scene"]
     assert [len(places(mark["places"])) for mark in stopped["marks"]] == [3] * 7
     assert set(stopped["symbols"]) == {"stop", "latch"}

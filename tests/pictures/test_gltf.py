@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from heuncli.output.figures.courses import instants
-from heuncli.output.machine_geometry.elements import elements_of
-from heuncli.output.machine_geometry.gltf import binary
-from heuncli.output.machine_geometry.machine import Machine, machine_of, shapes_of
-from heuncli.output.machine_geometry.poses import Poses, poses_of, up_of
-from heuncli.output.machine_geometry.solids import ROUND, THIN
+from heuncli.output.figures.courses import choose_instants
+from heuncli.output.machine_geometry.elements import collect_elements
+from heuncli.output.machine_geometry.gltf import encode_gltf
+from heuncli.output.machine_geometry.machine import Machine, find_drawn_shapes, make_machine
+from heuncli.output.machine_geometry.poses import Poses, compute_poses, find_up_direction
+from heuncli.output.machine_geometry.solids import ROD_RADIUS_RATIO, ROUND_FACES
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Body, Shape, Spec
@@ -30,16 +30,16 @@ pytestmark = pytest.mark.heavy  # of the kernels' numbers pictures see the first
 FILES = sorted(path.stem for path in SPECS.glob("*.yaml"))
 SINGLE = float(np.finfo(np.float32).eps)
 # What of a circle and of a sphere flat faces leave: sides of a polygon, and the frusta between a sphere's rings.
-OF_CIRCLE = ROUND / (2.0 * math.pi) * math.sin(2.0 * math.pi / ROUND)
-LEVELS = 2.0 * math.pi * np.arange(ROUND // 2 + 1) / ROUND
+OF_CIRCLE = ROUND_FACES / (2.0 * math.pi) * math.sin(2.0 * math.pi / ROUND_FACES)
+LEVELS = 2.0 * math.pi * np.arange(ROUND_FACES // 2 + 1) / ROUND_FACES
 
 
 @cache
 def drawn(name: str) -> tuple[Spec, Machine, Poses, bytes]:
     """A worked example solved and written, once for all that looks at it."""
     solved = solve(load(SPECS / f"{name}.yaml"))
-    machine, poses = machine_of(solved.spec), poses_of(solved, instants(solved))
-    return solved.spec, machine, poses, binary(machine, poses, up_of(solved.spec, poses))
+    machine, poses = make_machine(solved.spec), compute_poses(solved, choose_instants(solved))
+    return solved.spec, machine, poses, encode_gltf(machine, poses, find_up_direction(solved.spec, poses))
 
 
 def matrices(xyzw: Array) -> Array:
@@ -66,10 +66,10 @@ def test_bodies_stand_where_the_run_has_them(name: str) -> None:
         (times, places), (same, turns) = moved["translation"], moved["rotation"]
         assert np.array_equal(times, instants)
         assert np.array_equal(same, instants)
-        size = max(1.0, float(np.abs(poses.places[body.name]).max()))
-        assert np.allclose(places[of_run], poses.places[body.name], rtol=0.0, atol=SINGLE * size)
+        size = max(1.0, float(np.abs(poses.positions[body.name]).max()))
+        assert np.allclose(places[of_run], poses.positions[body.name], rtol=0.0, atol=SINGLE * size)
         assert np.allclose(np.linalg.norm(turns, axis=1), 1.0, rtol=0.0, atol=2 * SINGLE)
-        assert np.allclose(matrices(turns)[of_run], poses.attitudes[body.name], rtol=0.0, atol=4 * SINGLE)
+        assert np.allclose(matrices(turns)[of_run], poses.orientations[body.name], rtol=0.0, atol=4 * SINGLE)
         assert np.all(np.sum(turns[1:] * turns[:-1], axis=1) > 0.0)
 
 
@@ -87,10 +87,10 @@ def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) ->
         body, meshes = spec.bodies[look.name], found.pop(look.name, [])
         volumes = [
             volume(shape)
-            for shape in shapes_of(spec, look.name, elements_of(spec, None).discs.get(look.name, ()))
+            for shape in find_drawn_shapes(spec, look.name, collect_elements(spec, None).discs.get(look.name, ()))
             if shape.type != "point"
         ]
-        if look.spread:
+        if look.is_ellipsoid:
             volumes = [spread(body)]
         with np.errstate(invalid="ignore"):  # flat things have no volume to divide by
             told_volumes = [float(mesh.volume) for mesh in meshes]
@@ -124,7 +124,7 @@ def volume(shape: Shape) -> float:
         return shape.mesh.volume * shape.scale**3
     length = math.dist(shape.from_ or (), shape.to or ())
     if shape.type == "rod":
-        return math.pi * OF_CIRCLE * length * (THIN * length) ** 2
+        return math.pi * OF_CIRCLE * length * (ROD_RADIUS_RATIO * length) ** 2
     r, inner = shape.radius or 0.0, shape.inner_radius or 0.0
     q = r if shape.to_radius is None else shape.to_radius
     return math.pi * OF_CIRCLE * length * ((r * r + r * q + q * q) / 3.0 - inner * inner)
@@ -142,7 +142,7 @@ def test_up_is_y_and_lengths_are_metres(name: str) -> None:
     gravity = R @ np.array(spec.gravity)
     assert gravity == pytest.approx([0.0, -float(np.linalg.norm(spec.gravity)), 0.0], abs=1e-12)
     assert {glb.head["nodes"][k]["name"] for k in world["children"]} == {"ground", *spec.bodies}
-    for point, place in machine.grounded.items():
+    for point, place in machine.ground_points.items():
         assert glb.node(f"ground.{point}")["translation"] == place.tolist()
     for body in machine.bodies:
         for point, place in body.points.items():
@@ -162,17 +162,17 @@ def parts(glb: Glb, body: str) -> list[dict[str, int]]:
 
 def test_between_its_instants_no_body_turns_so_far_that_the_shortest_way_is_another() -> None:
     for name in FILES:
-        for turns in drawn(name)[2].turns.values():
+        for turns in drawn(name)[2].quaternions.values():
             near = np.abs(np.sum(turns[1:] * turns[:-1], axis=1)).min(initial=1.0)
             assert 2.0 * math.acos(min(near, 1.0)) < math.pi / 4.0, name
 
 
 def test_bytes_repeat_and_say_when_the_run_begins() -> None:
     solved = solve(load(SPECS / "engine.yaml"))
-    poses = poses_of(solved, np.linspace(0.5 * solved.results.time[-1], solved.results.time[-1], 9))
-    machine, up = machine_of(solved.spec), up_of(solved.spec, poses)
-    content = binary(machine, poses, up)
-    assert binary(machine, poses, up) == content
+    poses = compute_poses(solved, np.linspace(0.5 * solved.results.time[-1], solved.results.time[-1], 9))
+    machine, up = make_machine(solved.spec), find_up_direction(solved.spec, poses)
+    content = encode_gltf(machine, poses, up)
+    assert encode_gltf(machine, poses, up) == content
     assert Glb(content).head["extras"] == {"start": poses.times[0]}
 
 

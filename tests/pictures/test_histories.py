@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from heuncli.output.figures.courses import NumberCourse
-from heuncli.output.figures.histories import PanelCourse, _axis_up
-from heuncli.output.figures.thinning import STRETCHES, seen_places
+from heuncli.output.figures.histories import PanelCourse, _make_y_axis
+from heuncli.output.figures.thinning import N_INTERVALS, find_visible_points
 from heuncli.results.results import Array
 from heuncli.study.ask.measure import Peak
 from heuncli.study.quantities.table_units import Units
@@ -198,9 +198,9 @@ def test_of_each_stretch_the_least_and_the_greatest_are_kept(count: int) -> None
     random = np.random.default_rng(count)
     values = random.normal(size=count)
     values[random.choice(count, 3)] = np.nan
-    kept = seen_places(values)
-    assert len(kept) <= min(count, 4 * STRETCHES + 1) and {0, count - 1} <= set(kept.tolist())
-    width = -(-count // STRETCHES)
+    kept = find_visible_points(values)
+    assert len(kept) <= min(count, 4 * N_INTERVALS + 1) and {0, count - 1} <= set(kept.tolist())
+    width = -(-count // N_INTERVALS)
     for begin in range(0, count, 40 * width):
         part, seen = values[begin : begin + 40 * width], kept[(kept >= begin) & (kept < begin + 40 * width)]
         assert np.nanmax(part) == np.nanmax(values[seen]) and np.nanmin(part) == np.nanmin(values[seen])
@@ -238,5 +238,5 @@ def test_what_is_less_than_its_error_stays_in_its_panel() -> None:
     for value, error in ((3.0, 5.0), (30.0, 29.0)):
         course = NumberCourse("p", "N", np.array([0.0, 1.0]), np.full(2, value), error, *2 * (Peak(value, 0.0),))
         of = PanelCourse("p", 0, None, course.times, course)  # type: ignore[arg-type]
-        scaling = _axis_up("N", [of], [], Units({}))
+        scaling = _make_y_axis("N", [of], [], Units({}))
         assert scaling.low <= value - error and value + error <= scaling.high

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from tests.shared.command import HANGING, Heun
 from tests.shared.plotted import SVG
 
@@ -36,9 +36,9 @@ def test_titles(heun: Heun, folder: Path, title: str) -> None:
     done = heun("plot", "named.yaml", PATH, "-o", "x.svg")
     assert (done.returncode, done.stderr) == (0, "")
     root = ElementTree.fromstring((folder / "x.svg").read_bytes())
-    assert harmless(root) and root.findtext(f"{SVG}title") == shown(title)
+    assert harmless(root) and root.findtext(f"{SVG}title") == escape(title)
     letters = heun("plot", "named.yaml", PATH).stdout
-    assert letters.split("\n", 1)[0].startswith(shown(title)[:20])
+    assert letters.split("\n", 1)[0].startswith(escape(title)[:20])
     assert all(c == "\n" or c.isprintable() for c in letters)
 
 
@@ -49,7 +49,7 @@ def test_file_names(heun: Heun, folder: Path, name: str) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     root = ElementTree.fromstring((folder / "x.svg").read_bytes())
     assert harmless(root)
-    assert f"{shown(name[:-5])}: {PATH}" in [shape.text for shape in root.iter(f"{SVG}text")]
+    assert f"{escape(name[:-5])}: {PATH}" in [shape.text for shape in root.iter(f"{SVG}text")]
 
 
 def test_headings_of_measured_columns(heun: Heun, folder: Path) -> None:

@@ -7,9 +7,9 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.canvas import BRAILLE, Look, look_of
+from heuncli.output.drawing.canvas import BRAILLE, TerminalStyle, make_terminal_style
 from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace
-from heuncli.output.drawing.letters import drawn
+from heuncli.output.drawing.letters import draw_text
 from tests.shared.command import Heun
 
 CODE = re.compile(r"\x1b\[\d*m")
@@ -32,13 +32,13 @@ def has_braille(text: str) -> bool:
 @pytest.mark.parametrize("colours", [False, True])
 @pytest.mark.parametrize("braille", [False, True])
 def test_no_line_is_wider_than_it_is_asked(width: int, *, colours: bool, braille: bool) -> None:
-    lines = CODE.sub("", drawn(waves(7), Look(width, braille, colours))).splitlines()
+    lines = CODE.sub("", draw_text(waves(7), TerminalStyle(width, braille, colours))).splitlines()
     assert max(map(len, lines)) <= width and max(map(len, lines)) >= 0.9 * width
 
 
 @pytest.mark.parametrize("braille", [False, True])
 def test_without_colours_every_curve_carries_its_letter(*, braille: bool) -> None:
-    text = drawn(waves(4), Look(100, braille, colours=False))
+    text = draw_text(waves(4), TerminalStyle(100, braille, has_colours=False))
     legend, panel = text.split("force [N]")
     assert "\x1b" not in text and has_braille(panel) == braille
     for letter, k in zip("abcd", range(4), strict=True):
@@ -46,12 +46,12 @@ def test_without_colours_every_curve_carries_its_letter(*, braille: bool) -> Non
 
 
 def test_one_curve_alone_needs_no_letter() -> None:
-    panel = drawn(waves(1), Look(100, True, colours=False)).split("force [N]")[1]
+    panel = draw_text(waves(1), TerminalStyle(100, True, has_colours=False)).split("force [N]")[1]
     assert not re.search(r"[a-z]", panel.split("t [s]")[0])
 
 
 def test_colours_are_closed_on_every_line() -> None:
-    for line in drawn(waves(3), Look(100, True, colours=True)).splitlines():
+    for line in draw_text(waves(3), TerminalStyle(100, True, has_colours=True)).splitlines():
         codes = CODE.findall(line)
         assert not codes or codes[-1] == "\x1b[0m"
 
@@ -60,7 +60,7 @@ def test_a_curve_passes_where_its_numbers_are() -> None:
     rows, columns = 12, 60
     t = np.array([0.0, 0.5, 1.0])
     panel = Panel(Scaling("", 0.0, 1.0), Scaling("", 0.0, 1.0), (Trace("rise", t, t),))
-    lines = drawn(Figure("", [], [panel]), Look(columns + 12, False, colours=False)).splitlines()
+    lines = draw_text(Figure("", [], [panel]), TerminalStyle(columns + 12, False, has_colours=False)).splitlines()
     field = [line[12:] for line in lines if "|" in line]
     assert len(field) == rows
     for row, line in enumerate(field):
@@ -72,14 +72,16 @@ def test_a_curve_passes_where_its_numbers_are() -> None:
 def test_points_that_stand_alone_are_seen() -> None:
     y = np.array([np.nan, 0.5, np.nan])
     panel = Panel(Scaling("", 0.0, 1.0), Scaling("", 0.1, 1.0), (Trace("lone", np.array([0.0, 0.5, 1.0]), y),))
-    assert has_braille(drawn(Figure("", [], [panel]), Look(60, True, colours=False)))
+    assert has_braille(draw_text(Figure("", [], [panel]), TerminalStyle(60, True, has_colours=False)))
 
 
 def test_wide_letters_take_two_cells() -> None:
     spot = Spot(0.0, 0.5, "漢字 5 N")
     panel = Panel(Scaling("", 0.0, 1.0), Scaling("", 0.1, 1.0), (spot,))
     (line,) = [
-        line for line in drawn(Figure("", [], [panel]), Look(60, True, colours=False)).splitlines() if "漢字" in line
+        line
+        for line in draw_text(Figure("", [], [panel]), TerminalStyle(60, True, has_colours=False)).splitlines()
+        if "漢字" in line
     ]
     assert "漢字 5 N" in line
 
@@ -88,7 +90,7 @@ def test_wide_letters_take_two_cells() -> None:
     ("encoding", "braille"), [("utf-8", True), (None, True), ("ascii", False), ("latin-1", False), ("nonsense", False)]
 )
 def test_braille_needs_an_encoding_that_has_it(encoding: str | None, *, braille: bool) -> None:
-    assert look_of(80, encoding, colours=False).braille is braille
+    assert make_terminal_style(80, encoding, has_colours=False).has_braille is braille
 
 
 def test_what_is_read_by_programs_has_no_codes_and_a_fixed_width(heun: Heun) -> None:

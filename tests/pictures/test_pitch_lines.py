@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.machine_geometry.machine import machine_of
-from heuncli.output.machine_geometry.pitch_lines import pitch_looks
+from heuncli.output.machine_geometry.machine import make_machine
+from heuncli.output.machine_geometry.pitch_lines import make_pitch_geometry
 from heuncli.scene.file_format.load import load
 
 SCENE = """heun: 1
@@ -49,7 +49,7 @@ analysis: {duration: 1}
 @pytest.mark.parametrize("turned", ["", ", orientation: {axis: [0, 0, 1], angle: 90 deg}"])
 def test_a_racks_line_touches_the_wheels_circle(tmp_path: Path, turned: str) -> None:
     (tmp_path / "a.yaml").write_text(SCENE.replace("TURNED", turned))
-    found = pitch_looks(load(tmp_path / "a.yaml"))
+    found = make_pitch_geometry(load(tmp_path / "a.yaml"))
     (disc,), (line,) = found.discs["pinion"], found.racks["rack"]
     radius = 1.0 / 25.0
     assert not found.belts and np.allclose(np.linalg.norm(disc.rim, axis=1), radius)
@@ -59,7 +59,7 @@ def test_a_racks_line_touches_the_wheels_circle(tmp_path: Path, turned: str) -> 
 
 
 def test_a_fixed_ring_is_a_circle_on_the_ground_and_its_planet_a_disc_with_spokes() -> None:
-    machine = machine_of(load("ring.yaml", RING))
+    machine = make_machine(load("ring.yaml", RING))
     (ring,), (arm, planet) = machine.paths, machine.bodies
     assert np.allclose(np.linalg.norm(ring, axis=1), 0.15)
     assert not arm.surfaces and len(arm.bars) == 1
@@ -70,10 +70,10 @@ def test_a_fixed_ring_is_a_circle_on_the_ground_and_its_planet_a_disc_with_spoke
 @pytest.mark.parametrize("first", ["from: ground.A, to: one.o", "from: one.o, to: ground.A"])
 def test_a_belts_strands_run_as_the_rim_of_its_first_pulley_does(first: str) -> None:
     """For a pulley that turns counter-clockwise the upper strand runs to the left, whichever way its joint counts."""
-    (belt,) = pitch_looks(load("belt.yaml", BELT.replace("FIRST", first))).belts
+    (belt,) = make_pitch_geometry(load("belt.yaml", BELT.replace("FIRST", first))).belts
     sense = 1.0 if first.startswith("from: ground") else -1.0  # of the joint's angle
     turned = 0.3  # of the pulley, against the ground
-    ran = float(belt.run({"a": {"angle": np.array([sense * turned])}})[0])
+    ran = float(belt.compute_travel({"a": {"angle": np.array([sense * turned])}})[0])
     for begin, end in belt.strands:
         way = (end - begin) / np.linalg.norm(end - begin)
         at = min(begin, end, key=lambda place: float(np.linalg.norm(place)))  # on the first pulley

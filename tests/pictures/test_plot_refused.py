@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.plot.kinds import EVERY, KINDS
+from heuncli.app.commands.plot.kinds import COMMON_OPTIONS, KINDS
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.output.drawing import matplotlib_file
 from tests.shared.command import HANGING, Heun
@@ -110,5 +110,5 @@ def test_a_spec_is_not_written_over(heun: Heun, files: Path) -> None:
 
 
 def test_every_option_is_heeded_by_some_kind_of_picture() -> None:
-    heeded = {field for kind in KINDS.values() for field in kind.heeds} | set(EVERY)
+    heeded = {field for kind in KINDS.values() for field in kind.options} | set(COMMON_OPTIONS)
     assert heeded == set(PlotRequest._fields)

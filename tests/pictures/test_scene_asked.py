@@ -10,8 +10,8 @@ import pytest
 from heuncli.base.joint_kinds import JOINTS, TYPES
 from heuncli.output.drawing.figure import Symbol
 from heuncli.output.drawing.symbols import LINKS, SYMBOLS
-from heuncli.output.figures.machine_items import HOLDS, TURNS, turning
-from heuncli.output.figures.scenes import as_assembled
+from heuncli.output.figures.machine_items import HOLD_SYMBOLS, TURN_SYMBOLS, find_turn_key
+from heuncli.output.figures.scenes import make_assembly_figure
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 from tests.shared.plotted import panels_of
@@ -71,7 +71,7 @@ def test_every_kind_of_joint_has_its_symbol(kind: str, end: str) -> None:
     keys += ", to_axis: [1, 0, 0]" if row.to_axis == "required" else ""
     keys += ", x: line" if kind == "curve" else ""
     text = KINDS.replace("KIND", kind).replace("END", end).replace(" KEYS", keys)
-    figures = [as_assembled(load("kinds.yaml", text), view) for view in ("x", "z", "30,20")]
+    figures = [make_assembly_figure(load("kinds.yaml", text), view) for view in ("x", "z", "30,20")]
     for figure in figures:
         found = [
             item for panel in figure.panels for item in panel.items if getattr(item, "name", "") == f"of_it: {kind}"
@@ -83,9 +83,9 @@ def test_every_kind_of_joint_has_its_symbol(kind: str, end: str) -> None:
 
 def test_the_symbols_follow_from_the_rows_of_joints() -> None:
     for kind in JOINTS.values():
-        assert turning(kind) in TURNS
-        assert kind.hold.asks in {"point", "distance", "curve", *HOLDS}
-    assert {name for row in (*TURNS.values(), *HOLDS.values()) for name in row} <= set(SYMBOLS)
+        assert find_turn_key(kind) in TURN_SYMBOLS
+        assert kind.hold.gap_type in {"point", "distance", "curve", *HOLD_SYMBOLS}
+    assert {name for row in (*TURN_SYMBOLS.values(), *HOLD_SYMBOLS.values()) for name in row} <= set(SYMBOLS)
     for draw in LINKS.values():
         for length in (20.0, 300.0):
             xs = [x for part in draw(length) for x, _ in part.points]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.machine_geometry.views import SceneView, view_of
+from heuncli.output.machine_geometry.views import SceneView, parse_view
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
@@ -43,7 +43,7 @@ def drawn(heun: Heun, spec: str, *words: str) -> tuple[PlottedPanel, list[str]]:
 
 def seen_from(spec: str, words: str) -> SceneView:
     """The view of a spec."""
-    return view_of(words, np.array(load(str(SPECS / f"{spec}.yaml")).gravity, dtype=np.float64))
+    return parse_view(words, np.array(load(str(SPECS / f"{spec}.yaml")).gravity, dtype=np.float64))
 
 
 def middle(panel: PlottedPanel, name: str) -> Array:
@@ -60,19 +60,19 @@ def test_joints_their_forces_and_centres_of_mass(heun: Heun, spec: str, view: st
     kinds = results_kinds(spec)
     checked = 0
     for name, joint in results["joints"].items():
-        place = seen.flat(np.array(joint["point"][k], dtype=np.float64))
+        place = seen.project(np.array(joint["point"][k], dtype=np.float64))
         if kinds[name] != "rod":
             assert np.abs(middle(panel, f"{name}: {kinds[name]}") - place).max() < 1.5 * panel.pixel, name
             checked += 1
         for line, tip in zip(panel.lines(f"force: {name}"), panel.areas(f"force: {name}"), strict=True):
-            force = seen.flat(np.array(joint["force"][k], dtype=np.float64))
+            force = seen.project(np.array(joint["force"][k], dtype=np.float64))
             assert np.abs(line[0] - place).max() < 1.5 * panel.pixel
             # the key tells how long an arrow is: its words stand at the key's tip
             scale = key_length(panel, words) if force.any() else 0.0
             assert np.abs(tip[0] - place - scale * force).max() < 0.01 * np.abs(scale * force).max() + panel.pixel, name
             checked += 1
     for name, body in results["bodies"].items():
-        centre = seen.flat(np.array(body["center"][k], dtype=np.float64))
+        centre = seen.project(np.array(body["center"][k], dtype=np.float64))
         for ring in panel.lines(f"{name}: centre of mass"):
             assert np.abs(ring[:-1].mean(axis=0) - centre).max() < 1.5 * panel.pixel, name
             checked += 1

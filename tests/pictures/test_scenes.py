@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.canvas import look_of
+from heuncli.output.drawing.canvas import make_terminal_style
 from heuncli.output.drawing.figure import Figure, PlaceLabel, Polygon, Strokes
-from heuncli.output.drawing.layout import laid_out
-from heuncli.output.drawing.letters import drawn
-from heuncli.output.drawing.picture import Text, svg
-from heuncli.output.drawing.words import HIGH, wide
-from heuncli.output.figures.courses import Pictured
-from heuncli.output.figures.scenes import as_assembled, scene
+from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.letters import draw_text
+from heuncli.output.drawing.picture import Text, to_svg
+from heuncli.output.drawing.words import HEIGHT_FACTOR, estimate_width
+from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.scenes import make_assembly_figure, make_scene_figure
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units
@@ -63,7 +63,7 @@ joints:
 
 def texts(figure: Figure) -> list[str]:
     """What is written in the drawing of a figure, which is well-formed and has no number that is none."""
-    text = svg(laid_out(figure))
+    text = to_svg(lay_out(figure))
     assert not re.search(r"\b(nan|inf)\b", text)
     return [e.text or "" for e in tree.fromstring(text.encode()).iter("{http://www.w3.org/2000/svg}text")]
 
@@ -79,43 +79,43 @@ def numbers_in(figure: Figure) -> Iterator[np.ndarray]:
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_spec_is_drawn(path: Path) -> None:
-    solved = solve(load(str(path)), Options(wanted=REPORTS))
-    source = Pictured("", solved)
-    figure = scene(source, Units())
+    solved = solve(load(str(path)), Options(requested_reports=REPORTS))
+    source = FigureSource("", solved)
+    figure = make_scene_figure(source, Units())
     written = texts(figure)
     names = [*solved.spec.bodies, *solved.spec.joints]
     told = " ".join(written)
     assert all(name in told for name in names)
-    if not solved.of_one_instant:  # from aside, later, and in letters
+    if not solved.has_one_instant:  # from aside, later, and in letters
         later = solved.results.time[[0, len(solved.results.time) // 2]]
-        assert texts(scene(source, Units(), later, "40,25"))
+        assert texts(make_scene_figure(source, Units(), later, "40,25"))
     for encoding in ("utf-8", "ascii"):
-        letters = drawn(figure, look_of(80, encoding, colours=False))
+        letters = draw_text(figure, make_terminal_style(80, encoding, has_colours=False))
         assert letters.replace("·", "").isascii() or encoding == "utf-8"  # that of N·m
         assert max(map(len, letters.splitlines())) <= 80 or "µ" in letters
     for points in numbers_in(figure):
         assert np.isfinite(points).all()
-    assert svg(laid_out(scene(source, Units()))) == svg(laid_out(figure))
+    assert to_svg(lay_out(make_scene_figure(source, Units()))) == to_svg(lay_out(figure))
 
 
 @pytest.mark.parametrize("path", SPECS[::4], ids=lambda path: path.stem)
 def test_no_words_of_labels_lie_on_each_other(path: Path) -> None:
-    figure = as_assembled(load(str(path)))
+    figure = make_assembly_figure(load(str(path)))
     names = {item.text for panel in figure.panels for item in panel.items if isinstance(item, PlaceLabel)}
-    shapes = [s for s in laid_out(figure).shapes if isinstance(s, Text) and s.halo and s.text in names]
-    boxes = [(t.x, t.y, t.x + wide(t.text, t.size), t.y + HIGH * t.size) for t in shapes]
+    shapes = [s for s in lay_out(figure).shapes if isinstance(s, Text) and s.has_halo and s.text in names]
+    boxes = [(t.x, t.y, t.x + estimate_width(t.text, t.size), t.y + HEIGHT_FACTOR * t.size) for t in shapes]
     for k, (a, b, c, d) in enumerate(boxes):
         for e, f, g, h in boxes[:k]:
             assert min(c, g) - max(a, e) < 1e-6 or min(d, h) - max(b, f) < 1e-6
 
 
 def test_a_scene_of_one_place_is_drawn() -> None:
-    written = texts(scene(Pictured("", study(POINT)), Units()))
+    written = texts(make_scene_figure(FigureSource("", study(POINT)), Units()))
     assert {"p", "q", "j", "k"} <= set(written)
 
 
 def test_what_reaches_far_beyond_the_joints_is_drawn_in_part() -> None:
-    figure = scene(Pictured("", study(PLATE)), Units())
+    figure = make_scene_figure(FigureSource("", study(PLATE)), Units())
     assert any("drawn in part, reaching farther: plate" in note for note in figure.notes)
     (panel,) = figure.panels
     assert panel.x.high - panel.x.low < 10.0
@@ -125,7 +125,7 @@ def test_what_reaches_far_beyond_the_joints_is_drawn_in_part() -> None:
 
 
 def test_a_body_without_shapes_at_one_place_is_drawn_as_its_inertia_unless_it_cannot_turn() -> None:
-    figure = scene(Pictured("", study(WHEEL)), Units())
+    figure = make_scene_figure(FigureSource("", study(WHEEL)), Units())
     outlines = {item.name: item.corners for item in figure.panels[0].items if isinstance(item, Polygon)}
     assert set(outlines) == {"wheel"}
     # a disc has m r^2/2 about its axis, an even ellipsoid m (a^2 + b^2)/5
@@ -144,15 +144,15 @@ def test_of_hundreds_of_bodies_names_are_left_out_and_it_is_said() -> None:
     ends = ["ground.O", *(f"b{k}.z" for k in range(count))]
     text += [f"  j{k}: {{type: ball, from: {ends[k]}, to: b{k}.a}}" for k in range(count)]
     path = "\n".join(text) + "\n"
-    figure = as_assembled(load("chain.yaml", path))
+    figure = make_assembly_figure(load("chain.yaml", path))
     assert any("200 bodies and 200 joints are too many" in note for note in figure.notes)
     assert not any(re.fullmatch(r"[bj]\d+", word) for word in texts(figure))
-    assert len(svg(laid_out(figure))) < 2_000 * count
+    assert len(to_svg(lay_out(figure))) < 2_000 * count
 
 
 def test_what_others_wrote_is_shown_and_never_markup() -> None:
     text = POINT.replace("one place", f"'{HOSTILE}'")
-    figure = scene(Pictured(HOSTILE, study(text)), Units())
-    source = svg(laid_out(figure))
+    figure = make_scene_figure(FigureSource(HOSTILE, study(text)), Units())
+    source = to_svg(lay_out(figure))
     assert "<script" not in source and "\u202e" not in source
     assert any('<script>alert(1)</script> & "x"' in word for word in texts(figure))

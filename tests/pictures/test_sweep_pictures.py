@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.shades import shade
+from heuncli.output.drawing.shades import find_shade
 from tests.shared.command import HANGING, Heun
 from tests.shared.plotted import SVG, PlottedPanel, panels_of, points_of, texts_of
 
@@ -69,7 +69,7 @@ def test_a_field_over_two(heun: Heun, swept: Heun, file: str) -> None:
     for (m, g), fill in cells:
         force = (m + 0.25) * (g + 4 / 3)  # the middle of a cell of 0.5 by 8/3
         share = (force - 1.0) / (27.0 - 1.0)
-        near = {shade(share + off) for off in np.linspace(-0.02, 0.02, 41)}
+        near = {find_shade(share + off) for off in np.linspace(-0.02, 0.02, 41)}
         assert fill in near
     levels = shades.x.values(np.array([shades.left, shades.right]))
     assert levels == pytest.approx([1.0, 27.0], abs=0.1)

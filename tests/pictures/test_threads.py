@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.machine_geometry.threads import threads_of
+from heuncli.output.machine_geometry.threads import make_threads
 from heuncli.scene.file_format.load import load
 
 SCENE = """heun: 1
@@ -45,7 +45,7 @@ def climb(line: np.ndarray) -> float:
 )
 def test_a_thread_moves_its_nut(tmp_path: Path, scene: str, pitch: float, ends: tuple[float, float]) -> None:
     (tmp_path / "a.yaml").write_text(scene)
-    ((body, (line,)),) = threads_of(load(tmp_path / "a.yaml")).items()
+    ((body, (line,)),) = make_threads(load(tmp_path / "a.yaml")).items()
     assert body == "spindle" and (line[0, 2], line[-1, 2]) == pytest.approx(ends)
     assert climb(line) == pytest.approx(pitch)
     assert np.ptp(np.hypot(line[:, 0], line[:, 1])) < 1e-12

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.output.machine_geometry.machine import machine_of
+from heuncli.output.machine_geometry.machine import make_machine
 from heuncli.scene.file_format.load import load
 
 SCENE = """
@@ -24,7 +24,7 @@ analysis: {duration: 1}
 
 def test_discs_and_balls() -> None:
     """All corners of a disc are as far from its axle as its rim, those of a ball from its centre."""
-    disc, ball, drum = machine_of(load("scene.yaml", SCENE)).bodies
+    disc, ball, drum = make_machine(load("scene.yaml", SCENE)).bodies
     ((rim,), (sphere,), (hull,)) = (body.surfaces for body in (disc, ball, drum))
     away = np.hypot(rim.corners[:, 0] - 0.1, rim.corners[:, 2])
     assert np.all(np.isclose(away, 0.3) | np.isclose(away, 0.0))

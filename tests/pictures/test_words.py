@@ -8,13 +8,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.canvas import Look
-from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, Upright
-from heuncli.output.drawing.layout import laid_out
-from heuncli.output.drawing.letters import drawn
+from heuncli.output.drawing.canvas import TerminalStyle
+from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, VerticalMark
+from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.letters import draw_text
 from heuncli.output.drawing.picture import Mark, Text
 from heuncli.output.drawing.room import WordBox
-from heuncli.output.drawing.words import BASE, HIGH, SMALL, wide
+from heuncli.output.drawing.words import BASE_FACTOR, HEIGHT_FACTOR, SMALL_SIZE, estimate_width
 
 NARROW = WordBox(86.0, 0.0, 794.0, 400.0)
 
@@ -27,7 +27,7 @@ def figure(seed: int, spots: int, uprights: int) -> Figure:
     at = np.sort(random.choice(300, spots))
     items = [
         *(
-            Upright(float(t), f"blow {k}", f"blow {k} at {t:.3g} s")
+            VerticalMark(float(t), f"blow {k}", f"blow {k} at {t:.3g} s")
             for k, t in enumerate(random.uniform(size=uprights))
         ),
         Trace("course", x, y),
@@ -39,29 +39,31 @@ def figure(seed: int, spots: int, uprights: int) -> Figure:
 
 def box(text: Text) -> WordBox:
     """Where a text stands."""
-    if text.turned:
-        top = text.y - wide(text.text, text.size)
-        return WordBox(text.x - BASE * text.size, top, text.x - BASE * text.size + HIGH * text.size, text.y)
-    top = text.y - BASE * text.size
-    return WordBox(text.x, top, text.x + wide(text.text, text.size), top + HIGH * text.size)
+    if text.is_vertical:
+        top = text.y - estimate_width(text.text, text.size)
+        return WordBox(
+            text.x - BASE_FACTOR * text.size, top, text.x - BASE_FACTOR * text.size + HEIGHT_FACTOR * text.size, text.y
+        )
+    top = text.y - BASE_FACTOR * text.size
+    return WordBox(text.x, top, text.x + estimate_width(text.text, text.size), top + HEIGHT_FACTOR * text.size)
 
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize(("spots", "uprights"), [(4, 3), (40, 20), (300, 80)])
 def test_words_stand_over_no_words_and_no_marks(seed: int, spots: int, uprights: int) -> None:
-    shapes = laid_out(figure(seed, spots, uprights)).shapes
-    words = [box(shape) for shape in shapes if isinstance(shape, Text) and shape.halo]
+    shapes = lay_out(figure(seed, spots, uprights)).shapes
+    words = [box(shape) for shape in shapes if isinstance(shape, Text) and shape.has_halo]
     marks = [WordBox(m.x - m.size, m.y - m.size, m.x + m.size, m.y + m.size) for m in shapes if isinstance(m, Mark)]
-    assert len(words) >= 4 and not any(a.meets(b) for a, b in combinations(words, 2))
-    assert not any(word.meets(mark) for word in words for mark in marks)
+    assert len(words) >= 4 and not any(a.overlaps(b) for a, b in combinations(words, 2))
+    assert not any(word.overlaps(mark) for word in words for mark in marks)
     assert all(NARROW.left <= word.left and word.right <= NARROW.right for word in words)
 
 
 @pytest.mark.parametrize("spots", [4, 60])
 def test_every_word_is_in_the_panel_or_told_below(spots: int) -> None:
-    texts = [shape for shape in laid_out(figure(1, spots, 4)).shapes if isinstance(shape, Text)]
-    inside = [text.text for text in texts if text.halo]
-    below = " ".join(text.text for text in texts if text.size == SMALL and not text.halo)
+    texts = [shape for shape in lay_out(figure(1, spots, 4)).shapes if isinstance(shape, Text)]
+    inside = [text.text for text in texts if text.has_halo]
+    below = " ".join(text.text for text in texts if text.size == SMALL_SIZE and not text.has_halo)
     lost = [k for k in range(spots) if not any(text.startswith(f"{k}: ") for text in inside)]
     told = [int(k) for k in re.findall(r"spot (\d+)", below)]
     more = int(found[1]) if (found := re.search(r"and (\d+) more", below)) else 0
@@ -73,15 +75,15 @@ def test_two_marks_at_one_place_have_their_words_apart() -> None:
     y = np.array([0.0, 1.0])
     spots = (Spot(0.0, 1.0, "127.96 at 0 s", 0), Spot(0.0, 1.0, "128.01 at 0 s", 1))
     panel = Panel(Scaling("t [s]", 0.0, 1.0), Scaling("force [N]", -1.0, 2.0), (Trace("a", y, y), *spots))
-    texts = [shape for shape in laid_out(Figure("", [], [panel])).shapes if isinstance(shape, Text) and shape.halo]
+    texts = [shape for shape in lay_out(Figure("", [], [panel])).shapes if isinstance(shape, Text) and shape.has_halo]
     assert {text.text for text in texts} == {"127.96 at 0 s", "128.01 at 0 s"}
-    assert not box(texts[0]).meets(box(texts[1]))
+    assert not box(texts[0]).overlaps(box(texts[1]))
 
 
 @pytest.mark.parametrize("braille", [True, False])
 @pytest.mark.parametrize("seed", range(4))
 def test_in_letters_words_stand_whole(seed: int, *, braille: bool) -> None:
-    shown = drawn(figure(seed, 12, 5), Look(100, braille, colours=False))
+    shown = draw_text(figure(seed, 12, 5), TerminalStyle(100, braille, has_colours=False))
     panel, _, below = shown.partition("for want of room")
     for k in range(5):
         assert f"blow {k}" in panel or f"blow {k} at" in below

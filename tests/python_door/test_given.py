@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 import heuncli
-from heuncli.scene.file_format.source import read
+from heuncli.scene.file_format.source import read_source
 from tests.shared.command import HANGING, SPEC_TEXTS
 from tests.shared.folders import SPECS
 
@@ -33,7 +33,7 @@ def test_a_path_a_text_and_a_mapping_are_the_same_scene(folder: Path) -> None:
 def test_every_worked_example_may_be_a_mapping() -> None:
     """As the reader of files reads it; the numbers are those of the file."""
     for path in [SPECS / "overhang.yaml", SPECS / "governor.yaml", SPECS / "trolley.yaml", SPECS / "door.yaml"]:
-        own, built = heuncli.solve(path), heuncli.solve(read(str(path), None).data)
+        own, built = heuncli.solve(path), heuncli.solve(read_source(str(path), None).data)
         assert own.paths() == built.paths() and built.as_dict()["spec"]["path"] == "<mapping>"
         assert all(np.array_equal(own[p].computed, built[p].computed, equal_nan=True) for p in own.paths())
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.results.results_schema import quantity
+from heuncli.results.results_schema import find_quantity
 from tests.shared.broken import FILES, head
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
@@ -29,7 +29,7 @@ def solved(path: Path, **asked: Any) -> heuncli.Solved:
 
 def leaves(node: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
     """The numbers of a JSON with the keys that lead to them."""
-    row = quantity(keys) if keys else None
+    row = find_quantity(keys) if keys else None
     if row is not None:
         yield from [(keys, node)] if row.units else []
     elif isinstance(node, dict):
@@ -106,7 +106,7 @@ def test_collectives_and_load_cases_are_those_of_the_command(heun: Heun) -> None
     words = ("--collective", "joints.main.force.y", "--slope", "5", "--format", "json")
     (block,) = json.loads(heun("run", str(path), *words).stdout)["collectives"].values()
     found = study.collective("joints.main.force.y", slopes=5)
-    assert block["cycles"] == found.total and block["equivalent"][0]["range"] == found.equivalents[0].range
+    assert block["cycles"] == found.total_cycles and block["equivalent"][0]["range"] == found.equivalents[0].range
     cases = study.load_cases("rod", at="peak:joints.big.force,0.01").cases
     assert cases[1].time == 0.01 and cases[0].time == study["joints.big.force"].largest().at
     force = sum(action.force for action in cases[1].actions if action.name == "big")

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -57,7 +57,7 @@ analysis: {{duration: 1, samples: 2}}
 @pytest.mark.parametrize("speed", PRINTED)
 def test_eigenvalues(speed: float) -> None:
     """Thirteen digits are printed after the point; heun's own error is told beside each."""
-    found = [mode for mode in modes(load("bicycle.yaml", bicycle(speed))).modes if mode.kind != "free"]
+    found = [mode for mode in compute_spec_modes(load("bicycle.yaml", bicycle(speed))).modes if mode.kind != "free"]
     printed = list(PRINTED[speed])
     assert len(found) == len(printed)
     for value in printed:
@@ -76,4 +76,4 @@ def test_a_leaning_bicycle_is_no_steady_motion() -> None:
     """It has no modes, and says so."""
     text = bicycle(5.0).replace("position: [0, 0, 0],", "orientation: {axis: [1, 0, 0], angle: 0.1},")
     with pytest.raises(SolveError, match="not-at-rest"):
-        modes(load("bicycle.yaml", text.replace(", initial: {angle: 0, rate: 0}", "")))
+        compute_spec_modes(load("bicycle.yaml", text.replace(", initial: {angle: 0, rate: 0}", "")))

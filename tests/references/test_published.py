@@ -14,10 +14,10 @@ from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipj, ellipk
 
 import heuncli.analyses.published.cases as cases
-from heuncli.analyses.published.cases import case_of, read
-from heuncli.analyses.published.compared import AGREES, COARSE, DIFFERS, OPEN, compared
-from heuncli.analyses.published.files import names, numbers_of, spec_of
-from heuncli.analyses.published.printed import printed
+from heuncli.analyses.published.cases import parse_case, read_case
+from heuncli.analyses.published.compared import AGREES, COARSE, DIFFERS, OPEN, compare_case
+from heuncli.analyses.published.files import list_names, numbers_of, spec_of
+from heuncli.analyses.published.printed import parse_decimal
 from heuncli.scene.file_format.load import load
 from tests.manual import proof
 from tests.shared.command import Heun
@@ -29,24 +29,24 @@ pytestmark = pytest.mark.heavy  # the numbers are those of both kernels
 SCHEMA = ROOT / "tests" / "cli" / "junit.xsd"
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_names())
 def test_every_number_agrees(name: str) -> None:
     """And none is told so loosely that it says nothing."""
     numbers = [one for table in compared_case(name) for one in table.numbers]
     assert {one.verdict for one in numbers} == {AGREES}
     for table in compared_case(name):
-        assert max(one.allowed for one in table.numbers) <= 6e-4 * table.largest
+        assert max(one.tolerance for one in table.numbers) <= 6e-4 * table.largest
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", list_names())
 def test_a_case_names_its_source_and_is_a_spec_to_read(name: str) -> None:
-    case, spec = case_of(name), load(f"{name}.yaml", spec_of(name))
-    assert spec.warnings == () and spec.title and len(case.about) <= 45
+    case, spec = read_case(name), load(f"{name}.yaml", spec_of(name))
+    assert spec.warnings == () and spec.title and len(case.description) <= 45
     assert len(case.source) > 40 and not spec.expect  # numbers stand once
     lines = spec_of(name).splitlines() + numbers_of(name).splitlines()
     assert max(map(len, lines)) <= 120
     for table in case.tables:
-        places = [(number.path, number.at) for number in table.numbers]
+        places = [(number.path, number.time) for number in table.numbers]
         assert len(set(places)) == len(places)
         assert all(numbers_of(name).splitlines()[one.line - 1].count(one.text) for one in table.numbers)
 
@@ -56,17 +56,21 @@ def test_a_falsified_digit_differs() -> None:
     (first, second) = compared_case("sdfast_leg")
     for k, one in enumerate((*first.numbers, *second.numbers)):
         step = -1 if k % 2 else 1
-        wrong = f"{one.printed.value + step * one.printed.last:.6f}"
-        text = numbers_of("sdfast_leg").replace(one.printed.text, wrong)
-        found = [each for table in compared(read("sdfast_leg", text, spec_of("sdfast_leg"))) for each in table.numbers]
+        wrong = f"{one.published.value + step * one.published.last_digit:.6f}"
+        text = numbers_of("sdfast_leg").replace(one.published.text, wrong)
+        found = [
+            each
+            for table in compare_case(parse_case("sdfast_leg", text, spec_of("sdfast_leg")))
+            for each in table.numbers
+        ]
         assert [each.number.path for each in found if each.verdict == DIFFERS] == [one.number.path]
 
 
 def test_what_is_open_or_coarse_does_not_agree() -> None:
     text = "about: a\nsource: b\ntables:\n  - {where: c, kind: printed, at: 0, of: {joints.P0.force.x: 0.4}}\n"
-    assert compared(read("bricard", text, spec_of("bricard")))[0].worst.verdict == OPEN
+    assert compare_case(parse_case("bricard", text, spec_of("bricard")))[0].worst.verdict == OPEN
     loose = spec_of("point_pendulum").replace("tolerance: 1e-12", "tolerance: 1e-5")
-    found = compared(read("point_pendulum", numbers_of("point_pendulum"), loose))
+    found = compare_case(parse_case("point_pendulum", numbers_of("point_pendulum"), loose))
     assert {one.verdict for table in found for one in table.numbers} == {COARSE}
 
 
@@ -74,15 +78,15 @@ def test_what_is_open_or_coarse_does_not_agree() -> None:
     ("text", "last", "digits"), [("0.3284", 1e-4, 4), ("-.5e-4", 1e-5, 1), ("784.0", 0.1, 4), ("1.5e3", 100.0, 2)]
 )
 def test_how_many_digits_were_printed(text: str, last: float, digits: int) -> None:
-    found = printed(text)
-    assert (found.value, found.digits) == (float(text), digits)
-    assert math.isclose(found.last, last)
+    found = parse_decimal(text)
+    assert (found.value, found.digit_count) == (float(text), digits)
+    assert math.isclose(found.last_digit, last)
 
 
 @pytest.mark.parametrize("text", ["one", "0x10", "", ".", "1e", "1,5", "nan"])
 def test_what_is_no_printed_number(text: str) -> None:
     with pytest.raises(ValueError, match="no decimal number"):
-        printed(text)
+        parse_decimal(text)
 
 
 # Formulas, evaluated by other means
@@ -120,7 +124,7 @@ def test_the_windows_numbers() -> None:
 def test_the_chimney_s_numbers() -> None:
     """S, P and M of the paper, with m = H = 1; M here bends the other way."""
     places = {"base": 0.0, "third": 1 / 3, "half": 0.5, "two_thirds": 2 / 3}
-    for table, degrees in zip(case_of("chimney").tables, (30, 60, 90), strict=True):
+    for table, degrees in zip(read_case("chimney").tables, (30, 60, 90), strict=True):
         s, c = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
         for number in table.numbers:
             _, section, what = number.path.split(".")
@@ -130,7 +134,7 @@ def test_the_chimney_s_numbers() -> None:
                 "N": -0.5 * 9.81 * (1 - x) * ((5 + 3 * x) * c - 3 * (1 + x)),
                 "M2": -0.25 * 9.81 * s * x * (1 - x) ** 2,
             }[what]
-            assert abs(printed(number.text).value - own) <= 0.501 * printed(number.text).last + 1e-15
+            assert abs(parse_decimal(number.text).value - own) <= 0.501 * parse_decimal(number.text).last_digit + 1e-15
 
 
 # The command
@@ -139,13 +143,15 @@ def test_the_chimney_s_numbers() -> None:
 def test_all_of_them_and_how_they_are_told(heun: Heun, folder: Path) -> None:
     done = heun("check", "--references", "--junit", "report.xml", "--durations", "2")
     assert done.returncode == 0
-    assert [line.split()[0] for line in done.stdout.splitlines()[1:-1]] == [*names()]
-    assert done.stdout.splitlines()[-1].startswith(f"{len(names())} cases, ")
+    assert [line.split()[0] for line in done.stdout.splitlines()[1:-1]] == [*list_names()]
+    assert done.stdout.splitlines()[-1].startswith(f"{len(list_names())} cases, ")
     assert max(map(len, done.stdout.splitlines())) <= 150 and "slowest 2" in done.stderr
     xmlschema.XMLSchema(str(SCHEMA)).validate(str(folder / "report.xml"))
     suites = list(JUnitXml.fromfile(str(folder / "report.xml")))
-    assert [suite.name for suite in suites] == [f"heuncli/analyses/published/numbers/{name}.yaml" for name in names()]
-    numbers = [one for name in names() for table in compared_case(name) for one in table.numbers]
+    assert [suite.name for suite in suites] == [
+        f"heuncli/analyses/published/numbers/{name}.yaml" for name in list_names()
+    ]
+    numbers = [one for name in list_names() for table in compared_case(name) for one in table.numbers]
     assert sum(len(list(suite)) for suite in suites) == len(numbers) + len(suites)
 
 
@@ -198,7 +204,7 @@ def test_what_does_not_go_together(heun: Heun, words: list[str], said: str) -> N
 
 def test_its_spec_is_handed_out(heun: Heun, folder: Path) -> None:
     listed = heun("new").stdout
-    assert all(f"\n{name} " in listed for name in names())
+    assert all(f"\n{name} " in listed for name in list_names())
     assert heun("new", "sdfast_leg").returncode == 0
     done = heun("run", "sdfast_leg.yaml", "--axes", "to", "--measure", "joints.knee.force.y", "--case", "level")
     assert abs(float(done.stdout) - 11.035987) <= 5e-7

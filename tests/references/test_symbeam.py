@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.analyses.published.cases import case_of
+from heuncli.analyses.published.cases import read_case
 from heuncli.analyses.published.files import spec_of
 from heuncli.output.figures.bars import WholeBar
-from heuncli.output.figures.courses import Pictured
-from heuncli.output.figures.diagrams import diagrams
+from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
 from tests.shared.drawn_panels import heights, panels, upright_at
@@ -54,7 +54,7 @@ def valued(text: str, x: np.ndarray | float = 0.0) -> np.ndarray:
 def spans() -> dict[int, list[Span]]:
     """Of each example its stretches."""
     found: dict[int, list[Span]] = {}
-    for table in case_of("beams").tables:
+    for table in read_case("beams").tables:
         if (where := WHERE.fullmatch(table.where)) is not None:
             low, high = (float(valued(text)) for text in where.groups()[1:])
             found.setdefault(int(where[1]), []).append(Span(low, high, *(number.text for number in table.numbers)))
@@ -81,7 +81,7 @@ def test_all_of_them_are_looked_at() -> None:
 def test_shear_and_moment_all_along(number: int) -> None:
     """Anywhere along each beam, on both sides of what acts there."""
     for name, a, b in parts(number):
-        own = WholeBar(beams(), name).at(0.0)
+        own = WholeBar(beams(), name).make_lines(0.0)
         size = {"Q1": 40.0, "M2": 100.0}
         for span in spans()[number]:
             inside = (own["Q1"].s + a > span.low + 1e-9) & (own["Q1"].s + a < span.high - 1e-9)
@@ -95,7 +95,7 @@ def test_shear_and_moment_all_along(number: int) -> None:
 def test_what_is_drawn_is_that(number: int) -> None:
     """Read back from the SVG: every curve to half a pixel, and upright lines where V or M jumps."""
     for name, a, b in parts(number):
-        drawn = {p.label[:2]: p for p in panels(diagrams([Pictured("", beams())], [name], Units({})))}
+        drawn = {p.label[:2]: p for p in panels(make_diagrams([FigureSource("", beams())], [name], Units({})))}
         for quantity, of in (("Q1", "V"), ("M2", "M")):
             inside = [span for span in spans()[number] if span.low < b - 1e-9 and span.high > a + 1e-9]
             x = {span: np.linspace(max(span.low, a), min(span.high, b), 203)[1:-1] for span in inside}

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from heuncli.output.snapshots import searches
-from heuncli.output.tables.cut_runs import extremes_of_samples, one_source, runs_of
-from heuncli.output.tables.page import Page, page_of
+from heuncli.output.tables.cut_runs import collect_runs, find_sample_extremes, merge_extremes
+from heuncli.output.tables.page import Page, make_page
 from heuncli.output.tables.text_table import TextTable
-from heuncli.results.results import Array, Extremes, Place
+from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import peak
+from heuncli.study.ask.measure import find_peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search import stretches
 from heuncli.study.workflow import solve
 
@@ -44,10 +44,10 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
     path = tmp_path_factory.mktemp("bar") / "bar.yaml"
     path.write_text(SPEC)
     spec = load(str(path))
-    study = solve(spec, Options(wanted=SECTIONS))
-    page = page_of(study.results, labels_of(spec), study.magnitudes)
-    found = searches.rows(page, study, SECTIONS)
-    return study, page._replace(along_runs=searches.along_runs(page, study)), found
+    study = solve(spec, Options(requested_reports=SECTIONS))
+    page = make_page(study.results, make_labels(spec), study.magnitudes)
+    found = searches.search_rows(page, study, SECTIONS)
+    return study, page._replace(run_extremes=searches.search_runs(page, study)), found
 
 
 def cells(table: TextTable) -> list[tuple[str, ...]]:
@@ -57,14 +57,14 @@ def cells(table: TextTable) -> list[tuple[str, ...]]:
 @pytest.mark.heavy
 def test_at_each_cut_stand_the_extremes_of_the_motion(solved: tuple[Study, Page, Extremes]) -> None:
     study, page, _ = solved
-    (run,) = runs_of(page.results, page.labels)
-    found = page.along_runs["bar"].cuts
+    (run,) = collect_runs(page.results, page.labels)
+    found = page.run_extremes["bar"].cuts
     assert found is not None
     for i, own in enumerate(run.quantities):
         name = f"sections.bar.stress.{own.name}" if own in run.stresses else f"sections.bar.{own.name}"
         for cut in (0, 2):
             for bound, how in ((found.low, "min"), (found.high, "max")):
-                expected = own.size * peak(study, f"{name}.{cut}", how).value
+                expected = own.size * find_peak(study, f"{name}.{cut}", how).value
                 scale = max(abs(expected), own.size * 1e-6)
                 assert bound[i * len(run.s) + cut] == pytest.approx(expected, abs=1e-8 * scale), (name, cut, how)
 
@@ -73,7 +73,7 @@ def test_at_each_cut_stand_the_extremes_of_the_motion(solved: tuple[Study, Page,
 def test_head_and_rows_are_of_one_source(solved: tuple[Study, Page, Extremes]) -> None:
     """The root carries m g + m L w^2 / 2 at the lowest point, w^2 = m g L / 2 over the moment of inertia."""
     _, page, found = solved
-    head, rows = page.extremes(found)
+    head, rows = page.make_tables_of_extremes(found)
     weight = 9.81 * 7850.0 * math.pi * 1e-4
     most = weight * (1.0 + 0.25 / (1.0 / 3.0 + 0.25e-4))
     bounds = {row[0]: row for row in cells(head)}
@@ -92,20 +92,20 @@ def test_the_better_of_two_searches_stands_in_both() -> None:
     """3.1 of the cut against 3.0 of the stretch there; at the other end the stretch has the better one."""
     from tests.shared.fakes import LABELS, pendulum
 
-    (run,) = runs_of(pendulum(np.linspace(0.0, 1.0, 3)), LABELS)
+    (run,) = collect_runs(pendulum(np.linspace(0.0, 1.0, 3)), LABELS)
     run = run._replace(quantities=run.quantities[:1], values=run.values[:1])
     one = np.zeros(1, dtype=np.intp)
-    ends = Extremes(np.array([-2.0]), np.array([0.5]), one, np.array([3.0]), np.array([0.6]), one, searched=True)
-    places = ((Place(0.0, None, 0), Place(0.2, None, 1)),)
-    at = extremes_of_samples(np.array([0.1, 0.2]), np.array([[-1.9, -1.0, 0.0, 0.0, 0.0], [-1.5, 3.1, 0.0, 0.0, 0.0]]))
-    whole, where, cuts = one_source(run, np.arange(5), ends, places, at)
+    ends = Extremes(np.array([-2.0]), np.array([0.5]), one, np.array([3.0]), np.array([0.6]), one, is_searched=True)
+    places = ((CutPosition(0.0, None, 0), CutPosition(0.2, None, 1)),)
+    at = find_sample_extremes(np.array([0.1, 0.2]), np.array([[-1.9, -1.0, 0.0, 0.0, 0.0], [-1.5, 3.1, 0.0, 0.0, 0.0]]))
+    whole, where, cuts = merge_extremes(run, np.arange(5), ends, places, at)
     assert (whole.high[0], whole.high_at[0], where[0][1].cut) == (3.1, 0.2, 1)
     assert (whole.low[0], cuts.low[0]) == (-2.0, -2.0)
 
 
 def test_of_too_many_numbers_the_samples_stand(solved: tuple[Study, Page, Extremes]) -> None:
     _, page, found = solved
-    _, rows = page._replace(along_runs={}).extremes(found)
+    _, rows = page._replace(run_extremes={}).make_tables_of_extremes(found)
     assert "in 4 samples" in rows.notes[0]
 
 
@@ -144,8 +144,8 @@ def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(stretches, "cut_at", counted)
     found = solve(load("box.yaml", LOADED_BOX), Options())
-    run = next(iter(runs_of(found.results, labels_of(found.spec))))
-    told = searches.of_run(run, page_of(found.results, labels_of(found.spec), found.magnitudes), found).stresses
+    run = next(iter(collect_runs(found.results, make_labels(found.spec))))
+    told = searches.search_run(run, make_page(found.results, make_labels(found.spec), found.magnitudes), found).stresses
     assert told is not None
-    assert told.places[-1][1] == Place(0.0, "beyond", 0)  # of the utilisation
+    assert told.places[-1][1] == CutPosition(0.0, "beyond", 0)  # of the utilisation
     assert sum(asked) < 2000

@@ -11,12 +11,12 @@ import pytest
 
 from heuncli.app.cli.entry import enter
 from heuncli.output.tables.export import to_csv
-from heuncli.output.tables.page import Page, page_of
+from heuncli.output.tables.page import Page, make_page
 from heuncli.output.tables.text_table import TextTable
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
@@ -26,8 +26,8 @@ WANTED = frozenset({"foundation", "joints", "sections", "shares"})
 
 def study_of(name: str) -> tuple[Study, Page]:
     spec = load(str(SPECS / f"{name}.yaml"))
-    made = solve(spec, Options(wanted=WANTED))
-    return made, page_of(made.results, labels_of(spec), made.magnitudes)
+    made = solve(spec, Options(requested_reports=WANTED))
+    return made, make_page(made.results, make_labels(spec), made.magnitudes)
 
 
 def by_cause(tables: list[TextTable]) -> list[TextTable]:
@@ -44,9 +44,11 @@ def rows_of(table: TextTable) -> list[dict[str, str]]:
 def test_extremes_say_who_is_responsible() -> None:
     """The shares at the instant of each extreme add up to it, in every row but for the last digit of each."""
     made, page = study_of("crane_load")
-    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), page.along)
-    extremes = made.extremes(searched, WANTED - {"shares"}, whole=True)
-    tables = page.extremes(extremes, made)
+    searched = ColumnSearch(
+        page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), page.run_columns
+    )
+    extremes = made.search_extremes(searched, WANTED - {"shares"}, whole=True)
+    tables = page.make_tables_of_extremes(extremes, made)
     found = by_cause(tables)
     assert [table.heading.split(" BY CAUSE")[0] for table in found] == ["FOUNDATION", "JOINTS", "SECTION along jib"]
     for table in found:
@@ -57,7 +59,7 @@ def test_extremes_say_who_is_responsible() -> None:
             assert float(row["sum"]) == float(row["total"])
             off = abs(sum(float(row[c]) for c in causes) - float(row["total"]))
             assert off <= (len(causes) + 1) * 0.5 * 10.0**-decimals * (1.0 + 1e-9), row
-    plain_tables = page.extremes(extremes)
+    plain_tables = page.make_tables_of_extremes(extremes)
     assert by_cause(plain_tables) == []
     (joints,) = (table for table in plain_tables if table.heading.startswith("JOINTS"))
     assert {row[0] for row in joints.rows if not isinstance(row, str)} >= {"tension", "|F|"}  # and no shares among them
@@ -65,7 +67,7 @@ def test_extremes_say_who_is_responsible() -> None:
 
 def test_one_instant_has_a_line_a_number_with_what_is_direct() -> None:
     made, page = study_of("door")
-    found = by_cause(page.instants(made.results, shares=made))
+    found = by_cause(page.make_tables_at_instants(made.results, shares=made))
     base = {row["label"]: row for row in reversed(rows_of(found[0]))}  # the total stands before the supports
     assert float(base["Fz"]["gravity"]) == float(base["Fz direct"]["gravity"]) == -49.05
     assert base["Fz direct"]["total"] == ""
@@ -77,14 +79,14 @@ def test_one_instant_has_a_line_a_number_with_what_is_direct() -> None:
 def test_csv_has_a_column_cause_where_shares_are_told() -> None:
     made, _ = study_of("double")
     spec = made.spec
-    rows = list(csv.DictReader(io.StringIO(to_csv(made.results, labels_of(spec)))))
+    rows = list(csv.DictReader(io.StringIO(to_csv(made.results, make_labels(spec)))))
     own = [row for row in rows if (row["kind"], row["name"], row["quantity"], row["component"]) ==
            ("joints", "elbow", "force", "z") and row["time"] == "0.5"]  # fmt: skip
     assert [row["cause"] for row in own] == ["", "gravity", "drives", "motion"]
     whole, *shares = (float(row["value"]) for row in own)
     assert sum(shares) == pytest.approx(whole, rel=1e-12)
-    without = solve(spec, Options(wanted=WANTED - {"shares"})).results
-    assert to_csv(without, labels_of(spec)).splitlines()[0] == "time,kind,name,quantity,component,unit,value"
+    without = solve(spec, Options(requested_reports=WANTED - {"shares"})).results
+    assert to_csv(without, make_labels(spec)).splitlines()[0] == "time,kind,name,quantity,component,unit,value"
 
 
 def test_many_causes_are_told_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -135,7 +137,7 @@ def test_shares_have_errors_of_their_own() -> None:
     for kind in ("reactions", "foundation", "sections"):
         for unit in ("N", "N·m"):
             assert (f"{kind} by cause", unit) in made.magnitudes.errors
-            assert np.isfinite(page.certain.error(f"{kind} by cause", unit))
+            assert np.isfinite(page.certain.error_of(f"{kind} by cause", unit))
 
 
 def test_couplings_are_told_by_cause(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,25 +11,25 @@ import pytest
 
 from heuncli.analyses.charting.results import (
     KINDS,
-    ChartedRun,
     ChartResults,
     ChartRow,
-    shown,
-    with_front,
+    ChartRun,
+    mark_front,
+    round_as_shown,
 )  # fmt: skip
 from heuncli.app.commands.charting import page as report
-from heuncli.app.commands.charting.letters import draw, letters
-from heuncli.app.commands.charting.scale import Scale, scales
+from heuncli.app.commands.charting.letters import assign_letters, draw_text_chart
+from heuncli.app.commands.charting.scale import Scale, choose_scales
 from heuncli.base.records import replace
 from heuncli.base.tolerances import LOST
-from heuncli.output.tables.export import dump
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, plain
+from heuncli.output.tables.export import dump_json
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, format_plain
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 
 
-def front(*runs: ChartedRun) -> list[bool]:
-    return [each.front for each in with_front(runs)]
+def front(*runs: ChartRun) -> list[bool]:
+    return [each.front for each in mark_front(runs)]
 
 
 def test_the_front_is_what_no_other_run_beats() -> None:
@@ -49,7 +49,7 @@ def test_equal_times_are_decided_by_the_error_and_equal_errors_by_the_time() -> 
 
 def test_times_and_errors_that_read_the_same_are_ties_decided_by_evaluations() -> None:
     a, b = run("A", 1.01e-3, 1.04e-6, 120), run("B", 1.04e-3, 0.96e-6, 100)
-    assert shown(a.seconds or 0.0) == shown(b.seconds or 0.0)
+    assert round_as_shown(a.seconds or 0.0) == round_as_shown(b.seconds or 0.0)
     assert front(a, replace(b, error={**b.error, "motion": 1.02e-6})) == [False, True]
     assert front(run("A", 1.0, 1e-6), run("B", 1.0, 1e-6)) == [True, False]  # equal in all: the first
 
@@ -64,21 +64,21 @@ def test_a_single_run_is_the_front() -> None:
 
 
 def test_what_the_reference_does_not_tell_apart_is_a_bound() -> None:
-    error, bounded = REFERENCE.judged({"motion": 0.5e-13, "reactions": 1e-9, "sections": None})
+    error, bounded = REFERENCE.to_errors({"motion": 0.5e-13, "reactions": 1e-9, "sections": None})
     assert error == {"motion": 2e-13, "reactions": 1e-9, "sections": None} and bounded == {"motion"}
-    error, bounded = REFERENCE.judged({"motion": 1.5e-13, "reactions": 2e-13, "sections": 1.0})
+    error, bounded = REFERENCE.to_errors({"motion": 1.5e-13, "reactions": 2e-13, "sections": 1.0})
     assert error == {"motion": 2e-13, "reactions": 4e-13, "sections": None} and bounded == {"reactions"}
 
 
 def table(made: ChartResults) -> str:
-    return "".join(plain(part, WIDTH) for part in fit(report.table(made), WIDTH))
+    return "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(report.make_table(made), DEFAULT_WIDTH))
 
 
 def test_the_table_marks_the_front_bounds_and_failures_within_a_page() -> None:
-    known = replace(run("DOP853", 2e-3, 2e-13), bounded=frozenset({"motion"}))
+    known = replace(run("DOP853", 2e-3, 2e-13), upper_bounds=frozenset({"motion"}))
     text = table(chart(FAILS, TOO_LONG, run("DOP853", 1e-3, 1.5e-6), known))
     lines = text.splitlines()
-    assert max(map(len, lines)) <= WIDTH
+    assert max(map(len, lines)) <= DEFAULT_WIDTH
     assert any("0.01 s" in line and "fails at t = 0.25 s [not-a-number]" in line for line in lines)
     assert "  [not-a-number] Euler: no finite acceleration exists beyond this instant" in lines
     assert any("1e-9 s" in line.replace("1e-09", "1e-9") and "not run: about 2e9 steps" in line for line in lines)
@@ -88,8 +88,8 @@ def test_the_table_marks_the_front_bounds_and_failures_within_a_page() -> None:
 
 
 def test_json_keeps_to_the_contract() -> None:
-    found = json.loads(dump(report.block(chart(FAILS, run("DOP853", 1e-3, 1.5e-6)))))
-    assert found["reference"] == REFERENCE.words
+    found = json.loads(dump_json(report.to_block(chart(FAILS, run("DOP853", 1e-3, 1.5e-6)))))
+    assert found["reference"] == REFERENCE.description
     failed, done = found["runs"]
     assert done["tolerance"] == 1e-6 and "step" not in done and done["seconds"] == 1e-3 and done["front"] is True
     assert done["error"] == {"motion": 1.5e-6, "reactions": 3e-6, "sections": None} and done["status"] == "completed"
@@ -109,50 +109,50 @@ def test_csv_has_a_line_a_run() -> None:
 
 def test_letters_stand_where_time_and_error_say() -> None:
     made = chart(run("A", 1e-3, 1e-4), run("A", 1e-2, 1e-8), run("B", 1e-1, 1e-4), FAILS)
-    text = draw(made, 80)
+    text = draw_text_chart(made, 80)
     lines = text.splitlines()
     assert all(len(line) <= 80 for line in lines)
     row = {line.split("|")[0].strip(): line.partition("|")[2] for line in lines if "|" in line}
     assert row["1e-4"].index("A") < row["1e-8"].index("A") < row["1e-4"].index("b")
-    assert "c" in row["failed"] and letters(made) == {"A": "a", "B": "b", "Euler": "c"}
+    assert "c" in row["failed"] and assign_letters(made) == {"A": "a", "B": "b", "Euler": "c"}
     assert "a A, b B, c Euler" in text and "1 ms" in text and "10 ms" in text
 
 
 def test_points_of_several_methods_in_one_place_are_told() -> None:
-    text = draw(chart(run("A", 1e-3, 1e-4), run("B", 1.001e-3, 1.001e-4), run("A", 1e-4, 1e-5)), 80)
+    text = draw_text_chart(chart(run("A", 1e-3, 1e-4), run("B", 1.001e-3, 1.001e-4), run("A", 1e-4, 1e-5)), 80)
     assert "+" in "".join(line.partition("|")[2] for line in text.splitlines())
 
 
 @pytest.mark.parametrize("error", [1e300, 50.0])
 def test_what_is_lost_stands_at_the_border(error: float) -> None:
     made = chart(run("A", 1e-3, error), run("A", 1e-2, 1e-8))
-    assert scales(made)[1].high == math.log10(LOST)
-    assert draw(made, 80).splitlines()[0].split("|")[0].strip() == "1"
+    assert choose_scales(made)[1].high == math.log10(LOST)
+    assert draw_text_chart(made, 80).splitlines()[0].split("|")[0].strip() == "1"
 
 
 def test_a_chart_of_failures_alone_can_be_drawn() -> None:
     made = chart(FAILS, TOO_LONG)
-    assert "failed" in draw(made) and "fails at t = 0.25 s [" in table(made)
+    assert "failed" in draw_text_chart(made) and "fails at t = 0.25 s [" in table(made)
 
 
 def test_scales_hold_their_values() -> None:
     scale = Scale(-3.0, 1.0)
-    assert scale.at(1e-3) == 0.0 and scale.at(10.0) == 1.0 and scale.at(0.1) == 0.5
-    assert scale.at(0.0) == 0.0 and scale.at(math.inf) == 1.0
-    assert scale.decades == [1e-3, 1e-2, 1e-1, 1.0, 10.0] and scale.between == []
-    assert Scale(-0.5, 0.5).between == [0.5, 0.7, 2.0, 3.0]
+    assert scale.locate(1e-3) == 0.0 and scale.locate(10.0) == 1.0 and scale.locate(0.1) == 0.5
+    assert scale.locate(0.0) == 0.0 and scale.locate(math.inf) == 1.0
+    assert scale.decades == [1e-3, 1e-2, 1e-1, 1.0, 10.0] and scale.minor_ticks == []
+    assert Scale(-0.5, 0.5).minor_ticks == [0.5, 0.7, 2.0, 3.0]
 
 
 def test_rows_of_a_method_that_tell_the_same_are_one() -> None:
     rows = (ChartRow("BDF", "quaternion", False, local) for local in (1e-4, 1e-6, 1e-8))
     refused = [replace(TOO_LONG, row=row, code="method-scene", reason="no stops") for row in rows]
-    text = plain(report.table(chart(run("A", 1e-3, 1e-6), *refused, FAILS)))
+    text = format_plain(report.make_table(chart(run("A", 1e-3, 1e-6), *refused, FAILS)))
     assert "     1e-4 to 1e-8 " in text and text.count("not run: no stops") == 1 and "1e-6 " in text
-    assert json.loads(dump(report.block(chart(*refused))))["runs"][2]["reason"] == "no stops"
+    assert json.loads(dump_json(report.to_block(chart(*refused))))["runs"][2]["reason"] == "no stops"
 
 
 @pytest.mark.parametrize(
     ("seconds", "told"), [(4.816e-4, "0.482"), (0.0123, "12.3"), (1.6349, "1630"), (0.99951, "1000"), (123.0, "123000")]
 )
 def test_times_have_three_digits_and_no_power_of_ten(seconds: float, told: str) -> None:
-    assert report.milliseconds(seconds) == told
+    assert report.format_milliseconds(seconds) == told

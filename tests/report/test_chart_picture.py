@@ -8,13 +8,13 @@ from random import Random
 
 import pytest
 
-from heuncli.app.commands.charting.labels import LabelBox, crosses, inside, placed
-from heuncli.app.commands.charting.picture import picture, stacked
+from heuncli.app.commands.charting.labels import LabelBox, crosses, is_inside, place_labels
+from heuncli.app.commands.charting.picture import assign_levels, draw_figure
 from heuncli.base.errors import HeunError
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.records import replace
 from heuncli.output.drawing import matplotlib_file
-from heuncli.output.drawing.picture import Line, Mark, Picture, Text, svg
+from heuncli.output.drawing.picture import Line, Mark, Text, VectorDrawing, to_svg
 from tests.shared.fake_charts import FAILS, TOO_LONG, chart, run
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -32,7 +32,7 @@ def parsed(text: str) -> tree.Element:
 
 
 def test_it_is_xml_with_its_text_as_text() -> None:
-    root = parsed(svg(picture(MANY)))
+    root = parsed(to_svg(draw_figure(MANY)))
     texts = [e.text or "" for e in root.iter(f"{SVG}text")]
     assert root.findtext(f"{SVG}title") == "A scene: speed against accuracy"
     assert set(METHODS) <= set(texts) and "A scene" in texts and any("agree: motion to 1e-13" in t for t in texts)
@@ -40,25 +40,25 @@ def test_it_is_xml_with_its_text_as_text() -> None:
 
 
 def test_nothing_comes_from_outside() -> None:
-    text = svg(picture(MANY))
+    text = to_svg(draw_figure(MANY))
     assert "script" not in text and "href" not in text and "@font" not in text and "url(" not in text
     assert text.count("http") == 1  # the name of the format
 
 
 def test_it_is_the_same_every_time() -> None:
-    assert svg(picture(MANY)) == svg(picture(MANY))
+    assert to_svg(draw_figure(MANY)) == to_svg(draw_figure(MANY))
 
 
 @pytest.mark.parametrize("title", ["a < b & c > d", "bell \x07, quote \" and ' ", "Ökonomie µ × é", "", "w" * 300])
 def test_any_title_is_held(title: str) -> None:
     made = replace(MANY, title=title)
-    root = parsed(svg(picture(made)))
+    root = parsed(to_svg(draw_figure(made)))
     told = root.findtext(f"{SVG}title") or ""
-    assert told.startswith(shown(title))
+    assert told.startswith(escape(title))
 
 
 def test_all_shapes_lie_in_the_drawing() -> None:
-    made = picture(MANY)
+    made = draw_figure(MANY)
     for shape in made.shapes:
         at = shape.points if isinstance(shape, Line) else [(shape.x, shape.y)]
         assert all(0.0 <= x <= made.width and 0.0 <= y <= made.height for x, y in at)
@@ -66,16 +66,16 @@ def test_all_shapes_lie_in_the_drawing() -> None:
 
 def test_each_method_has_dashes_or_markers_of_its_own() -> None:
     looks = set()
-    shapes = picture(MANY).shapes
+    shapes = draw_figure(MANY).shapes
     marks = [s for s in shapes if isinstance(s, Mark)]
     for line in (s for s in shapes if isinstance(s, Line) and len(s.points) == 5 and s.width == 1.6):
-        own = {(m.shape, m.filled) for m in marks if (m.x, m.y) in line.points}
+        own = {(m.shape, m.is_filled) for m in marks if (m.x, m.y) in line.points}
         looks.add((line.dash, *sorted(own)[0]))
     assert len(looks) == len(METHODS)
 
 
 def test_failures_are_crosses_above_the_field_with_their_reasons() -> None:
-    shapes = picture(MANY).shapes
+    shapes = draw_figure(MANY).shapes
     texts = [s.text for s in shapes if isinstance(s, Text)]
     assert any(t.startswith("× 1  Euler, step 0.01 s: fails at t = 0.25 s: no finite") for t in texts)
     assert any(t.startswith("× 2  Euler, step") and "not run: about 2e9 steps" in t for t in texts)
@@ -84,11 +84,11 @@ def test_failures_are_crosses_above_the_field_with_their_reasons() -> None:
     strokes = [s for s in shapes if isinstance(s, Line) and len(s.points) == 2 and s.width == 1.6]
     assert len(strokes) == 4 and all(y < top for s in strokes for _, y in s.points)
     without = chart(run("A", 1e-3, 1e-4))
-    assert not any("×" in s.text for s in picture(without).shapes if isinstance(s, Text))
+    assert not any("×" in s.text for s in draw_figure(without).shapes if isinstance(s, Text))
 
 
 def test_the_front_is_one_heavy_line_from_fast_to_accurate() -> None:
-    heavy = [s for s in picture(MANY).shapes if isinstance(s, Line) and s.width > 5.0]
+    heavy = [s for s in draw_figure(MANY).shapes if isinstance(s, Line) and s.width > 5.0]
     assert len(heavy) == 1
     assert all(a[0] < b[0] and a[1] < b[1] for a, b in pairwise(heavy[0].points))
     assert len(heavy[0].points) == sum(each.front for each in MANY.runs)
@@ -111,12 +111,12 @@ def lines(seed: int, count: int, ending: bool) -> list[tuple[str, list[tuple[flo
 @pytest.mark.parametrize("seed", range(4))
 def test_no_name_stands_over_another(seed: int, count: int, ending: bool) -> None:
     given = lines(seed, count, ending)
-    found = placed(given, FIELD, 12.0)
+    found = place_labels(given, FIELD, 12.0)
     assert sorted(label.text for label in found) == sorted(text for text, _ in given)
-    assert not any(a.box.meets(b.box) for a, b in combinations(found, 2))
+    assert not any(a.box.overlaps(b.box) for a, b in combinations(found, 2))
     for label in found:
         own = dict(given)[label.text]
-        assert label.to in own if label.to is not None else inside(label.box, FIELD)
+        assert label.anchor in own if label.anchor is not None else is_inside(label.box, FIELD)
         assert label.box.bottom <= FIELD.bottom + 1e-9 and label.box.top >= FIELD.top - 1e-9
 
 
@@ -131,7 +131,7 @@ def test_lines_through_a_box_are_seen() -> None:
 def test_without_its_extra_a_picture_is_refused_with_the_way_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(HeunError) as refused:
-        matplotlib_file.rendered(Picture(10.0, 10.0, "", "", ()), "png")
+        matplotlib_file.render(VectorDrawing(10.0, 10.0, "", "", ()), "png")
     problem = refused.value.problems[0]
     assert problem.code == "missing-extra" and 'pip install "heuncli[plot]"' in str(problem.hint)
 
@@ -139,10 +139,10 @@ def test_without_its_extra_a_picture_is_refused_with_the_way_to_it(monkeypatch: 
 @pytest.mark.parametrize(("form", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_with_its_extra_it_is_drawn_the_same_every_time(form: str, begins: bytes) -> None:
     pytest.importorskip("matplotlib")
-    first, second = (matplotlib_file.rendered(picture(MANY), form) for _ in range(2))
+    first, second = (matplotlib_file.render(draw_figure(MANY), form) for _ in range(2))
     assert first.startswith(begins) and first == second
 
 
 def test_crosses_that_would_hide_each_other_stand_above_each_other() -> None:
-    assert stacked([[100.0], [200.0, 300.0], [120.0], [310.0], [125.0]]) == [0, 0, 1, 1, 2]
-    assert stacked([]) == []
+    assert assign_levels([[100.0], [200.0, 300.0], [120.0], [310.0], [125.0]]) == [0, 0, 1, 1, 2]
+    assert assign_levels([]) == []

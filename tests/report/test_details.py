@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import records
-from heuncli.output.tables.heading import write_heading
-from heuncli.output.tables.page import page_of
-from heuncli.output.tables.text_table import plain
+from heuncli.output.tables.heading import format_heading
+from heuncli.output.tables.page import make_page
+from heuncli.output.tables.text_table import format_plain
 from heuncli.results.results import Magnitudes, Results
 from heuncli.study.quantities.labels import JointInfo, Labels
 from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict
@@ -20,7 +20,7 @@ ONE = np.array([0.5])
 
 def at_one(wanted: str, labels: Labels = LABELS, of: Magnitudes = MAGNITUDES, **changes: Any) -> list[str]:
     results = restrict(pendulum(ONE, **changes), {wanted})
-    return [plain(table) for table in page_of(results, labels, of).instants(results)]
+    return [format_plain(table) for table in make_page(results, labels, of).make_tables_at_instants(results)]
 
 
 def test_without_a_force_there_is_no_axis_and_that_is_not_called_open() -> None:
@@ -31,7 +31,7 @@ def test_without_a_force_there_is_no_axis_and_that_is_not_called_open() -> None:
 
 
 def test_the_origin_is_called_so() -> None:
-    unnamed = records.replace(LABELS, about=None)
+    unnamed = records.replace(LABELS, moment_point=None)
     assert "about the origin (0, 0, 0) m" in at_one("foundation", unnamed)[0]
     elsewhere = pendulum(ONE).foundation | {"about": np.array([0.0, 0.0, 2.0])}
     assert "about the point (0, 0, 2) m" in at_one("foundation", unnamed, foundation=elsewhere)[0]
@@ -62,9 +62,9 @@ def test_a_steady_cut_has_no_instant() -> None:
             return pendulum(np.asarray(times), sections={"along": {"s": np.array([0.0, 0.5, 1.0]), **along}})
 
     study = Steady(np.linspace(0.0, 1.0, 11))
-    page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
+    page = make_page(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
     found = found_extremes(study, page, {"sections"})
-    lines = plain(page.extremes(found)[0]).splitlines()
+    lines = format_plain(page.make_tables_of_extremes(found)[0]).splitlines()
     assert next(line.split() for line in lines if line.startswith("N ")) == ["N", "N", "0", "1.0", "3.0", "0"]
     assert next(line.split() for line in lines if line.startswith("M2"))[-3:] == ["2.52441", "0", "1.0"]
 
@@ -79,8 +79,8 @@ def test_a_moment_that_is_noise_beside_the_force_on_its_arm_reads_0() -> None:
 def test_what_is_driven_is_told_beside_the_freedoms() -> None:
     free = pendulum(ONE)
     driven = replace(free, model=free.model | {"freedoms": 0, "driven": 1})
-    assert "2 bodies, 4 freedoms\n" in write_heading(free)
-    assert "2 bodies, no freedoms beside 1 driven\n" in write_heading(driven)
+    assert "2 bodies, 4 freedoms\n" in format_heading(free)
+    assert "2 bodies, no freedoms beside 1 driven\n" in format_heading(driven)
 
 
 def test_what_is_0_takes_no_column_but_a_vector_stays_whole() -> None:
@@ -95,7 +95,7 @@ def test_a_run_that_stopped_says_so_once() -> None:
     message = "at t = 0.5 s the rod rope would have to push"
     stopped = pendulum(ONE, warnings=(f"stopped before the end: {message}",))
     stopped = replace(stopped, status={"code": "stopped", "message": message})
-    assert write_heading(stopped).count(message) == 1
+    assert format_heading(stopped).count(message) == 1
 
 
 def test_a_slide_that_is_noise_beside_what_turns_reads_0() -> None:

@@ -14,7 +14,7 @@ import pytest
 from heuncli.base.errors import LimitError
 from heuncli.output.tables import export
 from heuncli.output.tables.export import to_csv, to_json
-from heuncli.study.quantities.series import walk
+from heuncli.study.quantities.series import iter_series
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
@@ -39,7 +39,7 @@ def test_json_is_the_results_to_the_last_bit() -> None:
     results = pendulum(T, impulses=[BLOW])
     parsed = json.loads(to_json(results))
     assert parsed.pop("heun") == 1
-    assert_same(parsed, export.present(results))
+    assert_same(parsed, export.collect_blocks(results))
 
 
 def test_json_has_null_where_open_and_only_what_applies() -> None:
@@ -66,7 +66,7 @@ def rows(text: str) -> list[dict[str, str]]:
 def test_csv_holds_every_number_once() -> None:
     results = pendulum(T)
     lines = rows(to_csv(results, LABELS))
-    assert len(lines) == sum(series.values.size for series in walk(results, LABELS))
+    assert len(lines) == sum(series.values.size for series in iter_series(results, LABELS))
     found = [
         float(r["value"])
         for r in lines

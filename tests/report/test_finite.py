@@ -13,10 +13,10 @@ import pytest
 from heuncli.base.errors import SolveError
 from heuncli.output.tables.export import to_json
 from heuncli.results.results import Results
-from heuncli.results.results_schema import REPORTS, ROWS, SHARES, quantity
+from heuncli.results.results_schema import REPORTS, ROWS, SHARES, find_quantity
 from heuncli.scene.file_format.load import load
 from heuncli.study.compose import recovery
-from heuncli.study.compose.finiteness import leaves, require_finite
+from heuncli.study.compose.finiteness import iter_numbers, require_finite
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
@@ -92,13 +92,13 @@ BLOCKS = {row.path.partition(".")[0] for row in ROWS if row.units}
 def results(name: str) -> Results:
     """All that a spec's run tells."""
     spec = load(f"{name}.yaml", text=TEXTS[name]) if name in TEXTS else load(ROOT / "specs" / f"{name}.yaml")
-    return solve(spec, Options(wanted=frozenset({*REPORTS, SHARES}))).results
+    return solve(spec, Options(requested_reports=frozenset({*REPORTS, SHARES}))).results
 
 
 def places(found: Results) -> Iterator[tuple[tuple[str, ...], Any, Any]]:
     """Every array and number of results: path, value, and the block in which it can be replaced."""
     for block in sorted(BLOCKS):
-        for keys, value, owner in leaves(getattr(found, block), (block,), {}):
+        for keys, value, owner in iter_numbers(getattr(found, block), (block,), {}):
             if isinstance(owner, dict) and keys[-1] in owner:
                 yield keys, value, owner
 
@@ -107,7 +107,7 @@ def of_every_kind(found: Results) -> Iterator[tuple[tuple[str, ...], Any, Any]]:
     """Of each row of the schema the first place, and the first that is open in part."""
     seen = set()
     for keys, value, owner in places(found):
-        row = quantity(keys)
+        row = find_quantity(keys)
         kind = row and row.path, bool(np.isnan(value).any())
         if np.size(value) and (row is None or kind not in seen):
             seen.add(kind)
@@ -152,7 +152,9 @@ def test_nan_stands_only_for_what_may_be_open(name: str) -> None:
 
 @pytest.mark.heavy
 def test_all_kinds_are_among_them() -> None:
-    seen = {row.path for name in SCENES for keys, _, _ in places(results(name)) if (row := quantity(keys)) is not None}
+    seen = {
+        row.path for name in SCENES for keys, _, _ in places(results(name)) if (row := find_quantity(keys)) is not None
+    }
     assert {row.path for row in ROWS if row.units} - seen == NOT_FLOATS | {"time"}
 
 
@@ -169,7 +171,7 @@ def test_what_is_open_is_null_and_nothing_else_is() -> None:
     ("check", "swinging.yaml"),
 ])  # fmt: skip
 def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
-    energy = recovery.energy
+    energy = recovery.energy_block
 
     def broken(*given: Any) -> Any:
         block = energy(*given)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.base.wrapping import wrapped
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import TextColumn, TextTable, plain
+from heuncli.base.wrapping import wrap_text
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import TextColumn, TextTable, format_plain
 
 WIDE = TextTable(
     "JOINTS",
@@ -18,7 +18,7 @@ WIDE = TextTable(
 
 VECTORS = TextTable(
     "MASS EFFECT  what it is",
-    (TextColumn("", "left"), TextColumn("", "left", once=True),
+    (TextColumn("", "left"), TextColumn("", "left", is_shown_once=True),
      *(TextColumn(name, vector=name[0]) for name in ("Fx", "Fy", "Fz", "Mx", "My"))),
     (("total", "a long note on it", "11111", "22222", "33333", "44444", "55555"),),
 )  # fmt: skip
@@ -26,8 +26,8 @@ VECTORS = TextTable(
 
 @pytest.mark.parametrize("width", [30, 60, 80, 500])
 def test_every_part_fits_and_no_cell_is_lost(width: int) -> None:
-    parts = fit(WIDE, width)
-    assert all(len(line) <= width for part in parts for line in plain(part, width).splitlines())
+    parts = split_to_width(WIDE, width)
+    assert all(len(line) <= width for part in parts for line in format_plain(part, width).splitlines())
     assert [column.head for part in parts for column in part.columns[1:]] == [c.head for c in WIDE.columns[1:]]
     assert all(row[0] in ("pivot", "elbow") for part in parts for row in part.rows)
     assert [part.heading for part in parts] == ["JOINTS"] + ["JOINTS  continued"] * (len(parts) - 1)
@@ -35,13 +35,13 @@ def test_every_part_fits_and_no_cell_is_lost(width: int) -> None:
 
 
 def test_what_fits_is_left_alone_to_the_last_column() -> None:
-    width = max(map(len, plain(WIDE).splitlines()))
-    assert fit(WIDE, width) == [WIDE]
-    assert len(fit(WIDE, width - 1)) == 2
+    width = max(map(len, format_plain(WIDE).splitlines()))
+    assert split_to_width(WIDE, width) == [WIDE]
+    assert len(split_to_width(WIDE, width - 1)) == 2
 
 
 def test_a_vector_is_not_parted_and_a_note_not_repeated() -> None:
-    first, second = fit(VECTORS, 56)
+    first, second = split_to_width(VECTORS, 56)
     assert [column.head for column in first.columns] == ["", "", "Fx", "Fy", "Fz"]
     assert [column.head for column in second.columns] == ["", "Mx", "My"]
     assert second.heading == "MASS EFFECT  continued"
@@ -52,38 +52,38 @@ def test_a_vector_wider_than_a_page_is_parted_all_the_same() -> None:
     table = TextTable(
         "", (TextColumn("", "left"), *(TextColumn("F" * 9, vector="F") for _ in range(3))), (("a", "1", "2", "3"),)
     )
-    assert [len(part.columns) for part in fit(table, 25)] == [3, 2]
+    assert [len(part.columns) for part in split_to_width(table, 25)] == [3, 2]
 
 
 def test_a_blow_is_named_again_with_what_goes_on() -> None:
     table = WIDE._replace(heading="IMPULSE at t = 0.1 s (ball)  JOINTS  what they are")
-    assert fit(table, 80)[1].heading == "IMPULSE at t = 0.1 s (ball)  JOINTS  continued"
+    assert split_to_width(table, 80)[1].heading == "IMPULSE at t = 0.1 s (ball)  JOINTS  continued"
 
 
 @pytest.mark.parametrize("width", [20, 31, 32, 33, 200])
 def test_long_texts_go_on_in_more_lines(width: int) -> None:
     text = "  what this is, in world axes, about O"
-    lines = wrapped(text, width)
+    lines = wrap_text(text, width)
     assert all(len(line) <= width for line in lines)
     assert " ".join(" ".join(lines).split()) == text.strip()
     assert all(line.startswith(" " * 6) for line in lines[1:])
 
 
 def test_one_long_word_is_left_whole() -> None:
-    assert wrapped("a" * 30, 10) == ["a" * 30]
-    assert wrapped("b " + "a" * 30 + " c", 10) == ["b", "    " + "a" * 30, "    c"]
-    assert wrapped("any text at all", None) == ["any text at all"]
+    assert wrap_text("a" * 30, 10) == ["a" * 30]
+    assert wrap_text("b " + "a" * 30 + " c", 10) == ["b", "    " + "a" * 30, "    c"]
+    assert wrap_text("any text at all", None) == ["any text at all"]
 
 
 def test_a_line_ends_with_a_clause_and_not_within_brackets() -> None:
     text = "FOUNDATION  force and moment ON it, world axes, moment about A = (0, 0, 0) m"
-    assert wrapped(text, 70) == [text[:47], f"    {text[48:]}"]
+    assert wrap_text(text, 70) == [text[:47], f"    {text[48:]}"]
 
 
 def test_a_last_column_of_text_goes_on_in_lines_of_its_own() -> None:
     row = ("1", "a.angle 1, b.angle -1, guide.travel -0.5")
     table = TextTable("MODES", (TextColumn("mode"), TextColumn("shape", "left")), (row,))
-    (part,) = fit(table, 40)
-    assert plain(part, 40).splitlines() == [
+    (part,) = split_to_width(table, 40)
+    assert format_plain(part, 40).splitlines() == [
         "MODES", "mode  shape", "   1  a.angle 1, b.angle -1,", "      guide.travel -0.5",
     ]  # fmt: skip

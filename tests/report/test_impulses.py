@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.commands.run.scene import _strict
+from heuncli.app.commands.run.scene import _check_strict
 from heuncli.base.errors import SpecError
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.export import to_csv, to_json
-from heuncli.output.tables.heading import write_heading
-from heuncli.output.tables.page import page_of
-from heuncli.output.tables.text_table import markdown, plain
+from heuncli.output.tables.heading import format_heading
+from heuncli.output.tables.page import make_page
+from heuncli.output.tables.text_table import format_markdown, format_plain
 from heuncli.results.results import Block, Results
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Expect
@@ -74,8 +74,8 @@ def struck(*blows: Block, **changes: Any) -> Results:
 
 
 def text(results: Results, every: bool = False) -> str:
-    page = page_of(results, labels(), OF)
-    return "\n".join(plain(table) for table in page.instants(results, every_cut=every))
+    page = make_page(results, labels(), OF)
+    return "\n".join(format_plain(table) for table in page.make_tables_at_instants(results, every_cut=every))
 
 
 def of_blow(whole: str) -> str:
@@ -114,8 +114,8 @@ def test_a_blow_is_told_in_one_table_without_what_it_does_not_load() -> None:
     one = blow()
     one["joints"]["elbow"] |= {"force": np.array([0.0, 0.0, -2.0]), "axial": 0.0, "radial": 2.0, "tilting": 0.0}
     one["joints"]["idle"] = {"point": np.zeros(3), "force": np.zeros(3), "moment": np.zeros(3), "open": []}
-    page = page_of(struck(one), labels(), OF, details=False)
-    tables = [plain(table) for table in page.instants(page.results)]
+    page = make_page(struck(one), labels(), OF, details=False)
+    tables = [format_plain(table) for table in page.make_tables_at_instants(page.results)]
     assert not any("CENTRAL AXIS" in table or "MASS EFFECT" in table for table in tables)
     (whole,) = [table for table in tables if table.startswith("IMPULSE at t = 0.5 s (blow)\n")]
     told = lines_of(whole)
@@ -141,15 +141,15 @@ def test_a_blow_that_loads_nothing_says_so() -> None:
 
 def test_what_is_open_in_a_blow_reads_open_and_fails_strict() -> None:
     assert "open" in of_blow(text(struck(blow())))
-    assert _strict(struck(blow()), []) == 1
+    assert _check_strict(struck(blow()), []) == 1
     closed = blow()
     closed["joints"]["pivot"] |= {"force": np.zeros(3), "open": []}
-    assert _strict(struck(closed), []) == 0
+    assert _check_strict(struck(closed), []) == 0
 
 
 def test_tables_are_written_as_markdown() -> None:
-    page = page_of(struck(blow()), labels(), OF)
-    written = "\n".join(markdown(table) for table in page.instants(page.results))
+    page = make_page(struck(blow()), labels(), OF)
+    written = "\n".join(format_markdown(table) for table in page.make_tables_at_instants(page.results))
     assert "### IMPULSE at t = 0.5 s (blow)\n" in written
     assert "| **JOINTS  impulse" in written
 
@@ -178,7 +178,7 @@ def test_a_long_list_of_blows_is_cut() -> None:
 
 def test_the_heading_tells_of_contacts() -> None:
     told = [f"contact {k} rests" for k in range(8)]
-    written = write_heading(replace(pendulum(T), model={**pendulum(T).model, "contacts": told}))
+    written = format_heading(replace(pendulum(T), model={**pendulum(T).model, "contacts": told}))
     assert "contacts  contact 0 rests" in written
     assert "contact 4 rests" in written
     assert "contact 5" not in written
@@ -195,8 +195,8 @@ def test_beyond_the_horizon_nothing_is_told_of_a_blow() -> None:
     numbers = {cell for line in told.values() for cell in line[1:5] if re.fullmatch(r"[-\d.?]+", cell)}
     assert numbers - {"0.2"} == {"?", "0"}  # the limit of the stop is none of them
     study = FakeStudy(T, {"impulses": results.impulses, "accuracy": accuracy})
-    assert measure.write([measure.parse("impulses.0.energy_jump")], study, "table") == "0.25\n"
-    assert measure.write([measure.parse("impulses.1.energy_jump")], study, "table") == "?\n"
+    assert measure.format_measures([measure.parse_measure("impulses.0.energy_jump")], study, "table") == "0.25\n"
+    assert measure.format_measures([measure.parse_measure("impulses.1.energy_jump")], study, "table") == "?\n"
 
 
 @pytest.mark.parametrize(("words", "value"), [
@@ -215,14 +215,14 @@ def test_beyond_the_horizon_nothing_is_told_of_a_blow() -> None:
 ])  # fmt: skip
 def test_measures(words: str, value: float) -> None:
     study = FakeStudy(T, {"impulses": [blow()]})
-    asked = measure.parse(words)
-    assert float(measure.write([asked], study, "table")) == pytest.approx(value, rel=1e-14)
+    asked = measure.parse_measure(words)
+    assert float(measure.format_measures([asked], study, "table")) == pytest.approx(value, rel=1e-14)
 
 
 def test_what_is_open_measures_open() -> None:
     study = FakeStudy(T, {"impulses": [blow()]})
     for words in ("impulses.0.joints.pivot.force.y", "max abs impulses.0.joints.pivot.force"):
-        assert measure.write([measure.parse(words)], study, "table") == "open\n"
+        assert measure.format_measures([measure.parse_measure(words)], study, "table") == "open\n"
 
 
 @pytest.mark.parametrize(("words", "message"), [
@@ -232,7 +232,7 @@ def test_what_is_open_measures_open() -> None:
 ])  # fmt: skip
 def test_measures_that_are_no_number(words: str, message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        measure.write([measure.parse(words)], FakeStudy(T, {"impulses": [blow()]}), "table")
+        measure.format_measures([measure.parse_measure(words)], FakeStudy(T, {"impulses": [blow()]}), "table")
 
 
 def test_csv_has_every_number_of_a_blow() -> None:
@@ -308,7 +308,7 @@ def test_expectations_are_compared() -> None:
     location: Any = None
 
     def case(of: str, value: Any) -> bool:
-        return compare(study, Expect(of, None, None, value, None, None, location)).passed
+        return compare(study, Expect(of, None, None, value, None, None, location)).is_met
 
     assert case("impulses.0.foundation.force", (-0.25, 0.0, -2.0))
     assert case("impulses.0.joints.pivot.force.y", None)

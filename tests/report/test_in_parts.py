@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.base.errors import OutputError, SolveError
 from heuncli.output.tables import export
-from heuncli.output.tables.export import csv_pieces, json_pieces
+from heuncli.output.tables.export import iter_csv_pieces, iter_json_pieces
 from heuncli.results import stored_arrays
 from heuncli.results.stored_arrays import ArrayStore
 from heuncli.scene.file_format.load import load
@@ -23,7 +23,7 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.study import Study
 from heuncli.study.compose import parts, recovery
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.solve import load_errors
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
@@ -61,7 +61,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 def texts(study: Study) -> tuple[str, str]:
     """The results in JSON and in CSV, but for the times that the run took."""
     study.results.work["seconds"] = {}
-    return "".join(json_pieces(study.results)), "".join(csv_pieces(study.results, labels_of(study.spec)))
+    return "".join(iter_json_pieces(study.results)), "".join(iter_csv_pieces(study.results, make_labels(study.spec)))
 
 
 def both(spec: Spec) -> tuple[Study, Study]:
@@ -74,7 +74,7 @@ def both(spec: Spec) -> tuple[Study, Study]:
 def test_parts_are_written_as_the_whole_is(name: str, small: None, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / f"{name}.yaml"))
     whole, divided = both(spec)
-    assert (divided.composed is None) == (name in TREES)
+    assert (divided.result_recovery is None) == (name in TREES)
     assert divided.results.warnings == whole.results.warnings
     found = texts(divided)
     for name_of_part in ("AT_ONCE", "READ"):
@@ -87,7 +87,7 @@ def test_parts_of_many_sizes() -> None:
     """Whole blocks but for the last, which has no row alone."""
     for count in range(2, 70):
         for at_once in range(40):
-            found = parts.divided(count, at_once)
+            found = parts.divide_instants(count, at_once)
             assert [k for part in found for k in range(count)[part]] == list(range(count))
             assert all(part.start % parts.BLOCK == 0 and part.stop - part.start >= min(count, 8) for part in found)
             assert max(part.stop - part.start for part in found) < 2 * max(at_once, parts.BLOCK) + parts.BLOCK
@@ -106,7 +106,7 @@ def test_a_total_is_none_beside_the_largest_force_of_the_whole_run(small: None) 
     """In the first half a part by itself sees nothing larger, and would tell its axis."""
     spec = load("pulled.yaml", text=PULLED)
     whole, divided = both(spec)
-    assert divided.composed is None
+    assert divided.result_recovery is None
     assert np.isnan(whole.results.foundation["axis"]["pitch"]).sum() == 16
     assert texts(divided) == texts(whole)
     alone = whole.resample(np.array([0.1, 0.2])).foundation["axis"]["direction"]
@@ -114,7 +114,7 @@ def test_a_total_is_none_beside_the_largest_force_of_the_whole_run(small: None) 
 
 
 def test_what_is_not_finite_is_refused_in_the_same_words(small: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    energy = recovery.energy
+    energy = recovery.energy_block
 
     def broken(layout: Any, recovered: Any, *given: Any) -> Any:
         block = energy(layout, recovered, *given)
@@ -176,21 +176,21 @@ def test_stored_arrays_are_the_arrays_that_were_put_there(small: None) -> None:
     store, wanted, stored = ArrayStore(), [], []
     for shape in ((9,), (9, 3), (9, 3, 3), (9, 40)):
         wanted.append(rng.random(shape))
-        stored.append(store.array(shape))
+        stored.append(store.allocate(shape))
     for first, end in ((0, 4), (4, 9)):
         for array, values in zip(stored, wanted, strict=True):
-            array.put(first, values[first:end])
+            array.write_rows(first, values[first:end])
     for array, values in zip(stored, wanted, strict=True):
         assert (array.shape, array.size, array.ndim, len(array)) == (values.shape, values.size, values.ndim, 9)
         np.testing.assert_array_equal(array[2:7], values[2:7])
         rows, flat = array.reshape(9, -1), values.reshape(9, -1)
         for columns in (slice(0, 2), slice(1, None), slice(None)):
             np.testing.assert_array_equal(rows[1:8, columns], flat[1:8, columns])
-        np.testing.assert_array_equal(np.concatenate([*stored_arrays.in_parts(array)]), values)
+        np.testing.assert_array_equal(np.concatenate([*stored_arrays.iter_chunks(array)]), values)
     with pytest.raises(ValueError, match="become rows"):
         stored[2].reshape(-1)
     with pytest.raises(OutputError, match="ends too soon"):
-        store.array((2,))[:]
+        store.allocate((2,))[:]
 
 
 # Memory: what is held at a time, by how it grows.
@@ -200,8 +200,8 @@ def peak(spec: Spec, wanted: frozenset[str], write: Any) -> int:
     """The most that is held while a scene is solved and written down [bytes]."""
     tracemalloc.start()
     try:
-        study = solve(spec, Options(wanted=wanted, in_parts=True))
-        assert study.composed is None
+        study = solve(spec, Options(requested_reports=wanted, in_parts=True))
+        assert study.result_recovery is None
         for _ in write(study.results):
             pass
         return tracemalloc.get_traced_memory()[1]
@@ -210,7 +210,7 @@ def peak(spec: Spec, wanted: frozenset[str], write: Any) -> int:
 
 
 def pieces(form: str, spec: Spec) -> Any:
-    return json_pieces if form == "json" else partial(csv_pieces, labels=labels_of(spec))
+    return iter_json_pieces if form == "json" else partial(iter_csv_pieces, labels=make_labels(spec))
 
 
 @pytest.fixture
@@ -221,8 +221,8 @@ def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         (load_errors, "CUTS_AT_ONCE", 2_000),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, value)
-    monkeypatch.setattr("heuncli.motion.integration.check.estimate.CHUNK", 100_000)
-    peak(swinging(50), frozenset({"energy"}), json_pieces)  # what is loaded once
+    monkeypatch.setattr("heuncli.motion.integration.check.estimate.MAX_NUMBERS", 100_000)
+    peak(swinging(50), frozenset({"energy"}), iter_json_pieces)  # what is loaded once
     yield
 
 

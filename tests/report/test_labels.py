@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.results.results_schema import quantity
+from heuncli.results.results_schema import find_quantity
 from heuncli.scene.file_format.models import End, Section
-from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, _section
+from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, _make_section_info
 
 KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
 LABELS = Labels(
@@ -48,9 +48,9 @@ LABELS = Labels(
     ],
 )
 def test_units(kind: str, name: str, key: str, unit: str) -> None:
-    row = quantity((kind, name, key))
+    row = find_quantity((kind, name, key))
     assert row is not None
-    assert row.unit(len(row.units) > 1 and LABELS.turns(kind, name)) == unit
+    assert row.select_unit(len(row.units) > 1 and LABELS.is_rotational(kind, name)) == unit
 
 
 @pytest.mark.parametrize(
@@ -66,12 +66,17 @@ def test_units(kind: str, name: str, key: str, unit: str) -> None:
 def test_the_first_axis_in_words(
     normal: tuple[float, float, float], first_axis: tuple[float, float, float] | None, words: str
 ) -> None:
-    assert _section(Section("b", normal, first_axis=first_axis)).first_axis == words
+    assert _make_section_info(Section("b", normal, first_axis=first_axis)).first_axis == words
 
 
 def test_the_point_of_the_moments_in_words() -> None:
     normal = (1.0, 0.0, 0.0)
-    assert _section(Section("b", normal)).about == "the cut's point"
-    assert _section(Section("b", normal, reduce_to="centroid")).about == "the cut's centroid"
-    assert _section(Section("b", normal, reduce_to=End("ground", (0.0, 0.0, 0.0), "O"))).about == "ground.O"
-    assert _section(Section("b", normal, reduce_to=End("a", (1.0, 0.0, 0.0)))).about == "a at (1, 0, 0)"
+    assert _make_section_info(Section("b", normal)).moment_point == "the cut's point"
+    assert _make_section_info(Section("b", normal, reduce_to="centroid")).moment_point == "the cut's centroid"
+    assert (
+        _make_section_info(Section("b", normal, reduce_to=End("ground", (0.0, 0.0, 0.0), "O"))).moment_point
+        == "ground.O"
+    )
+    assert (
+        _make_section_info(Section("b", normal, reduce_to=End("a", (1.0, 0.0, 0.0)))).moment_point == "a at (1, 0, 0)"
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.output.tables.model_text import WIDTH, note
+from heuncli.output.tables.model_text import WIDTH, format_model
 
 MODEL = {
     "space": "spatial",
@@ -25,7 +25,7 @@ MODEL = {
 
 
 def test_a_note_tells_the_counts_and_the_sentences() -> None:
-    text = note("Two bars", MODEL)
+    text = format_model("Two bars", MODEL)
     assert text.startswith("Two bars\n\n")
     for part in (
         "2: upper (1 kg), lower (0.8 kg)",
@@ -45,9 +45,13 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
 
 
 def test_what_couplings_close_is_told_beside_the_loops_of_joints() -> None:
-    assert "  loops      no closed loops of joints; 1 coupling beside them\n" in note("", MODEL | {"couplings": 1})
-    assert "  loops      2 closed loops of joints; 3 couplings" in note("", MODEL | {"loops": 2, "couplings": 3})
+    assert "  loops      no closed loops of joints; 1 coupling beside them\n" in format_model(
+        "", MODEL | {"couplings": 1}
+    )
+    assert "  loops      2 closed loops of joints; 3 couplings" in format_model(
+        "", MODEL | {"loops": 2, "couplings": 3}
+    )
 
 
 def test_names_are_not_listed_without_end() -> None:
-    assert "... (88 more)" in note("", {"bodies": [f"b{i}" for i in range(100)]})
+    assert "... (88 more)" in format_model("", {"bodies": [f"b{i}" for i in range(100)]})

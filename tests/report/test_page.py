@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.tables.extremes_tables import MANY
-from heuncli.output.tables.heading import write_heading
-from heuncli.output.tables.page import Page, page_of
-from heuncli.output.tables.text_table import plain
+from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
+from heuncli.output.tables.heading import format_heading
+from heuncli.output.tables.page import Page, make_page
+from heuncli.output.tables.text_table import format_plain
 from heuncli.results.results import Array, Extremes, Results
 from heuncli.study.search import extremes as peaks
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict, vectors
@@ -23,9 +23,9 @@ T = np.linspace(0.0, 2.0, 21)
 def extremes_page(
     study: FakeStudy, wanted: frozenset[str] = frozenset({"foundation", "joints", "energy", "sections"})
 ) -> str:
-    page = page_of(restrict(study.results, wanted), LABELS, MAGNITUDES)
+    page = make_page(restrict(study.results, wanted), LABELS, MAGNITUDES)
     found = found_extremes(study, page, wanted)
-    return "\n".join(plain(table) for table in page.extremes(found))
+    return "\n".join(format_plain(table) for table in page.make_tables_of_extremes(found))
 
 
 def line_of(text: str, group: str, label: str) -> list[str]:
@@ -67,10 +67,12 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     assert [line.split()[0] for line in pivot.splitlines()[1:]] == ["Fx", "Fz", "|F|"]
     assert "what is 0 throughout is left out" in text
     nothing = FakeStudy(T, {"joints": {"idle": {"force": np.zeros((len(T), 3)), "point": np.zeros((len(T), 3))}}})
-    alone = page_of(restrict(nothing.results, {"joints"}), LABELS, MAGNITUDES)
+    alone = make_page(restrict(nothing.results, {"joints"}), LABELS, MAGNITUDES)
     zero = np.zeros(4)
-    (table,) = alone.extremes(Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), searched=True))
-    assert "idle\n  0 throughout\n" in plain(table)
+    (table,) = alone.make_tables_of_extremes(
+        Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), is_searched=True)
+    )
+    assert "idle\n  0 throughout\n" in format_plain(table)
 
 
 def test_a_lone_support_is_not_told_twice() -> None:
@@ -121,8 +123,8 @@ def test_open_components_are_named_together_and_partly_open_ones_are_marked() ->
 
 def test_open_components_read_open_at_an_instant() -> None:
     study = Changed(T, change=opened)
-    page = page_of(restrict(study.results, {"joints"}), LABELS, MAGNITUDES)
-    (table,) = page.instants(restrict(study.resample(np.array([0.5])), {"joints"}))
+    page = make_page(restrict(study.results, {"joints"}), LABELS, MAGNITUDES)
+    (table,) = page.make_tables_at_instants(restrict(study.resample(np.array([0.5])), {"joints"}))
     assert table.rows[0][2:6] == ("2.52441", "0", "open", "open")
 
 
@@ -134,18 +136,18 @@ def test_a_chosen_split_is_labelled() -> None:
 
     study = Changed(T, change=choose)
     assert "chosen, not certain: pivot Fz Mx" in extremes_page(study)
-    assert "split     chosen by least norm; other splits do as well" in write_heading(study.results)
+    assert "split     chosen by least norm; other splits do as well" in format_heading(study.results)
 
 
 def test_beyond_the_horizon_nothing_is_claimed() -> None:
     study = FakeStudy(T, {"accuracy": {**ACCURATE, "horizon": 1.2, "estimate": {"motion": 0.02, "reactions": 0.1}}})
-    page = page_of(restrict(study.results, frozenset({"joints"})), LABELS, MAGNITUDES)
+    page = make_page(restrict(study.results, frozenset({"joints"})), LABELS, MAGNITUDES)
     assert page.results.time[-1] == pytest.approx(1.1)
     shown = restrict(study.resample(np.array([0.5, 1.5])), frozenset({"joints"}))
-    lines = [line.split() for line in plain(page.instants(shown)[0]).splitlines()]
+    lines = [line.split() for line in format_plain(page.make_tables_at_instants(shown)[0]).splitlines()]
     assert next(line for line in lines if line[0] == "1.5")[1:5] == ["?", "0", "?", "?"]  # Fy is 0.0 in all bits
     assert next(line for line in lines if line[0] == "0.5")[1] == "2.5"
-    assert "from t = 1.2 s on nothing is claimed" in write_heading(study.results)
+    assert "from t = 1.2 s on nothing is claimed" in format_heading(study.results)
 
 
 def test_a_run_that_ends_beyond_its_horizon_has_no_last_value() -> None:
@@ -164,10 +166,12 @@ def test_a_run_that_begins_beyond_its_horizon_has_no_value_at_all() -> None:
 def test_a_peak_between_the_samples_makes_the_scale() -> None:
     """At the samples there is rounding only: the peak between them is shown, with the digits it has."""
     noise = pendulum(T[[0, -1]], joints={"a": {"force": np.full((2, 3), 1e-17), "point": np.zeros((2, 3))}})
-    page = page_of(restrict(noise, {"joints"}), LABELS, MAGNITUDES)
-    found = peaks.search(lambda _: page.columns(page.results), T[[0, -1]], page.groups(), between=False)
+    page = make_page(restrict(noise, {"joints"}), LABELS, MAGNITUDES)
+    found = peaks.search_extremes(
+        lambda _: page.make_columns(page.results), T[[0, -1]], page.make_groups(), search_between=False
+    )
     found = found._replace(high=np.array([0.4, 0.0, 0.0, 0.16]))
-    (table,) = page.extremes(found)
+    (table,) = page.make_tables_of_extremes(found)
     assert [row[:3] + row[6:7] for row in table.rows[1:]] == [("Fx", "N", "0", "0.4")]
 
 
@@ -181,9 +185,9 @@ def test_fewer_certain_digits_show_fewer_digits() -> None:
 
 def instants_page(times: list[float], wanted: set[str], **options: Any) -> list[str]:
     study = FakeStudy(T)
-    page = page_of(restrict(study.results, wanted), LABELS, MAGNITUDES)
+    page = make_page(restrict(study.results, wanted), LABELS, MAGNITUDES)
     shown = restrict(study.resample(np.array(times)), wanted)
-    return [plain(table) for table in page.instants(shown, **options)]
+    return [format_plain(table) for table in page.make_tables_at_instants(shown, **options)]
 
 
 def test_instants_stand_below_each_other() -> None:
@@ -219,14 +223,14 @@ def many(results: Results) -> Results:
             "moment": np.zeros((len(results.time), 3)),
             "open": [],
         }
-        for i in range(MANY + 1)
+        for i in range(MAX_FULL_GROUPS + 1)
     }
     return dataclasses.replace(results, joints=joints)
 
 
 def test_many_joints_take_a_line_each_and_say_how_to_get_the_rest() -> None:
     text = extremes_page(Changed(T, change=many), frozenset({"joints"}))
-    assert len(text.splitlines()) == MANY + 4
+    assert len(text.splitlines()) == MAX_FULL_GROUPS + 4
     assert "--format csv" in text
     assert next(line for line in text.splitlines() if line.startswith("j7 ")).split()[:3] == ["j7", "7.00000", "1.5708"]
 
@@ -250,12 +254,12 @@ def test_a_run_of_cuts_shows_extremes_over_place_and_time() -> None:
 @pytest.mark.parametrize(("n_cuts", "most"), [(3, 3), (25, 25), (200, 25)])
 def test_a_diagram_can_be_read_for_few_cuts_and_for_many(n_cuts: int, most: int) -> None:
     study = Changed(T, change=long_run(n_cuts))
-    page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
+    page = make_page(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
     shown = restrict(study.resample(np.array([0.5])), {"sections"})
-    (table,) = page.instants(shown)
+    (table,) = page.make_tables_at_instants(shown)
     assert len(table.rows) <= most
     assert (len(table.rows) < n_cuts) == any("every cut: --all" in note for note in table.notes)
-    (whole,) = page.instants(shown, every_cut=True)
+    (whole,) = page.make_tables_at_instants(shown, every_cut=True)
     assert len(whole.rows) == n_cuts
 
 
@@ -263,8 +267,8 @@ def test_a_thinned_diagram_keeps_both_rows_of_a_jump() -> None:
     side: list[str | None] = [None] * 100
     side[41], side[42] = "before", "beyond"
     study = Changed(T, change=long_run(100, side))
-    page = page_of(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
-    (table,) = page.instants(restrict(study.resample(np.array([0.5])), {"sections"}))
+    page = make_page(restrict(study.results, {"sections"}), LABELS, MAGNITUDES)
+    (table,) = page.make_tables_at_instants(restrict(study.resample(np.array([0.5])), {"sections"}))
     assert [row[1] for row in table.rows if row[1]] == ["before", "beyond"]
 
 
@@ -285,7 +289,7 @@ def test_a_blow_has_tables_of_its_own_in_newton_seconds() -> None:
 
 
 def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
-    text = write_heading(pendulum(T, warnings=("the bar is thin",)))
+    text = format_heading(pendulum(T, warnings=("the bar is thin",)))
     for part in (
         "A fake",
         "spatial, 2 bodies, 4 freedoms",
@@ -299,11 +303,11 @@ def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
 
 def test_a_planar_scene_says_what_there_is_not() -> None:
     flat = dataclasses.replace(pendulum(T), model={**pendulum(T).model, "space": "planar", "plane": "declared"})
-    assert "planar, 2 bodies, 4 freedoms; what points out of the xy plane" in write_heading(flat)
+    assert "planar, 2 bodies, 4 freedoms; what points out of the xy plane" in format_heading(flat)
 
 
 def test_nothing_asked_for_leaves_nothing_to_search() -> None:
-    page = page_of(restrict(pendulum(T), frozenset()), LABELS, MAGNITUDES)
+    page = make_page(restrict(pendulum(T), frozenset()), LABELS, MAGNITUDES)
     assert isinstance(page, Page)
-    assert page.columns(page.results).shape == (len(T), 0)
-    assert page.groups() == []
+    assert page.make_columns(page.results).shape == (len(T), 0)
+    assert page.make_groups() == []

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.base.nearest import begin_file
+from heuncli.base.nearest import reset_effort
 from heuncli.output.tables.export import to_json
-from heuncli.results.results_paths import find
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.names import names_in
-from heuncli.scene.file_format.rules.outcome import wrong_path
-from heuncli.study.quantities.series import walk
+from heuncli.scene.file_format.names import collect_scene_names
+from heuncli.scene.file_format.rules.outcome import find_path_error
+from heuncli.study.quantities.series import iter_series
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
@@ -26,11 +26,11 @@ RESULTS = pendulum(T, impulses=[BLOW], certain_sums=SUMS)
 
 
 def test_every_walked_quantity_has_its_path() -> None:
-    for series in walk(RESULTS, LABELS):
+    for series in iter_series(RESULTS, LABELS):
         for component, column in zip(series.components, series.values.T, strict=True):
             path = f"{series.path}.{component}" if component else series.path
             if series.quantity != "side":
-                assert np.array_equal(np.atleast_1d(find(RESULTS, path).values), column), path
+                assert np.array_equal(np.atleast_1d(find_values(RESULTS, path).values), column), path
 
 
 @pytest.mark.parametrize(
@@ -65,8 +65,8 @@ def test_a_path_leads_where_it_leads_in_the_json(path: str, timed: bool) -> None
             node = node[{"x": 0, "y": 1, "z": 2}[token] if token in "xyz" else int(token)]
         else:
             node = node[token]
-    found = find(RESULTS, path)
-    assert found.timed == timed
+    found = find_values(RESULTS, path)
+    assert found.is_timed == timed
     assert np.array_equal(found.values, np.array(node, dtype=np.float64))
 
 
@@ -87,7 +87,7 @@ def test_a_path_leads_where_it_leads_in_the_json(path: str, timed: bool) -> None
 )
 def test_a_wrong_path_tells_what_is_known_there(path: str, message: str) -> None:
     with pytest.raises(SpecError) as caught:
-        find(RESULTS, path)
+        find_values(RESULTS, path)
     assert message in str(caught.value)
     assert caught.value.problems[0].code == "unknown-path"
     if "elbw" in path:
@@ -125,10 +125,10 @@ JIB, ENGINE = (load(Path(__file__).parents[2] / "specs" / name) for name in ("ji
     ],
 )
 def test_what_was_meant_by_a_path_is_found(path: str, meant: str) -> None:
-    what, hint = wrong_path(path, names_in(ENGINE), {}) or ("", "")
+    what, hint = find_path_error(path, collect_scene_names(ENGINE), {}) or ("", "")
     assert path in what
     assert hint == f"did you mean {meant}?"
-    assert wrong_path(meant, names_in(ENGINE), {}) is None
+    assert find_path_error(meant, collect_scene_names(ENGINE), {}) is None
 
 
 @pytest.mark.parametrize(
@@ -146,28 +146,28 @@ def test_what_was_meant_by_a_path_is_found(path: str, meant: str) -> None:
     ],
 )
 def test_what_nothing_is_like_is_told_with_what_there_is(path: str, hint: str) -> None:
-    _, told = wrong_path(path, names_in(JIB), {"root": False, "along": True}) or ("", "")
+    _, told = find_path_error(path, collect_scene_names(JIB), {"root": False, "along": True}) or ("", "")
     assert (told or "").startswith(hint)
 
 
 @pytest.mark.parametrize("spec", [JIB, ENGINE], ids=["jib", "engine"])
 def test_what_is_proposed_is_there(spec: Spec) -> None:
-    names = names_in(spec)
+    names = collect_scene_names(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
     words = [*spec.bodies, *spec.joints, *spec.forces, *spec.sections, "joints", "coordinates", "force", "fx", "Mz",
              "z", "mag", "angle", "3", "", "supports", "M1", "shares", "gravity", "impulses", "nonsense"]  # fmt: skip
     draw, proposed = random.Random(1), 0
     for _ in range(150):
-        begin_file()
+        reset_effort()
         path = ".".join(draw.choice(words) for _ in range(draw.randint(1, 4)))
-        hint = (wrong_path(path, names, runs) or ("", ""))[1] or ""
+        hint = (find_path_error(path, names, runs) or ("", ""))[1] or ""
         if hint.startswith("did you mean ") and "." in hint:
             proposed += 1
-            assert wrong_path(hint.removeprefix("did you mean ").removesuffix("?"), names, runs) is None, path
+            assert find_path_error(hint.removeprefix("did you mean ").removesuffix("?"), names, runs) is None, path
     assert proposed > 5
 
 
 def test_after_the_run_a_path_is_read_the_same_way() -> None:
     with pytest.raises(SpecError) as caught:
-        find(RESULTS, "elbow.fz")
+        find_values(RESULTS, "elbow.fz")
     assert caught.value.problems[0].hint == "did you mean joints.elbow.force.z?"

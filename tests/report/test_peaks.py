@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.output.tables.extremes_tables import NOT_SEARCHED
 from heuncli.results.results import Array
-from heuncli.study.search.extremes import MOST_COLUMNS, search
+from heuncli.study.search.extremes import MAX_COLUMNS, search_extremes
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 
@@ -19,8 +19,8 @@ def smooth(t: Array) -> Array:
 
 
 def test_a_smooth_peak_is_met_to_rounding() -> None:
-    found = search(smooth, GRID)
-    assert found.searched
+    found = search_extremes(smooth, GRID)
+    assert found.is_searched
     assert found.high[0] == pytest.approx(1.0, abs=1e-14)
     assert found.low[0] == pytest.approx(-1.0, abs=1e-14)
     assert np.sin(7.0 * found.high_at[0] + 0.3) == found.high[0]
@@ -29,7 +29,7 @@ def test_a_smooth_peak_is_met_to_rounding() -> None:
 
 
 def test_extremes_at_the_ends_and_of_constants() -> None:
-    found = search(smooth, GRID)
+    found = search_extremes(smooth, GRID)
     assert (found.low[2], found.low_at[2], found.high[2], found.high_at[2]) == (0.0, 0.0, 2.0, 2.0)
     assert found.low[3] == found.high[3] == 5.0
 
@@ -41,11 +41,11 @@ def test_the_higher_of_two_summits_wins_though_its_samples_are_lower() -> None:
         return (np.exp(-(((t - 0.4) / 0.2) ** 2)) + 1.01 * np.exp(-(((t - 1.45) / 0.2) ** 2)))[:, None]
 
     assert grid[two(grid).argmax()] == pytest.approx(0.4)
-    assert search(two, grid).high_at[0] == pytest.approx(1.45, abs=1e-4)
+    assert search_extremes(two, grid).high_at[0] == pytest.approx(1.45, abs=1e-4)
 
 
 def test_a_peak_between_the_first_two_samples_is_found() -> None:
-    found = search(lambda t: -((t - 0.01)[:, None] ** 2), GRID)
+    found = search_extremes(lambda t: -((t - 0.01)[:, None] ** 2), GRID)
     assert found.high[0] == pytest.approx(0.0, abs=1e-12)
 
 
@@ -58,7 +58,7 @@ def test_never_worse_than_the_samples_and_never_above_the_truth(seed: int) -> No
         return np.cos(np.outer(t, rates) + phases) + np.abs(t - kink)[:, None] * random_sign + (t > kink)[:, None]
 
     random_sign = random.choice([-1.0, 1.0])
-    found = search(wild, GRID)
+    found = search_extremes(wild, GRID)
     dense = wild(np.linspace(0.0, 2.0, 200_001))
     assert (found.high >= wild(GRID).max(axis=0)).all()
     assert (found.low <= wild(GRID).min(axis=0)).all()
@@ -67,7 +67,7 @@ def test_never_worse_than_the_samples_and_never_above_the_truth(seed: int) -> No
 
 
 def test_groups_compare_their_columns() -> None:
-    found = search(smooth, GRID, [[0, 2], [1, 3]])
+    found = search_extremes(smooth, GRID, [[0, 2], [1, 3]])
     assert found.high.tolist() == [2.0, 5.0]
     assert found.high_column.tolist() == [2, 3]
     assert found.low_column.tolist() == [0, 1]
@@ -77,7 +77,7 @@ def test_what_is_open_is_passed_over() -> None:
     def partly(t: Array) -> Array:
         return np.stack([np.where(t < 1.0, t, np.nan), np.full_like(t, np.nan)], axis=1)
 
-    found = search(partly, GRID)
+    found = search_extremes(partly, GRID)
     assert 0.9 < found.high[0] < 1.0
     assert np.isnan([found.low[1], found.high[1]]).all()
 
@@ -87,13 +87,13 @@ def test_few_batches_and_none_beyond_the_cap() -> None:
 
     def counted(t: Array) -> Array:
         calls.append(len(t))
-        return np.sin(np.outer(t, 5.0 + 7.0 * np.linspace(0.0, 1.0, MOST_COLUMNS + 1)))
+        return np.sin(np.outer(t, 5.0 + 7.0 * np.linspace(0.0, 1.0, MAX_COLUMNS + 1)))
 
-    search(lambda t: counted(t)[:, :50], GRID, errors=np.full(50, 1e-9))
+    search_extremes(lambda t: counted(t)[:, :50], GRID, errors=np.full(50, 1e-9))
     assert len(calls) <= 7
     assert sum(calls[1:]) <= 50 * 2 * 8
     calls.clear()
-    assert not search(counted, GRID, most=MOST_COLUMNS).searched
+    assert not search_extremes(counted, GRID, max_groups=MAX_COLUMNS).is_searched
     assert calls == [len(GRID)]
 
 
@@ -105,7 +105,7 @@ def test_one_of_many_equal_summits_is_told_apart() -> None:
         calls.append(len(t))
         return (np.cos(4.0 * np.pi * t + 0.7) * (1.0 + 1e-6 * np.exp(-(((t - 31.2) / 0.3) ** 2))))[:, None]
 
-    found = search(nearly, grid, errors=np.array([1e-10]))
+    found = search_extremes(nearly, grid, errors=np.array([1e-10]))
     dense = nearly(np.linspace(30.5, 32.0, 300_001)).max()
     assert found.high[0] >= dense
     assert found.high_at[0] == pytest.approx(31.2, abs=0.3)
@@ -125,7 +125,7 @@ def test_no_summit_of_waves_is_missed(seed: int) -> None:
     def waves(t: Array) -> Array:
         return np.sum(sizes * np.sin(t[:, None, None] * rates + phases), axis=1)
 
-    found = search(waves, GRID, errors=np.full(8, 1e-11))
+    found = search_extremes(waves, GRID, errors=np.full(8, 1e-11))
     dense = waves(np.linspace(0.0, 2.0, 20_001))
     assert (found.high >= dense.max(axis=0) - 1e-11).all()
     assert (found.low <= dense.min(axis=0) + 1e-11).all()
@@ -135,12 +135,12 @@ def test_kinks_and_jumps_are_met() -> None:
     def broken(t: Array) -> Array:
         return np.stack([-np.abs(t - 0.7123), np.where(t > 0.7123, t - 3.0, t), -np.abs(np.sin(4.0 * t - 3.0))], axis=1)
 
-    found = search(broken, GRID)
+    found = search_extremes(broken, GRID)
     assert found.high == pytest.approx([0.0, 0.7123, 0.0], abs=1e-11)
 
 
 def test_squares_are_met_to_the_digits_of_their_roots() -> None:
-    found = search(
+    found = search_extremes(
         lambda t: np.stack([np.sin(t - 0.9) ** 2], axis=1), GRID, errors=np.array([1e-11]), even=np.array([True])
     )
     assert np.sqrt(found.low[0]) <= 1e-11
@@ -156,13 +156,13 @@ def test_the_two_sides_of_a_jump_are_not_searched_between() -> None:
         calls.append(len(t))
         return (t - 3.0 * (t >= at))[:, None]
 
-    found = search(saw, grid)
+    found = search_extremes(saw, grid)
     assert (found.high_at[0], found.low_at[0]) == (np.nextafter(at, 0.0), at)
     assert len(calls) <= 3
 
 
 def test_nothing_is_searched_for_nothing() -> None:
-    found = search(lambda t: np.zeros((len(t), 0)), GRID)
+    found = search_extremes(lambda t: np.zeros((len(t), 0)), GRID)
     assert found.low.shape == found.high_at.shape == (0,)
 
 

@@ -11,10 +11,10 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.base.errors import SpecError
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.export import to_csv
-from heuncli.results.path_hints import readings
-from heuncli.results.results_paths import find
-from heuncli.results.run_places import path_of, words_of
-from heuncli.study.quantities.labels import labels_of
+from heuncli.results.path_hints import iter_readings
+from heuncli.results.results_paths import find_values
+from heuncli.results.run_places import join_path, split_path
+from heuncli.study.quantities.labels import make_labels
 from tests.shared.scenes import near, study
 
 P, LUG, END, W = 30.0, 0.3, 0.7, 4.0 * 9.81
@@ -63,26 +63,29 @@ def shear(s: float, t: float, beyond: bool) -> float:
 )
 def test_a_place_is_the_same_whatever_acts_before_it(place: str, s: float, beyond: bool) -> None:
     assert len(RESULTS.sections["arm"]["s"]) == 16  # 15 cuts, and one more row at the lug
-    found = find(RESULTS, f"sections.arm.Q1{place}")
-    assert found.timed
+    found = find_values(RESULTS, f"sections.arm.Q1{place}")
+    assert found.is_timed
     for k, t in enumerate((0.0, 1.0)):
         near(found.values[k], shear(s, t, beyond), W + P)
-    near(find(RESULTS, f"sections.arm.force{place}.z").values, found.values, W + P)
+    near(find_values(RESULTS, f"sections.arm.force{place}.z").values, found.values, W + P)
     if "@" in place:
-        near(find(RESULTS, f"sections.arm.force.z{place}").values, found.values, W + P)
-        assert find(RESULTS, f"sections.arm.Q1{place}.1" if ":" in place else f"sections.arm.Q1.1{place}").instant == 1
+        near(find_values(RESULTS, f"sections.arm.force.z{place}").values, found.values, W + P)
+        assert (
+            find_values(RESULTS, f"sections.arm.Q1{place}.1" if ":" in place else f"sections.arm.Q1.1{place}").instant
+            == 1
+        )
 
 
 def test_where_both_rows_agree_no_side_is_asked_for() -> None:
     bending = -W * (END - LUG) ** 2 / (2.0 * END)
     for place in ("@0.3", ".6", "@0.3:before", "@0.3:beyond"):
-        near(find(RESULTS, f"sections.arm.M2{place}").values, np.full(2, bending), W)
-        near(find(RESULTS, f"sections.arm.s{place}").values, np.array(LUG), 1.0)
+        near(find_values(RESULTS, f"sections.arm.M2{place}").values, np.full(2, bending), W)
+        near(find_values(RESULTS, f"sections.arm.s{place}").values, np.array(LUG), 1.0)
 
 
 def test_of_a_blow() -> None:
     for place, value in (("@0.3:before", -2.0), ("@0.3:beyond", 0.0), ("@0.25", -2.0), ("@end", 0.0)):
-        near(find(RESULTS, f"impulses.0.sections.arm.Q1{place}").values, np.array(value), 2.0)
+        near(find_values(RESULTS, f"impulses.0.sections.arm.Q1{place}").values, np.array(value), 2.0)
 
 
 @pytest.mark.parametrize(
@@ -104,10 +107,10 @@ def test_of_a_blow() -> None:
 )
 def test_what_is_no_place(path: str, message: str, hint: str) -> None:
     if not message:  # nothing acts at the end: either side is the one row
-        near(find(RESULTS, f"sections.{path}").values, np.zeros(2), W)
+        near(find_values(RESULTS, f"sections.{path}").values, np.zeros(2), W)
         return
     with pytest.raises(SpecError) as caught:
-        find(RESULTS, f"sections.{path}")
+        find_values(RESULTS, f"sections.{path}")
     (problem,) = caught.value.problems
     assert problem.code == "unknown-path"
     assert message in problem.message
@@ -118,16 +121,16 @@ def test_a_place_is_measured_between_the_samples_too() -> None:
     swing = study(TEXT.replace("-30*(1 + t)", "-30*sin(3*t)").replace("[0, 1]", "[0, 0.4, 1]"))
     for place, side in (("@0.3:before", 1.0), ("@0.3:beyond", 0.0), ("@0.25", 1.0)):
         s = LUG if "0.3" in place else 0.25
-        found = float(measure.write([measure.parse(f"min sections.arm.Q1{place}")], swing, "table"))
+        found = float(measure.format_measures([measure.parse_measure(f"min sections.arm.Q1{place}")], swing, "table"))
         near(found, -W * (END - s) / END - side * P, W + P, 1e-9)
 
 
 def test_the_number_told_of_a_cut_is_the_one_that_paths_take() -> None:
-    text = measure.write([measure.parse("at 1 sections.arm.M2@0.5")], ARM, "json")
-    peak = json.loads(measure.write([measure.parse("max sections.arm.Q1")], ARM, "json"))
+    text = measure.format_measures([measure.parse_measure("at 1 sections.arm.M2@0.5")], ARM, "json")
+    peak = json.loads(measure.format_measures([measure.parse_measure("max sections.arm.Q1")], ARM, "json"))
     assert (peak["s"], peak["cut"]) == (END, 14)
     near(json.loads(text)["value"], -W * 0.2**2 / (2.0 * END), W)
-    lines = [line.split(",") for line in to_csv(RESULTS, labels_of(ARM.spec)).splitlines()]
+    lines = [line.split(",") for line in to_csv(RESULTS, make_labels(ARM.spec)).splitlines()]
     cuts = [line[-3:] for line in lines if line[1:4] == ["sections", "arm", "Q1"] and line[0] == "0.0"]
     assert [int(cut) for cut, _, _ in cuts] == [0, 1, 2, 3, 4, 5, 6, 6, *range(7, 15)]
     assert [side for _, _, side in cuts][5:9] == ["", "before", "beyond", ""]
@@ -135,9 +138,9 @@ def test_the_number_told_of_a_cut_is_the_one_that_paths_take() -> None:
 
 def test_a_place_is_judged_before_the_run() -> None:
     with pytest.raises(SpecError, match="no cut was asked for there"):
-        measure.check([measure.parse("max abs sections.arm.M2@0.33")], ARM.spec)
+        measure.require_known_paths([measure.parse_measure("max abs sections.arm.M2@0.33")], ARM.spec)
     with pytest.raises(UsageError):
-        measure.parse("max sections.arm.M2 @0.3")
+        measure.parse_measure("max sections.arm.M2 @0.3")
     wrong = TEXT + "expect: [{of: sections.arm.Q1@0.3:under, is: 1}, {of: joints.wall.force@0.3, is: 1}]\n"
     with pytest.raises(SpecError) as caught:
         study(wrong)
@@ -153,6 +156,6 @@ def test_words_and_paths() -> None:
         "a.M2@1.5e-3:beyond.0",
         "a.b",
     ):
-        assert path_of(words_of(path)) == path
-    assert words_of("a.force@0.28.z") == ["a", "force", "@0.28", "z"]
-    assert ["sections", "arm", "M2", "@0.28"] in list(readings(words_of("arm.M2@0.28")))
+        assert join_path(split_path(path)) == path
+    assert split_path("a.force@0.28.z") == ["a", "force", "@0.28", "z"]
+    assert ["sections", "arm", "M2", "@0.28"] in list(iter_readings(split_path("arm.M2@0.28")))

@@ -11,10 +11,10 @@ from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.export import to_csv
-from heuncli.output.tables.page import some_instants
+from heuncli.output.tables.page import select_instants
 from heuncli.results.results import Results
-from heuncli.results.results_paths import find
-from heuncli.results.results_schema import REPORTS, ROWS, TREE, Node, Quantity, quantity
+from heuncli.results.results_paths import find_values
+from heuncli.results.results_schema import REPORTS, ROWS, TREE, Node, Quantity, find_quantity
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.format import HeadEntry
 from heuncli.scene.file_format.load import load
@@ -42,7 +42,7 @@ class Cuts(FakeStudy):
 
 
 def number(words: str, count: int) -> float:
-    return float(measure.write([measure.parse(words)], Cuts(T, {"count": count}), "table"))
+    return float(measure.format_measures([measure.parse_measure(words)], Cuts(T, {"count": count}), "table"))
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])
@@ -60,10 +60,10 @@ def test_a_run_of_three_cuts_is_no_vector(count: int) -> None:
 def test_letters_are_of_space_and_cuts_are_counted(count: int) -> None:
     results = pendulum(T, sections={"run": run_of(count)})
     with pytest.raises(SpecError, match=f"has no 'x'; known: 0 ... {count - 1}"):
-        find(results, "sections.run.M2.x")
-    assert find(results, "sections.run.force.1.x").values.shape == T.shape
-    assert find(results, "sections.run.force.1").of_vectors
-    assert not find(results, "sections.run.M2").of_vectors
+        find_values(results, "sections.run.M2.x")
+    assert find_values(results, "sections.run.force.1.x").values.shape == T.shape
+    assert find_values(results, "sections.run.force.1").is_vector
+    assert not find_values(results, "sections.run.M2").is_vector
     components = {line.split(",")[4] for line in to_csv(results, LABELS).splitlines() if ",run,M2," in line}
     assert components == {str(cut) for cut in range(count)}
 
@@ -74,7 +74,7 @@ def test_what_stands_for_all_instants_is_not_cut_with_them() -> None:
     whole = pendulum(t, sections={"run": run_of(3, t)}, certain_sums=[
         {"terms": {"joints.a.force.x": np.ones(3), "joints.b.force.x": 1.0}, "value": t},
     ])  # fmt: skip
-    short = some_instants(whole, slice(1))
+    short = select_instants(whole, slice(1))
     assert short.time.shape == (1,)
     assert short.sections["run"]["s"].shape == (3,)
     assert short.sections["run"]["M2"].shape == (1, 3)
@@ -132,10 +132,10 @@ def test_every_unit_has_a_dimension() -> None:
 
 def test_every_row_is_found_by_its_path() -> None:
     for row in ROWS:
-        assert quantity(row.path.split(".")) is row
-    assert quantity(("joints", "elbow", "forc")) is None
-    assert quantity(("joints", "elbow")) is None
-    blow = quantity(("impulses", "3", "joints", "elbow", "force"))
+        assert find_quantity(row.path.split(".")) is row
+    assert find_quantity(("joints", "elbow", "forc")) is None
+    assert find_quantity(("joints", "elbow")) is None
+    blow = find_quantity(("impulses", "3", "joints", "elbow", "force"))
     assert blow is not None
     assert blow.units == ("N·s",)
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.loads.redundancy.turning_sums import factors
-from heuncli.output.tables.certain_sums import sums_table
+from heuncli.loads.redundancy.turning_sums import find_factors
+from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.study.quantities.digits import Certainty
 from tests.shared.fakes import pendulum
 
@@ -15,7 +15,7 @@ T = np.linspace(0.0, 2.0, 5)
 
 
 def told(*sums: dict[str, Any]) -> tuple[str, ...]:
-    table = sums_table(pendulum(T, certain_sums=list(sums)), Certainty({("reactions", "N"): 1e-9}, {}))
+    table = make_sums_table(pendulum(T, certain_sums=list(sums)), Certainty({("reactions", "N"): 1e-9}, {}))
     assert table is not None
     return table.notes
 
@@ -57,7 +57,7 @@ def test_moments_and_long_sums_are_left_to_json() -> None:
 
 
 def test_none() -> None:
-    assert sums_table(pendulum(T), Certainty({}, {})) is None
+    assert make_sums_table(pendulum(T), Certainty({}, {})) is None
 
 
 def test_a_factor_that_rounding_made_is_zero() -> None:
@@ -66,7 +66,7 @@ def test_a_factor_that_rounding_made_is_zero() -> None:
     angles = np.concatenate([[0.0, np.pi / 2], np.linspace(0.1, 1.4, 30)])
     wide, seen = np.array([cos_sin(angle) for angle in angles]), rng.standard_normal((2, 3))
     rows = np.stack([np.broadcast_to(seen[0], (32, 3)), np.broadcast_to(seen[1], (32, 3)), wide @ seen], axis=1)
-    c = factors(rows)
+    c = find_factors(rows)
     assert c is not None
     assert (c[:2] == 0.0).sum(axis=1).tolist() == [1, 1] and (c[2:] != 0.0).all()
     assert np.abs(c - np.column_stack([wide, -np.ones(32)]) / np.sqrt(2.0)).max() < 1e-14

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.output.tables.text_table import TextColumn, TextTable, markdown, plain
+from heuncli.output.tables.text_table import TextColumn, TextTable, format_markdown, format_plain
 
 TABLE = TextTable(
     "HEADING  what it is",
@@ -15,7 +15,7 @@ TABLE = TextTable(
 
 
 def test_points_stand_under_each_other() -> None:
-    lines = plain(TABLE).splitlines()
+    lines = format_plain(TABLE).splitlines()
     assert lines == [
         "HEADING  what it is",
         "             F [N]  note",
@@ -30,23 +30,23 @@ def test_points_stand_under_each_other() -> None:
 
 def test_heads_that_are_all_blank_take_no_line() -> None:
     table = TextTable("JOINTS", (TextColumn("", "left"),), ("pin  a pin", "  open: Fx"))
-    assert plain(table).splitlines() == ["JOINTS", "pin  a pin", "  open: Fx"]
+    assert format_plain(table).splitlines() == ["JOINTS", "pin  a pin", "  open: Fx"]
 
 
 def test_no_line_ends_in_blanks() -> None:
-    assert all(line == line.rstrip() for line in plain(TABLE).splitlines())
+    assert all(line == line.rstrip() for line in format_plain(TABLE).splitlines())
 
 
 def test_markdown_has_as_many_cells_in_every_row() -> None:
-    rows = [line for line in markdown(TABLE).splitlines() if line.startswith("|")]
+    rows = [line for line in format_markdown(TABLE).splitlines() if line.startswith("|")]
     assert {row.replace("\\|", "").count("|") for row in rows} == {4}
     assert "| **pivot  ball** |  |  |" in rows
     assert rows[1] == "| --- | ---: | --- |"
 
 
-@pytest.mark.parametrize("write", [plain, markdown])
+@pytest.mark.parametrize("write", [format_plain, format_markdown])
 def test_a_table_may_be_notes_alone(write: object) -> None:
-    assert write(TextTable("SUMS", notes=("a + b = 1 N",))).split() == ["###"] * (write is markdown) + [
+    assert write(TextTable("SUMS", notes=("a + b = 1 N",))).split() == ["###"] * (write is format_markdown) + [
         "SUMS",
         "a",
         "+",

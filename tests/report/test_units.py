@@ -9,8 +9,8 @@ import pytest
 
 from heuncli.app.cli.entry import enter
 from heuncli.base.errors import Finding
-from heuncli.study.quantities.digits import Certainty, with_units
-from heuncli.study.quantities.table_units import Units, asked
+from heuncli.study.quantities.digits import Certainty, add_units
+from heuncli.study.quantities.table_units import Units, parse_units
 from tests.shared.folders import SPECS
 
 
@@ -24,13 +24,13 @@ from tests.shared.folders import SPECS
     ("in, lbf", "N·m", "lbf·in", 1.0 / (0.0254 * 4.4482216152605)), ("km/h", "m/s", "km/h", 3.6), ("mm", "J", "J", 1.0),
 ])  # fmt: skip
 def test_what_is_asked_for_and_what_follows(words: str, unit: str, shown: str, size: float) -> None:
-    told, found = asked(words).of(unit)
+    told, found = parse_units(words).find(unit)
     assert told == shown
     assert found == pytest.approx(size, rel=1e-14)
 
 
 def test_without_any_stresses_alone_are_not_in_si() -> None:
-    assert [Units().of(unit) for unit in ("Pa", "N")] == [("MPa", 1e-6), ("N", 1.0)]
+    assert [Units().find(unit) for unit in ("Pa", "N")] == [("MPa", 1e-6), ("N", 1.0)]
 
 
 @pytest.mark.parametrize(("words", "message"), [
@@ -40,7 +40,7 @@ def test_without_any_stresses_alone_are_not_in_si() -> None:
 ])  # fmt: skip
 def test_what_is_refused(words: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(Finding, match=message):
-        asked(words)
+        parse_units(words)
     assert enter(["run", str(SPECS / "double.yaml"), "--units", words]) == 2
     assert "[bad-option]" in capsys.readouterr().err
 
@@ -70,22 +70,25 @@ def numbers(text: str) -> list[tuple[str, float, float]]:
 def test_the_numbers_are_the_same_to_their_last_digits(spec: str, capsys: pytest.CaptureFixture[str]) -> None:
     only = ("--only", "motion,foundation,joints,forces,energy")
     si, other = (numbers(report(capsys, spec, *only, *words)) for words in ((), ("--units", "kN,mm,kNm,deg,rpm,kJ,kW")))
-    sizes = asked("kN,mm,kNm,deg,rpm,kJ,kW")
+    sizes = parse_units("kN,mm,kNm,deg,rpm,kJ,kW")
     assert len(si) == len(other) > 60
     for (unit, value, last), (shown, told, digit) in zip(si, other, strict=True):
-        assert shown == sizes.of(unit)[0]
-        size = sizes.of(unit)[1]
+        assert shown == sizes.find(unit)[0]
+        size = sizes.find(unit)[1]
         assert abs(told - size * value) <= 0.51 * (digit + size * last), (unit, value, told)
 
 
 def test_digits_are_those_that_the_error_leaves() -> None:
     """20,000 N to 30 N: to hundreds, whatever the unit; and what is lost by rounding is 0 in any."""
-    units = asked("kN,mm")
-    certain = with_units(Certainty({("reactions", "N"): 30.0, ("reactions", "N·m"): 30.0}, {"N": 1e-9}), units)
-    assert certain.style("reactions", "N", 2e4).write(20123.4) == "2.01e+04"
-    assert certain.style("reactions", "kN", 20.0).write(20.1234) == "20.1"
-    assert certain.style("reactions", "kN·mm", 2e4).decimals == certain.style("reactions", "N·m", 2e4).decimals
-    assert certain.style("reactions", "kN", 1e-13).write(1e-13) == "0"
+    units = parse_units("kN,mm")
+    certain = add_units(Certainty({("reactions", "N"): 30.0, ("reactions", "N·m"): 30.0}, {"N": 1e-9}), units)
+    assert certain.choose_style("reactions", "N", 2e4).write(20123.4) == "2.01e+04"
+    assert certain.choose_style("reactions", "kN", 20.0).write(20.1234) == "20.1"
+    assert (
+        certain.choose_style("reactions", "kN·mm", 2e4).decimals
+        == certain.choose_style("reactions", "N·m", 2e4).decimals
+    )
+    assert certain.choose_style("reactions", "kN", 1e-13).write(1e-13) == "0"
 
 
 @pytest.mark.heavy

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.reporting.cases import reported
+from heuncli.app.commands.reporting.cases import solve_report_cases
 from heuncli.app.commands.reporting.request import ReportRequest
-from heuncli.output.client_report.as_html import as_html
-from heuncli.output.client_report.as_markdown import as_markdown
-from heuncli.output.client_report.contents import report_of
-from heuncli.output.client_report.reported import Reported
+from heuncli.output.client_report.as_html import render_html
+from heuncli.output.client_report.as_markdown import render_markdown
+from heuncli.output.client_report.contents import make_report
+from heuncli.output.client_report.reported import ReportData
 from tests.shared.page_reader import OURS, PageReader
 
 FOLDER = Path(__file__).parents[2] / "specs"
@@ -23,9 +23,9 @@ UNIT = re.compile(r"\[[^\]]+\]")
 
 @pytest.mark.parametrize("name", NAMES)
 def test_reports_of_all_examples(name: str) -> None:
-    of = reported(ReportRequest(spec=str(FOLDER / f"{name}.yaml"), quiet=True))
-    report = report_of(of)
-    page, text = as_html(report), as_markdown(report)
+    of = solve_report_cases(ReportRequest(spec=str(FOLDER / f"{name}.yaml"), quiet=True))
+    report = make_report(of)
+    page, text = render_html(report), render_markdown(report)
     read = PageReader(page)
     assert read.tags <= OURS
     assert len(read.ids) == len(set(read.ids))
@@ -37,10 +37,10 @@ def test_reports_of_all_examples(name: str) -> None:
     for figure in read.by_tag.get("figure", []):
         assert UNIT.search(figure)
     every_line_of_the_spec_is_there(of, read, text)
-    assert all(outcome.passed for outcome in of.outcomes)  # as heun check finds, see tests/cli/test_specs.py
+    assert all(outcome.has_passed for outcome in of.outcomes)  # as heun check finds, see tests/cli/test_specs.py
 
 
-def every_line_of_the_spec_is_there(of: Reported, read: PageReader, text: str) -> None:
+def every_line_of_the_spec_is_there(of: ReportData, read: PageReader, text: str) -> None:
     lines = of.text.splitlines()
     assert read.by_tag["code"] == lines
     assert [line.split("  ", 1)[1] if "  " in line.strip() else "" for line in fenced_at_the_end(text)] == [

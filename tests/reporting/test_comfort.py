@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.reporting.cases import reported
+from heuncli.app.commands.reporting.cases import solve_report_cases
 from heuncli.app.commands.reporting.request import ReportRequest
 from heuncli.base.records import replace
-from heuncli.output.client_report.extremes import ends_of
+from heuncli.output.client_report.extremes import find_extremes
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
 from tests.shared.page_reader import PageReader
@@ -155,10 +155,10 @@ def test_what_is_nothing_at_some_instants_and_open_at_others_keeps_its_line(heun
 def test_what_is_open_at_any_instant_is_told_though_no_even_one_sees_it(folder: Path) -> None:
     """Where the run says that a component is open, no extreme of it is whole, nor of a stress that it makes."""
     (folder / "own.yaml").write_text(SWING)
-    run = reported(ReportRequest(spec=str(folder / "own.yaml"), quiet=True)).runs[0]
+    run = solve_report_cases(ReportRequest(spec=str(folder / "own.yaml"), quiet=True)).runs[0]
     paths = ("joints.pivot.force.x", "joints.pivot.force", "sections.mid.stress.mises", "joints.pivot.force.z")
-    assert all(ends is not None and ends.whole for ends in (ends_of(run, path) for path in paths))
-    opened = run.kept.model_copy(update={"open": ["joints.pivot.force.x", "sections.mid.N"]})
-    found = [ends_of(replace(run, kept=opened), path) for path in paths]
-    assert [ends is not None and ends.whole for ends in found] == [False, False, False, True]
-    assert [ends is not None and ends.parts_open for ends in found] == [True, True, True, False]
+    assert all(ends is not None and ends.is_known for ends in (find_extremes(run, path) for path in paths))
+    opened = run.snapshot.model_copy(update={"open": ["joints.pivot.force.x", "sections.mid.N"]})
+    found = [find_extremes(replace(run, snapshot=opened), path) for path in paths]
+    assert [ends is not None and ends.is_known for ends in found] == [False, False, False, True]
+    assert [ends is not None and ends.is_partly_open for ends in found] == [True, True, True, False]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from tests.shared.command import TURNED, Heun
 from tests.shared.page_reader import OURS, PageReader
 
@@ -44,9 +44,11 @@ def test_a_page_shows_and_never_interprets(heun: Heun, folder: Path) -> None:
     read = PageReader(written(heun, folder, "html"))
     assert read.tags <= OURS
     assert {link[0] for link in read.links} == {"#"}
-    assert read.by_tag["h1"] == [shown(HOSTILE)]
-    assert read.by_tag["title"][0] == shown(HOSTILE)
-    assert sum(shown(HOSTILE) in text for text in read.by_tag["dd"]) == 4  # project, author, date, and the case's title
+    assert read.by_tag["h1"] == [escape(HOSTILE)]
+    assert read.by_tag["title"][0] == escape(HOSTILE)
+    assert (
+        sum(escape(HOSTILE) in text for text in read.by_tag["dd"]) == 4
+    )  # project, author, date, and the case's title
     assert any("onerror=alert(3)" in text for text in read.by_tag["dd"])
     assert any("alert(2)" in text for text in read.by_tag["code"])
 
@@ -75,8 +77,8 @@ def test_markdown_shows_and_never_interprets(heun: Heun, folder: Path) -> None:
     assert not read.links
     # some readers of markdown make links of addresses
     assert not re.search(r"(?i)(?<!\\)://|www\.", text.partition("## 1 ")[0])
-    assert read.by_tag["h1"] == [shown(HOSTILE).replace("  ", " ")]
-    assert sum(shown(HOSTILE) in cell for row in read.rows for cell in row) == 4
+    assert read.by_tag["h1"] == [escape(HOSTILE).replace("  ", " ")]
+    assert sum(escape(HOSTILE) in cell for row in read.rows for cell in row) == 4
     assert any("alert(2)" in text for text in read.by_tag["code"])
     assert all(row and len(row) == len(read.rows[0]) for row in read.rows[:5])
 

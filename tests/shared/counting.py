@@ -12,11 +12,11 @@ import pytest
 from heuncli.loads.kinetostatics import sections
 from heuncli.loads.redundancy import self_stress
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.output.snapshots.searches import rows
-from heuncli.output.tables.page import TABLE_DEFAULT, page_of
+from heuncli.output.snapshots.searches import search_rows
+from heuncli.output.tables.page import TABLE_DEFAULT, make_page
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.workflow import solve
 
 Counts = Counter[str]
@@ -43,7 +43,9 @@ def counted() -> Iterator[Counts]:
     with pytest.MonkeyPatch.context() as patch:
         counting(Evaluator, "_recover", "answered", lambda _, arrays, *more: len(arrays["times"]), patch)
         counting(self_stress, "jacobian", "looked", lambda _, layout, times, *more: len(times), patch)
-        counting(sections, "section", "cuts", lambda cuts, states, *more: len(states.x) * cuts.points.shape[-2], patch)
+        counting(
+            sections, "section_block", "cuts", lambda cuts, states, *more: len(states.x) * cuts.points.shape[-2], patch
+        )
         yield found
 
 
@@ -51,9 +53,9 @@ def counts_of(text: str, *, table: bool = False) -> Counts:
     """Of one run, as JSON is made of it; table: and as its tables are, with the extremes searched."""
     spec = load("scene.yaml", text)
     with counted() as found:
-        study = solve(spec, Options(wanted=TABLE_DEFAULT if table else None))
+        study = solve(spec, Options(requested_reports=TABLE_DEFAULT if table else None))
         if table:
-            rows(page_of(study.results, labels_of(study.spec), study.magnitudes), study, TABLE_DEFAULT)
+            search_rows(make_page(study.results, make_labels(study.spec), study.magnitudes), study, TABLE_DEFAULT)
     found["evaluations"] = study.results.work["evaluations"]
     found["steps"] = study.results.work["steps"]
     return found

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import about
+from heuncli.scene.shapes.rotations import rotation_matrix_about
 from tests.shared.flat_in_any_plane import PLANES, Draft, Z, acting, loads
 
 Scene = dict[str, Any]
@@ -102,7 +102,7 @@ def differential(draft: Coupled, name: str) -> None:
 
 def cam(draft: Coupled, name: str) -> None:
     """A disc and a follower that slides or swings, both sides guided."""
-    rng, Q, P = draft.rng, about(Z, float(draft.rng.uniform(0, 6))), draft.somewhere()
+    rng, Q, P = draft.rng, rotation_matrix_about(Z, float(draft.rng.uniform(0, 6))), draft.somewhere()
     slides = bool(rng.random() < 0.5)
     pivot, at = ([0.01, 0, 0], [0.01, 0.1, 0]) if slides else ([-0.3, 0.12, 0], [0.3, 0.02, 0])
     x = np.linspace(0.0, 2.0 * np.pi, 33)
@@ -181,7 +181,7 @@ def wheel(draft: Coupled, name: str) -> None:
 
 def curve(draft: Coupled, name: str) -> None:
     """A body on a path of the carrier, or a roller that runs beside one; what it hangs on does not hold it upright."""
-    rng, Q = draft.rng, about(Z, float(draft.rng.uniform(0, 6)))
+    rng, Q = draft.rng, rotation_matrix_about(Z, float(draft.rng.uniform(0, 6)))
     s, P, axes = np.linspace(-3.0, 3.0, 13), draft.somewhere(), draft.axes(draft.on)
     way = axes @ Q @ np.array([s, 0.3 * np.sin(s), 0.0 * s])
     told = "xyz" if way[2].any() else "xy"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.scene.shapes.rotations import from_vector
+from heuncli.scene.shapes.rotations import rotation_from_vector
 from tests.shared.drafted_mechanisms import (
     X,
     body,
@@ -64,7 +64,7 @@ def random_loop(seed: int, noise: float, kinds: tuple[str, ...] = KINDS, count: 
         a = rng.normal(size=3)
         return a / np.linalg.norm(a)
 
-    R = [from_vector(a) for a in rng.normal(size=(count, 3))]
+    R = [rotation_from_vector(a) for a in rng.normal(size=(count, 3))]
     x = 2.0 * rng.normal(size=(count, 3))
     off = noise * rng.normal(size=(count, 2, 3))
     bodies = [
@@ -72,7 +72,7 @@ def random_loop(seed: int, noise: float, kinds: tuple[str, ...] = KINDS, count: 
             f"b{i}",
             center=0.3 * rng.normal(size=3),
             near_position=x[i] + off[i, 0],
-            near_rotation=from_vector(off[i, 1]) @ R[i],
+            near_rotation=rotation_from_vector(off[i, 1]) @ R[i],
         )
         for i in range(count)
     ]

@@ -13,8 +13,8 @@ import numpy as np
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Joint, Mechanism
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format.models import Directed, Drive
-from heuncli.scene.shapes.rotations import about, from_vector, to_vector
+from heuncli.scene.file_format.models import Drive, FramedVector
+from heuncli.scene.shapes.rotations import rotation_from_vector, rotation_matrix_about, vector_from_rotation
 
 X, Y, Z = np.eye(3)
 
@@ -32,13 +32,13 @@ def in_time(text: str) -> Expression:
 def turned(axis: Any, degrees: float) -> Any:
     """The rotation about an axis."""
     axis = np.asarray(axis, dtype=float)
-    return about(axis / np.linalg.norm(axis), np.radians(degrees))
+    return rotation_matrix_about(axis / np.linalg.norm(axis), np.radians(degrees))
 
 
 def body(name: str, center: Any = (0, 0, 0), **given: Any) -> Body:
     """Given: position, rotation, velocity, angular_velocity (world axes, or Directed), near_..., mass."""
     rates = {
-        k: v if v is None or isinstance(v, Directed) else Directed(vec(v), False)
+        k: v if v is None or isinstance(v, FramedVector) else FramedVector(vec(v), False)
         for k in ("velocity", "angular_velocity")
         for v in [given.get(k)]
     }
@@ -116,7 +116,7 @@ def centre(scene: Mechanism, a: Assembly, i: int) -> Any:
 
 def after(scene: Mechanism, a: Assembly, dt: float) -> Assembly:
     """The poses a short time on, each body moved by its own rates (exact for constant rates)."""
-    R = np.array([from_vector(w * dt) @ R for w, R in zip(a.angular_velocity, a.rotation, strict=True)])
+    R = np.array([rotation_from_vector(w * dt) @ R for w, R in zip(a.angular_velocity, a.rotation, strict=True)])
     return Assembly(a.position + dt * a.velocity, R, a.velocity, a.angular_velocity, (), 0.0)
 
 
@@ -132,14 +132,14 @@ def coordinates(scene: Mechanism, a: Assembly, j: Joint) -> dict[str, Any]:
         "off_line": np.linalg.norm(np.cross(n, D)),
         "between_axes": np.arctan2(np.linalg.norm(np.cross(n, m)), n @ m),
         "turn": Ra.T @ Rb,
-        "angle": to_vector(Ra.T @ Rb) @ j.axis,
+        "angle": vector_from_rotation(Ra.T @ Rb) @ j.axis,
     }
 
 
 def gaps(scene: Mechanism, a: Assembly, j: Joint, relative: Any = None) -> list[float]:
     """Everything that is zero in a closed joint of its kind (without initial values)."""
     c = coordinates(scene, a, j)
-    off = np.linalg.norm(to_vector(c["turn"] @ (np.eye(3) if relative is None else relative).T))
+    off = np.linalg.norm(vector_from_rotation(c["turn"] @ (np.eye(3) if relative is None else relative).T))
     return {
         "ball": [c["apart"]],
         "pin": [c["apart"], c["between_axes"]],

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.output.drawing.figure import Figure
-from heuncli.output.figures.courses import Pictured
-from heuncli.output.figures.diagrams import diagrams
+from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
 from tests.shared.drawn_panels import DrawnPanel, panels
@@ -54,7 +54,7 @@ analysis: {duration: 2*pi/w, samples: 9}
 
 def drawn(study: Study, name: str, at: Sequence[float] | None = None, *, tension_side: bool = False) -> Figure:
     """The figure of one section of one run."""
-    return diagrams([Pictured("", study)], [name], SI, at, tension_side)
+    return make_diagrams([FigureSource("", study)], [name], SI, at, tension_side)
 
 
 def panels_of(study: Study, name: str, at: Sequence[float] | None = None) -> dict[str, DrawnPanel]:

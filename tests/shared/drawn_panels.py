@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.output.drawing.figure import Figure
-from heuncli.output.drawing.layout import laid_out
-from heuncli.output.drawing.picture import svg
+from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.picture import to_svg
 from heuncli.results.results import Array
 from tests.shared.plotted import SVG, PlottedPanel, panels_of
 
@@ -40,7 +40,7 @@ class DrawnPanel(NamedTuple):
 
 def panels(figure: Figure) -> list[DrawnPanel]:
     """The panels of a figure, read from its SVG."""
-    return read(svg(laid_out(figure)))
+    return read(to_svg(lay_out(figure)))
 
 
 def read(text: str) -> list[DrawnPanel]:

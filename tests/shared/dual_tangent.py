@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.multibody.response import numbers_of
+from heuncli.multibody.response import kernel_numbers
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from tests.shared.dual_kernel import dual_module
@@ -17,9 +17,9 @@ def dual_tangent(layout: Layout, t: float, state: Array, closed: float = 0.0) ->
     """A state settled on the closures, and d(ydot)/dy there, (n, n); contacts open, or closed (1)."""
     pack, n = layout.pack, len(state)
     programs = dual_module("expressions").Expressions(
-        pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables
+        pack.code, pack.constants, len(pack.variables), pack.branch_count, pack.starts, pack.tables
     )
-    workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, numbers_of(layout))
+    workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, kernel_numbers(layout))
     workspace.hold([closed] * len(layout.contacts))
     workspace.start(0.0, layout.y0.tolist())
     scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("chosen")

@@ -13,7 +13,7 @@ from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
 from heuncli.loads.kinetostatics.stretch import NODES, Stretch
 from heuncli.output.tables.page import Page
 from heuncli.results.results import Array, Block, Extremes, Magnitudes, Results
-from heuncli.results.results_paths import Numbers, find
+from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, SectionInfo
@@ -43,7 +43,7 @@ LABELS = Labels(
     joints={"pivot": JointInfo("ball", "ground.O", "upper.top"), "elbow": JointInfo("pin", "upper.end", "lower.top")},
     forces={"push": ForceInfo("force"), "motor": ForceInfo("torque", "elbow")},
     sections={"middle": SectionInfo("lower"), "along": SectionInfo("lower")},
-    about="O",
+    moment_point="O",
 )
 UNITS = ("m", "m/s", "m/s²", "rad", "rad/s", "rad/s²", "N", "N·m", "J", "W")
 MAGNITUDES = Magnitudes(dict.fromkeys(UNITS, 10.0), size=2.0, reach=1.0, errors={})  # of `pendulum`
@@ -146,9 +146,9 @@ class FakeStudy:
 
     of_one_instant = False
 
-    def numbers(self, path: str) -> Numbers:
+    def find_numbers(self, path: str) -> PathValues:
         """The numbers at a path of the results."""
-        return find(self.results, path)
+        return find_values(self.results, path)
 
     @property
     def search_times(self) -> Array:
@@ -159,36 +159,36 @@ class FakeStudy:
         """At any instants."""
         return pendulum(np.asarray(times), **self.changes)
 
-    def reports_at(self, times: Array, wanted: Set[str], setup: Any = None) -> Results:
+    def compute_reports(self, times: Array, reports: Set[str], setup: Any = None) -> Results:
         """Some reports at any instants; in a search runs have nodes between their cuts, where they are linear."""
-        found = restrict(self.resample(times), wanted)
+        found = restrict(self.resample(times), reports)
         return (
             found
             if setup is None
             else replace(found, sections=dict(at_nodes(*item) for item in found.sections.items()))
         )
 
-    def recovery_at(self, times: Array, wanted: Set[str], setup: Any = None, *, keep: bool = False) -> Any:
+    def find_recovery(self, times: Array, reports: Set[str], setup: Any = None, *, keep: bool = False) -> Any:
         """What stands for the answers at any instants: of a tree, in which nothing can be open."""
-        return SimpleNamespace(recovered=SimpleNamespace(times=np.asarray(times)), decided=None, setup=setup)
+        return SimpleNamespace(solutions=SimpleNamespace(times=np.asarray(times)), decided=None, setup=setup)
 
-    def reports_of(self, recovery: Any, wanted: Set[str], tells: Any = None) -> Results:
+    def compose_reports(self, recovery: Any, reports: Set[str], open_marker: Any = None) -> Results:
         """Some reports of such answers."""
-        return self.reports_at(recovery.recovered.times, wanted, recovery.setup)
+        return self.compute_reports(recovery.recovered.times, reports, recovery.setup)
 
-    def impulses(self, setup: Any) -> list[Block]:
+    def make_impulse_blocks(self, setup: Any) -> list[Block]:
         """Its blows with nodes between the cuts of their runs."""
         return [
             blow | {"sections": {name: blow_at_nodes(own) for name, own in blow.get("sections", {}).items()}}
             for blow in self.results.impulses
         ]
 
-    def stretched(self, bent: bool) -> Any:
+    def with_whole_cuts(self, bent: bool) -> Any:
         """What stands for the scene with its runs of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
 
     instants_at_once = 1000
-    extremes = Study.extremes
+    extremes = Study.search_extremes
     magnitudes = MAGNITUDES
 
 
@@ -226,9 +226,9 @@ def blow_at_nodes(section: Block) -> Block:
 
 def found_extremes(study: FakeStudy, page: Page, wanted: Set[str]) -> Extremes:
     """Those of a page, as the command searches them."""
-    along = page.along if page.has_runs else None
-    searched = ColumnSearch(page.columns, page.groups(), page.errors(), page.even(), along)
-    return study.extremes(searched, frozenset(wanted), whole=True)
+    along = page.run_columns if page.has_runs else None
+    searched = ColumnSearch(page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), along)
+    return study.search_extremes(searched, frozenset(wanted), whole=True)
 
 
 def spec_like(**changes: Any) -> Any:

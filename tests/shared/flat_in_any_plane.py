@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import about, from_vector
+from heuncli.scene.shapes.rotations import rotation_from_vector, rotation_matrix_about
 
 X, Y, Z = np.eye(3)
 TREE = {  # kinds of joints, and where their axes stand
@@ -26,7 +26,7 @@ CLOSING = {
 }
 PLANES: dict[str, Array] = {  # the plane's axes as rows
     "xy": np.eye(3), "xz": np.eye(3)[[2, 0, 1]], "yz": np.eye(3)[[1, 2, 0]],
-    "from below": np.diag([1.0, -1.0, -1.0]), "tilted": from_vector(np.array([0.3, -0.7, 0.4])),
+    "from below": np.diag([1.0, -1.0, -1.0]), "tilted": rotation_from_vector(np.array([0.3, -0.7, 0.4])),
 }  # fmt: skip
 
 
@@ -50,19 +50,19 @@ class Draft:
 
     def axes(self, body: str) -> Array:
         """From the plane's axes to the body's."""
-        return self.S[body] @ about(Z, -self.psi[body])
+        return self.S[body] @ rotation_matrix_about(Z, -self.psi[body])
 
     def to_body(self, body: str, place: Array) -> list[float]:
         return (self.axes(body) @ (place - self.x[body])).tolist()
 
     def across(self) -> Array:
-        return about(Z, float(self.rng.uniform(0.0, 6.0))) @ X
+        return rotation_matrix_about(Z, float(self.rng.uniform(0.0, 6.0))) @ X
 
     def body(self, name: str, near: Array) -> None:
         rng = self.rng
         self.x[name] = near + self.somewhere()
         self.psi[name] = float(rng.uniform(-1.0, 1.0))
-        self.S[name] = self.E.T if not self.own_axes else from_vector(rng.normal(size=3))
+        self.S[name] = self.E.T if not self.own_axes else rotation_from_vector(rng.normal(size=3))
         S = self.S[name]
         points = rng.normal(size=(5, 3)) * [0.4, 0.4, 0.4 if self.upright else 0.0]
         m = rng.uniform(0.2, 1.0, 5)

@@ -13,7 +13,7 @@ HELP = Path(at_once.HELP)
 CODE = "import sys; from heuncli.app.cli import app; sys.exit(app.read(['--help']))"
 
 
-def help_of_typer(columns: int = at_once.USUAL) -> str:
+def help_of_typer(columns: int = at_once.MIN_HELP_WIDTH) -> str:
     """What typer answers to `heun --help` on a terminal of that width."""
     environment = {**os.environ, "COLUMNS": str(columns)}
     return subprocess.run(

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.source import parse_source
 from heuncli.scene.importers.described import DescribedBody, DescribedEntry, DescribedMachine
-from heuncli.scene.importers.spec_text import spec_text
+from heuncli.scene.importers.spec_text import format_spec
 from tests.shared.imported import described
 from tests.shared.pinocchio_answers import Asked, LinkMotion
 
@@ -68,10 +68,10 @@ class ImportedRobot:
 def imported_robot(text: str, **asked: Any) -> ImportedRobot:
     """A URDF as imported; asked: as ImportAsked takes it. Raises SpecError."""
     machine = described(text, **asked)
-    written = spec_text(machine, "robot.yaml")
+    written = format_spec(machine, "robot.yaml")
     joints = {called_before("joint", entry): entry.name for entry in machine.joints}
     bodies = {called_before("link", body): body.name for body in machine.bodies}
-    return ImportedRobot(machine, written, parse("robot.yaml", written, "").data, joints, bodies)
+    return ImportedRobot(machine, written, parse_source("robot.yaml", written, "").data, joints, bodies)
 
 
 def called_before(kind: str, entry: DescribedEntry | DescribedBody) -> str:

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from heuncli.app.cli.entry import enter
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.multibody.response import carried, columns, jacobian, tangent
+from heuncli.multibody.response import jacobian, multiplier_joint_loads, solve_columns, tangent
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.folders import ROOT, SPECS
@@ -44,14 +44,14 @@ def linear_map(scene: str, text: str | None = None) -> Any:
     """Its parts at the start of a spec, or of a scene as text, for loads and multipliers of any size."""
     setup = set_up(load(str(SPECS / f"{scene}.yaml"), text))
     layout, runner = setup.scene.layout, setup.runner
-    found = runner.recovered(np.zeros(2), np.array([layout.y0, layout.y0]))
+    found = runner.evaluate(np.zeros(2), np.array([layout.y0, layout.y0]))
     at = runner.workspace, found.times, found.states
     multipliers = np.sin(1.0 + np.arange(2 * 3 * len(layout.rows))).reshape(2, 3, -1)
     loads = np.cos(np.arange(2 * 6 * len(layout.place))).reshape(2, -1, 6)
-    answers = columns(at[0], 0.0, found.states[0], loads, np.array([True, False]))
+    answers = solve_columns(at[0], 0.0, found.states[0], loads, np.array([True, False]))
     return {
         "jacobian": jacobian(at[0], layout, *at[1:]).entries.tolist(),
-        "carried": carried(*at, multipliers, len(layout.place)).tolist(),
+        "carried": multiplier_joint_loads(*at, multipliers, len(layout.place)).tolist(),
         "columns": [answers.bodies.tolist(), answers.multipliers.tolist()],
         "tangent": tangent(at[0], 0.0, found.states[0]).tolist(),
     }
@@ -60,12 +60,12 @@ def linear_map(scene: str, text: str | None = None) -> Any:
 def within_steps(scene: str, method: str) -> Any:
     """A motion of a spec in its steps, and between them; `auto`: by the spec's own method."""
     setup = set_up(load(str(SPECS / f"{scene}.yaml")))
-    chosen = setup.method if method == "auto" else method_of(method)
-    run = setup.runner.trajectory(MotionTask(np.linspace(0.0, 0.8, 3), 1e-6, method=chosen))
+    chosen = setup.method if method == "auto" else load_method_by_name(method)
+    run = setup.runner.run(MotionTask(np.linspace(0.0, 0.8, 3), 1e-6, method=chosen))
     times = np.unique(np.concatenate([np.linspace(0.0, 0.8, 17), run.ends, np.nextafter(run.ends[:-1], 1.0)]))
     states = setup.runner.resample(run, times)
-    found = setup.runner.recovered(times, states)
-    return [run.ends.tolist(), run.settled.tolist(), states.tolist(), found.bodies.tolist(), found.rows.tolist()]
+    found = setup.runner.evaluate(times, states)
+    return [run.ends.tolist(), run.is_projected.tolist(), states.tolist(), found.bodies.tolist(), found.rows.tolist()]
 
 
 ANSWERS = {answer.__name__: answer for answer in (results, linear_map, within_steps)}

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.analyses.lagrange.results import LagrangeResults
-from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 
@@ -35,5 +35,7 @@ def double(more: str = "analysis: {type: state}", u: tuple[float, float] = (1.5,
 def told(scene: str | Path | Mapping[str, Any], **asked: Any) -> LagrangeResults:
     """The Lagrange side of a scene: a file, a text, or the oracle's dict."""
     if isinstance(scene, Path):
-        return lagrange(load(str(scene)), LagrangeQuestion(**asked))
-    return lagrange(load("scene.yaml", scene if isinstance(scene, str) else to_yaml(scene)), LagrangeQuestion(**asked))
+        return solve_lagrange(load(str(scene)), LagrangeOptions(**asked))
+    return solve_lagrange(
+        load("scene.yaml", scene if isinstance(scene, str) else to_yaml(scene)), LagrangeOptions(**asked)
+    )

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.load_cases.gathered import gathered
+from heuncli.analyses.load_cases.gathered import assemble_load_cases
 from heuncli.analyses.load_cases.model import LoadCases, LoadedBody
 from heuncli.results.results import Array
 from heuncli.study.ask.asked_instants import parse
@@ -15,7 +15,7 @@ from heuncli.study.ask.study import Study
 
 def cases_of(run: Study, body: str, at: str) -> LoadCases:
     """The load cases of a body at some instants."""
-    return gathered(run, body, parse(at))
+    return assemble_load_cases(run, body, parse(at))
 
 
 class PointMasses(NamedTuple):

@@ -11,5 +11,5 @@ from heuncli.study.ask.study import Study
 
 def measured(run: Study, words: str) -> dict[str, Any]:
     """What `--measure WORDS --format json` prints."""
-    block: dict[str, Any] = json.loads(measure.write([measure.parse(words)], run, "json"))
+    block: dict[str, Any] = json.loads(measure.format_measures([measure.parse_measure(words)], run, "json"))
     return block

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.records import record, replace
-from heuncli.multibody.assembly.gaps import size_of
+from heuncli.multibody.assembly.gaps import mean_arm
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import from_vector, to_vector
+from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation
 from tests.shared.drafted_mechanisms import body, joint, scene
 
 KINDS = ("pin", "ball", "universal", "cylinder", "slide", "line", "plane", "rod", "weld")
@@ -33,7 +33,7 @@ class Known:
 
     def __init__(self, rng: np.random.Generator, count: int) -> None:
         self.rng = rng
-        self.R = np.array([from_vector(a) for a in rng.normal(size=(count, 3))])
+        self.R = np.array([rotation_from_vector(a) for a in rng.normal(size=(count, 3))])
         self.x = rng.normal(size=(count, 3)) * 1.5
         self.center = 0.3 * rng.normal(size=(count, 3))
         self.together = list(range(count))
@@ -147,16 +147,16 @@ class Drawing:
         """Turn [rad] and shift of the centre of mass (by the size) of each body from the drawing, (n, 2)."""
         c = np.array([b.center for b in self.scene.bodies])
         shift = x + np.einsum("nij,nj->ni", R, c) - self.x - np.einsum("nij,nj->ni", self.R, c)
-        turn = [np.linalg.norm(to_vector(Q @ Q0.T)) for Q, Q0 in zip(R, self.R, strict=True)]
+        turn = [np.linalg.norm(vector_from_rotation(Q @ Q0.T)) for Q, Q0 in zip(R, self.R, strict=True)]
         return np.column_stack([turn, np.linalg.norm(shift, axis=1) / self.size])
 
 
 def drawn(k: Known, off: float, mode: str) -> Drawing:
     """The scene with each body drawn off by up to `off`, of the size and in rad; mode: of MODES."""
     n = len(k.x)
-    size = size_of(scene([body(f"b{i}", center=k.center[i]) for i in range(n)], k.joints))
+    size = mean_arm(scene([body(f"b{i}", center=k.center[i]) for i in range(n)], k.joints))
     turns = np.array([*(k.unit() * k.rng.uniform(0, off) for _ in range(n)), np.zeros(3)])  # the last is the ground's
-    R = np.array([from_vector(turns[t]) @ Q for t, Q in zip(k.together, k.R, strict=True)])
+    R = np.array([rotation_from_vector(turns[t]) @ Q for t, Q in zip(k.together, k.R, strict=True)])
     c = k.x + np.einsum("nij,nj->ni", k.R, k.center)
     shifts = np.array([k.unit() * size * k.rng.uniform(0, off) for _ in range(n)])
     x = c + shifts - np.einsum("nij,nj->ni", R, k.center)

@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from functools import cache
 
-from heuncli.analyses.published.cases import case_of
-from heuncli.analyses.published.compared import ComparedTable, compared
+from heuncli.analyses.published.cases import read_case
+from heuncli.analyses.published.compared import TableComparison, compare_case
 from heuncli.analyses.published.files import spec_of
-from heuncli.analyses.published.printed import printed
+from heuncli.analyses.published.printed import parse_decimal
 
 
 def spec_at(name: str, times: Sequence[float], tolerance: float) -> str:
@@ -24,8 +24,8 @@ def spec_at(name: str, times: Sequence[float], tolerance: float) -> str:
 def printed_values(name: str, kind: str = "") -> dict[tuple[str, float | None], float]:
     """The numbers of a case by path and instant; of tables of one kind where that is named."""
     return {
-        (number.path, number.at): printed(number.text).value
-        for table in case_of(name).tables
+        (number.path, number.time): parse_decimal(number.text).value
+        for table in read_case(name).tables
         if kind in ("", table.kind)
         for number in table.numbers
     }
@@ -37,6 +37,6 @@ def course(name: str, path: str) -> dict[float, float]:
 
 
 @cache
-def compared_case(name: str) -> tuple[ComparedTable, ...]:
+def compared_case(name: str) -> tuple[TableComparison, ...]:
     """A case, solved once for all tests."""
-    return compared(case_of(name))
+    return compare_case(read_case(name))

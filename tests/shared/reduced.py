@@ -33,8 +33,8 @@ class Pair(NamedTuple):
     @property
     def told(self) -> tuple[str, ...]:
         """What was left out."""
-        reduced = self.small.setup.reduced
-        return reduced.told if reduced is not None else ()
+        reduced = self.small.setup.reduction
+        return reduced.explanations if reduced is not None else ()
 
 
 def pair(spec: Spec, **options: Any) -> Pair:

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.motion.integration.check.changes import blows_apart
+from heuncli.motion.integration.check.changes import impulse_time_differences
 from heuncli.results.results import Array
-from heuncli.results.results_schema import KIND_OF, SPACE, TREE, Node, Quantity, below, kind_of_error
+from heuncli.results.results_schema import KIND_OF, SPACE, TREE, Node, Quantity, error_kind_of_path, find_child
 from heuncli.study.ask.study import Study
 
 Powers = tuple[int, int, int]
@@ -100,7 +100,7 @@ def leaves(path: tuple[str, ...], node: Node | Quantity | None, one: Any, other:
         return
     for key, value in (one or {}).items():
         there = (other or {}).get(key if key in node else told.name(key))
-        yield from leaves((*path, key), below(node, key), value, there, told)
+        yield from leaves((*path, key), find_child(node, key), value, there, told)
 
 
 def differences(first: Study, second: Study, told: Retold, blocks: tuple[str, ...] = RUNS) -> Iterator[Difference]:
@@ -133,9 +133,9 @@ STRUCK = ("bodies", "foundation", "joints", "stops", "sections")
 def errors_of_blows(run: Study) -> list[float]:
     """What is stated of the instants of a run's blows, as of events at them: by when its other runs have them."""
     history = run.history
-    apart = [blows_apart(history.blows, other) for other in history.beside]
+    apart = [impulse_time_differences(history.impulses, other) for other in history.check_impulses]
     missed = 0.5 * history.estimate["motion"] * float(run.results.time[-1])
-    found = [2.0 * max((a.get(jump.time, missed) for a in apart), default=missed) for jump in history.blows]
+    found = [2.0 * max((a.get(jump.time, missed) for a in apart), default=missed) for jump in history.impulses]
     return [math.inf if math.isnan(error) else error for error in found]  # not a number: another run has none there
 
 
@@ -144,7 +144,7 @@ def compared(
 ) -> Difference:
     """A number of two runs."""
     turning = turns(first, path)
-    unit = row.unit(turning)
+    unit = row.select_unit(turning)
     word = ".".join(path)
     if other is None:
         return Difference(f"{word} is missing", math.inf, 0.0, 0.0)
@@ -175,7 +175,7 @@ def error_of(study: Study, path: tuple[str, ...], unit: str) -> float:
     moved = estimate["motion"] * known.size
     if unit in ("m", "rad"):
         return moved if unit == "m" else 2.0 * moved / shortest(study)
-    kind = kind_of_error(path[0], ".".join(path[1:-1]), path[-1])
+    kind = error_kind_of_path(path[0], ".".join(path[1:-1]), path[-1])
     if (kind, unit) in known.errors:
         return float(known.errors[kind, unit])
     if unit == "J":

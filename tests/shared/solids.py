@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape, Vec
-from heuncli.scene.shapes.forms import Form, form
+from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
 
 
 def vec(x: Array) -> Vec:
@@ -55,7 +55,7 @@ def planes(shape: Shape, rng: np.random.Generator, count: int) -> list[tuple[Arr
         across = unit(np.cross(axis, n))
         off = 10.0 ** rng.uniform(-16.0, 0.0)
         n = unit((n, axis + off * across, across + off * axis)[k % 3])
-        low, high = form([shape]).extent(n)
+        low, high = make_composite_solid([shape]).extent(n)
         near = (high - low) * 10.0 ** rng.uniform(-12.0, -1.0, 2)
         found.append((n, np.concatenate([rng.uniform(low, high, 3), low + near, high - near])))
     return found
@@ -68,16 +68,16 @@ def difference(P: Array, Q: Array, whole: Array) -> float:
     return float(np.abs(scale @ (P - Q) @ scale).max() / whole[3, 3])
 
 
-def beyond(f: Form, n: Array, d: Array) -> Array:
-    return f.pieces(n, d, np.zeros(len(d)))
+def beyond(f: CompositeSolid, n: Array, d: Array) -> Array:
+    return f.piece_inertias(n, d, np.zeros(len(d)))
 
 
-def blur(f: Form, n: Array, d: Array) -> list[float]:
+def blur(f: CompositeSolid, n: Array, d: Array) -> list[float]:
     """By how much pieces change when their planes shift by rounding: much for one along a rod or in a thin disc."""
     low, high = f.extent(n)
     shift = 2e-15 * (1.0 + max(abs(low), abs(high)))
     return [
-        difference(one, other, f.whole())
+        difference(one, other, f.whole_inertia())
         for one, other in zip(beyond(f, n, d - shift), beyond(f, n, d + shift), strict=True)
     ]
 

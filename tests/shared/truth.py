@@ -15,7 +15,7 @@ KNOWN = 0.3  # of what is stated: how well the truth must be known to judge by i
 def off(run: Study, shown: Results, times: Array, tolerance: float, blows: tuple[float, ...] = ()) -> Array:
     """How far the motion is from a run at a local tolerance, up to each instant, of the scene's size."""
     runner, layout = run.setup.runner, run.setup.scene.layout
-    fine = runner.recovered(times, runner.trajectory(MotionTask(times, tolerance, discontinuities=blows)).states).bodies
+    fine = runner.evaluate(times, runner.run(MotionTask(times, tolerance, discontinuities=blows)).states).bodies
     worst = np.zeros(len(times))
     for i, one in enumerate(layout.mechanism.bodies):
         k = layout.place[i]

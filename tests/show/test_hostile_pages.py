@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.base.foreign_text import shown
-from heuncli.output.web_page.inlined import embedded, whole_page
+from heuncli.base.foreign_text import escape
+from heuncli.output.web_page.inlined import assemble_page, to_safe_json
 from tests.shared.command import TURNED, Heun
 from tests.shared.moving_pages import PageElements, data_of
 
@@ -29,25 +29,25 @@ TITLES = [
 
 @pytest.mark.parametrize("title", TITLES)
 def test_a_title_is_shown_and_never_interpreted(title: str) -> None:
-    page = whole_page(title, {"title": shown(title)})
-    usual = PageElements(whole_page("", {}))
+    page = assemble_page(title, {"title": escape(title)})
+    usual = PageElements(assemble_page("", {}))
     elements = PageElements(page)
     assert [tag for tag, _ in elements.found] == [tag for tag, _ in usual.found]
     assert elements.text("script")[1] == usual.text("script")[1]
-    assert elements.text("title") == [shown(title)]
-    assert data_of(page) == {"title": shown(title)}
+    assert elements.text("title") == [escape(title)]
+    assert data_of(page) == {"title": escape(title)}
 
 
 @pytest.mark.parametrize("text", [*TITLES, "\ud800 half a pair"])
 def test_data_are_ascii_without_marks(text: str) -> None:
-    data = embedded({text: [text]})
+    data = to_safe_json({text: [text]})
     assert data.isascii() and not set(data) & set("<>&")
     assert json.loads(data) == {text: [text]}
 
 
 def test_nan_is_no_data() -> None:
     with pytest.raises(ValueError, match="JSON"):
-        embedded({"a": float("nan")})
+        to_safe_json({"a": float("nan")})
 
 
 def test_a_spec_cannot_put_anything_into_its_page(heun: Heun, folder: Path) -> None:

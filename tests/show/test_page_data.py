@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 
 from heuncli.app.commands.show.command import REPORTS
-from heuncli.output.machine_geometry.poses import poses_of
+from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.output.tables.export import to_json
-from heuncli.output.web_page.geometry import looks_of
-from heuncli.output.web_page.moving_page import moving_page
-from heuncli.output.web_page.number_rows import ZEROS
+from heuncli.output.web_page.geometry import make_page_machine
+from heuncli.output.web_page.moving_page import render_moving_page
+from heuncli.output.web_page.number_rows import ZERO_ROWS_PREFIX
 from heuncli.results.results import Array
-from heuncli.results.results_schema import leading_key
+from heuncli.results.results_schema import split_leading_key
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import peak
+from heuncli.study.ask.measure import find_peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units
@@ -37,15 +37,15 @@ PIXEL = 1e-5  # of a scene's reach: far below a pixel
 @cache
 def shown(file: Path) -> tuple[Study, str]:
     """A spec solved, and its page."""
-    study = solve(load(file, checking=False), Options(wanted=REPORTS))
-    return study, moving_page(study, Units())
+    study = solve(load(file, checking=False), Options(requested_reports=REPORTS))
+    return study, render_moving_page(study, Units())
 
 
 def told(document: Any, path: str) -> Any:
     """What stands in the JSON at a path."""
     words = path.split(".")
     while words:
-        key, words = leading_key(document, words)
+        key, words = split_leading_key(document, words)
         document = document[key]
     return document
 
@@ -102,7 +102,9 @@ def test_what_is_0_throughout_is_named(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
     there = {row["path"] for row in rows(data)}
-    said = [name for block in data["blocks"] for told in block["told"] for name in told[len(ZEROS) :].split(", ")]
+    said = [
+        name for block in data["blocks"] for told in block["told"] for name in told[len(ZERO_ROWS_PREFIX) :].split(", ")
+    ]
     for name, joint in study.results.joints.items():
         for quantity in ("force", "moment"):
             if quantity in joint:
@@ -114,21 +116,24 @@ def test_the_poses_are_those_of_the_machine(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
     scene, count = data["scene"], data["count"]
-    poses, machine = poses_of(study, unpacked(data["time"], count)), looks_of(study.spec, study.setup.scene)
+    poses, machine = (
+        compute_poses(study, unpacked(data["time"], count)),
+        make_page_machine(study.spec, study.setup.scene),
+    )
     half, center = np.array(scene["half"]), np.array(scene["center"])
     for body, look in zip(scene["bodies"], machine.bodies, strict=True):
         at = places(body["places"]).reshape(count, 3)
-        np.testing.assert_allclose(at, poses.places[look.name], rtol=1e-6, atol=PIXEL * scene["radius"])
+        np.testing.assert_allclose(at, poses.positions[look.name], rtol=1e-6, atol=PIXEL * scene["radius"])
         w, x, y, z = places(body["attitudes"]).reshape(count, 4).T
         first = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
-        np.testing.assert_allclose(first, poses.attitudes[look.name][:, :, 0], atol=1e-5)
+        np.testing.assert_allclose(first, poses.orientations[look.name][:, :, 0], atol=1e-5)
         clouds = [surface.corners for surface in look.surfaces] + list(look.strokes)
         drawn = [places(s["corners"]) if "corners" in s else None for s in body["surfaces"]]
         drawn += [places(x) for x in (*body["bars"], *body["lines"])]
         for wanted, found in zip(clouds, drawn, strict=True):
             if found is not None:
                 np.testing.assert_allclose(found.reshape(-1, 3), wanted, rtol=1e-6, atol=PIXEL * scene["radius"])
-            stand = poses.at(look.name, wanted, 0)
+            stand = poses.locate_points(look.name, wanted, 0)
             assert np.all(np.abs(stand - center) <= half * (1 + 1e-9) + 1e-9 * scene["radius"])
 
 
@@ -149,14 +154,14 @@ def test_a_belts_strands_touch_both_pulleys() -> None:
 def test_cuts_stand_where_the_results_say(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
-    machine, poses = looks_of(study.spec, study.setup.scene), poses_of(study, study.results.time)
+    machine, poses = make_page_machine(study.spec, study.setup.scene), compute_poses(study, study.results.time)
     for section in data["sections"]:
         block, name = study.results.sections[section["name"]], machine.bodies[section["body"]].name
         if study.spec.sections[section["name"]].reduce_to == "at":
-            found = poses.at(name, np.array(section["cuts"]), 0)
+            found = poses.locate_points(name, np.array(section["cuts"]), 0)
             np.testing.assert_allclose(found, block["point"][0].reshape(-1, 3), atol=1e-9 * data["scene"]["radius"])
         for axis, wanted in (("normal", block["normal"][0]), ("first", block["first_axis"][0])):
-            turned = poses.attitudes[name][0] @ np.array(section[axis])
+            turned = poses.orientations[name][0] @ np.array(section[axis])
             np.testing.assert_allclose(turned, wanted, atol=1e-12)
         e = np.array([section["first"], section["second"], section["normal"]])
         np.testing.assert_allclose(e @ e.T, np.eye(3), atol=1e-12)
@@ -174,20 +179,20 @@ def test_no_largest_load_is_missed(name: str) -> None:
             if len(row["path"].split(".")) > 3:
                 continue
             vectors = np.stack([unpacked(packed, count) for _, packed in row["parts"]], axis=1)
-            found, wanted = float(np.sqrt((vectors**2).sum(axis=1)).max()), peak(study, row["path"], "max").value
+            found, wanted = float(np.sqrt((vectors**2).sum(axis=1)).max()), find_peak(study, row["path"], "max").value
             assert found == pytest.approx(wanted, rel=1e-6), row["path"]
             looked += 1
     for section in data["sections"]:
         for load_ in section["loads"]:
             values = np.abs(unpacked(load_["values"], count * len(section["cuts"])))
-            assert values.max() <= abs(peak(study, load_["path"], "abs").value) * (1 + 1e-9)
+            assert values.max() <= abs(find_peak(study, load_["path"], "abs").value) * (1 + 1e-9)
     assert looked > 0
 
 
 @pytest.mark.parametrize("name", ["double", "crane", "percussion", "table"])
 def test_the_bytes_repeat(name: str) -> None:
     file = SPECS / f"{name}.yaml"
-    again = moving_page(solve(load(file, checking=False), Options(wanted=REPORTS)), Units())
+    again = render_moving_page(solve(load(file, checking=False), Options(requested_reports=REPORTS)), Units())
     assert again == shown(file)[1]
 
 

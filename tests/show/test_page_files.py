@@ -12,7 +12,16 @@ from pathlib import Path
 import pytest
 
 from heuncli.output.web_page import inlined
-from heuncli.output.web_page.inlined import EXPORT, FOLDER, IMPORT, in_order, policy, script, text_of, whole_page
+from heuncli.output.web_page.inlined import (
+    EXPORT,
+    FOLDER,
+    IMPORT,
+    assemble_page,
+    bundle_scripts,
+    make_security_policy,
+    read_page_file,
+    sort_scripts,
+)
 from tests.shared.folders import ROOT
 from tests.shared.moving_pages import PageElements
 
@@ -27,7 +36,7 @@ def digest(text: str) -> str:
 
 
 def test_a_page_without_data_is_small() -> None:
-    assert len(whole_page("", {}).encode()) <= MOST_BYTES
+    assert len(assemble_page("", {}).encode()) <= MOST_BYTES
 
 
 def test_wheels_carry_all_of_its_files() -> None:
@@ -39,18 +48,18 @@ def test_wheels_carry_all_of_its_files() -> None:
 
 
 def test_every_script_is_used_once_and_after_what_it_needs() -> None:
-    order = in_order()
-    assert sorted(order) == SCRIPTS and order[-1] == inlined.FIRST
+    order = sort_scripts()
+    assert sorted(order) == SCRIPTS and order[-1] == inlined.MAIN_SCRIPT
     for place, name in enumerate(order):
-        needed = {found[2] for found in IMPORT.finditer(text_of(f"{name}.js"))}
+        needed = {found[2] for found in IMPORT.finditer(read_page_file(f"{name}.js"))}
         assert needed <= set(order[:place])
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_a_script_imports_what_is_exported(name: str) -> None:
-    text = text_of(f"{name}.js")
+    text = read_page_file(f"{name}.js")
     for found in IMPORT.finditer(text):
-        exported = {other[2] for other in EXPORT.finditer(text_of(f"{found[2]}.js"))}
+        exported = {other[2] for other in EXPORT.finditer(read_page_file(f"{found[2]}.js"))}
         wanted = {word.strip() for word in found[1].strip("{}").split(",")}
         assert wanted <= exported, found[2]
         body = IMPORT.sub("", text)
@@ -59,7 +68,7 @@ def test_a_script_imports_what_is_exported(name: str) -> None:
 
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_a_script_tells_what_it_is_and_fetches_and_interprets_nothing(name: str) -> None:
-    text = text_of(f"{name}.js")
+    text = read_page_file(f"{name}.js")
     lines = text.splitlines()
     assert lines[0].startswith("/** @file ") and len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
     forbidden = ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "fetch(", "http", "await ",
@@ -68,26 +77,26 @@ def test_a_script_tells_what_it_is_and_fetches_and_interprets_nothing(name: str)
 
 
 def test_the_policy_lets_run_what_stands_in_the_page_and_nothing_else() -> None:
-    page = whole_page("a title", {"a": 1})
+    page = assemble_page("a title", {"a": 1})
     elements = PageElements(page)
     (style,), scripts = elements.text("style"), elements.text("script")
-    assert len(scripts) == 2 and scripts[1] == script()
+    assert len(scripts) == 2 and scripts[1] == bundle_scripts()
     said = next(found["content"] for tag, found in elements.found if found.get("http-equiv"))
-    assert said == policy() and said is not None
+    assert said == make_security_policy() and said is not None
     rules = dict(rule.strip().split(" ", 1) for rule in said.split(";"))
     assert rules["default-src"] == "'none'"
     assert rules["script-src"] == digest(scripts[1]) and rules["style-src"] == digest(style)
 
 
 def test_no_element_loads_anything() -> None:
-    elements = PageElements(whole_page("", {})).found
+    elements = PageElements(assemble_page("", {})).found
     assert not [tag for tag, given in elements if "src" in given or any(key.startswith("on") for key in given)]
     assert [given["href"] for _, given in elements if "href" in given] == ["data:,"]
 
 
 def test_every_control_has_a_name() -> None:
     """A button its text or aria-label; an input or select its label around it; all else that is worked aria-label."""
-    page = text_of("machine.html")
+    page = read_page_file("machine.html")
     for tag, given in re.findall(r"<(input|select)\b([^>]*)>", page):
         name = re.search(r'id="([\w-]+)"', given)
         assert name is not None, given
@@ -100,9 +109,9 @@ def test_every_control_has_a_name() -> None:
 
 
 def test_the_ids_that_scripts_look_for_are_there() -> None:
-    there = re.findall(r'\bid="([\w-]+)"', text_of("machine.html"))
+    there = re.findall(r'\bid="([\w-]+)"', read_page_file("machine.html"))
     assert len(there) == len(set(there))
-    asked = {found for name in SCRIPTS for found in re.findall(r'\bby\("([\w-]+)"\)', text_of(f"{name}.js"))}
+    asked = {found for name in SCRIPTS for found in re.findall(r'\bby\("([\w-]+)"\)', read_page_file(f"{name}.js"))}
     assert asked and asked <= set(there)
 
 

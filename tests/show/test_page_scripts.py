@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.web_page.inlined import in_order, script
+from heuncli.output.web_page.inlined import bundle_scripts, sort_scripts
 from heuncli.study.quantities.digits import Style
 
 NODE = shutil.which("node")
@@ -27,8 +27,8 @@ SCENE = {"center": [1.0, 2.0, 3.0], "half": [1.0, 0.5, 2.0], "radius": 2.5, "joi
 
 def run(code: str, given: Any) -> Any:
     """What a piece of script returns of what it is given, with all scripts but the last before it."""
-    text = script()
-    begun = text[: text.index(f"const {in_order()[-1]}_js")]
+    text = bundle_scripts()
+    begun = text[: text.index(f"const {sort_scripts()[-1]}_js")]
     whole = f"{begun}\nconsole.log(JSON.stringify(((given) => {{ {code} }})({json.dumps(given)})));\n}})();\n"
     done = subprocess.run([str(NODE), "-"], input=whole, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.app.commands.show.command import MOST_BODIES
-from heuncli.output.web_page.frames import MOST
+from heuncli.app.commands.show.command import MAX_BODIES
+from heuncli.output.web_page.frames import MAX_PAGE_FRAMES
 from tests.shared.command import TURNED, Heun
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import data_of, unpacked
@@ -56,10 +56,10 @@ def test_a_scene_of_too_many_bodies_is_refused_before_it_is_solved(
         raise AssertionError("solved")
 
     monkeypatch.setattr("heuncli.app.commands.show.command.solve", never)
-    bodies = "".join(f"  b{k}: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n" for k in range(MOST_BODIES + 1))
+    bodies = "".join(f"  b{k}: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n" for k in range(MAX_BODIES + 1))
     (folder / "many.yaml").write_text(f"heun: 1\nbodies:\n{bodies}")
     done = heun("show", "many.yaml", "-o", "x.html")
-    assert done.returncode == 4 and f"at most {MOST_BODIES}" in done.stderr and not (folder / "x.html").exists()
+    assert done.returncode == 4 and f"at most {MAX_BODIES}" in done.stderr and not (folder / "x.html").exists()
 
 
 def written(heun: Heun, folder: Path, *words: str) -> dict[str, object]:
@@ -72,7 +72,7 @@ def written(heun: Heun, folder: Path, *words: str) -> dict[str, object]:
 def test_a_long_run_is_thinned_and_that_is_said(heun: Heun, folder: Path) -> None:
     (folder / "fine.yaml").write_text(TURNED + "analysis: {duration: 1, samples: 3001}\n")
     found = written(heun, folder, "fine.yaml")
-    assert found["count"] == MOST and "asked for at 3001 instants; 59" in str(found["told"])
+    assert found["count"] == MAX_PAGE_FRAMES and "asked for at 3001 instants; 59" in str(found["told"])
     found = written(heun, folder, "fine.yaml", "--frames", "10")
     times = unpacked(found["time"], 10)  # type: ignore[arg-type]
     assert found["count"] == 10 and times[0] == 0.0 and times[-1] == 1.0
@@ -82,7 +82,7 @@ def test_between_few_instants_there_are_more_frames(heun: Heun, folder: Path) ->
     found = written(heun, folder, "swinging.yaml")
     count = int(str(found["count"]))
     times = unpacked(found["time"], count)  # type: ignore[arg-type]
-    assert 100 < count <= MOST
+    assert 100 < count <= MAX_PAGE_FRAMES
     assert all(np.abs(times - t).min() < 1e-12 for t in np.linspace(0.0, 1.0, 11))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from heuncli.base.errors import Problem, SpecError
-from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.source import parse_source
 from tests.shared.folders import SPECS
 
 TEXT = """\
@@ -27,7 +27,7 @@ analysis: {duration: 1, samples: 3}
 
 def problems(text: str) -> list[Problem]:
     with pytest.raises(SpecError) as raised:
-        parse("f", text, "")
+        parse_source("f", text, "")
     return list(raised.value.problems)
 
 
@@ -98,7 +98,7 @@ def test_all_at_once() -> None:
 ])  # fmt: skip
 def test_what_is_yaml_is_no_mismatch(text: str) -> None:
     """Behind it a true mistake is told in its own place."""
-    parse("f", text, "")
+    parse_source("f", text, "")
     if not text.startswith("{"):
         assert places(f"{text}z: [1\n") == [(text.count("\n") + 1, 4)]
 
@@ -115,7 +115,7 @@ def test_one_bracket_wrong_anywhere(name: str) -> None:
             at, c = begin + k, line[k]
             for new in ("", other[c], c + c):
                 try:
-                    parse("f", text[:at] + new + text[at + 1 :], "")
+                    parse_source("f", text[:at] + new + text[at + 1 :], "")
                 except SpecError as error:
                     assert [p.location and p.location.line for p in error.problems] == [number]
         begin += len(line)

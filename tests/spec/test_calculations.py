@@ -6,8 +6,8 @@ import pytest
 
 from heuncli.base.errors import Finding
 from heuncli.base.units import FORCE, LENGTH
-from heuncli.scene.expressions.calculations import Calculations
-from heuncli.scene.expressions.grammar import GivenParameter, Scope, compile_expression
+from heuncli.scene.expressions.calculations import CalculationCache
+from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
 from tests.shared.bits import bits
 
 FIRST = {"a": 2.0, "b": -0.5, "n": 3.0}
@@ -19,8 +19,8 @@ AGAIN = (
 CHOICES = ("a if a > b else b", "a or b", "a and b", "a < b < n", "a**n", "a**(n - 1)", "2**n", "not a if b else n")
 
 
-def kept(text: str) -> Calculations:
-    known = Calculations()
+def kept(text: str) -> CalculationCache:
+    known = CalculationCache()
     compile_expression(text, Scope(FIRST, calculations=known))
     return known
 
@@ -29,7 +29,7 @@ def kept(text: str) -> Calculations:
 def test_a_calculation_is_what_reading_makes_of_it(text: str) -> None:
     known = kept(text)
     for values in (*OTHERS, FIRST):
-        again = known.again(text, values, lambda _: None)
+        again = known.recalculate(text, values, lambda _: None)
         try:
             read = compile_expression(text, Scope(values))
         except Finding:
@@ -42,24 +42,24 @@ def test_a_calculation_is_what_reading_makes_of_it(text: str) -> None:
 
 @pytest.mark.parametrize("text", CHOICES)
 def test_where_a_choice_hangs_on_a_value_nothing_is_kept(text: str) -> None:
-    assert kept(text).known == {}
+    assert kept(text).entries == {}
 
 
 def test_what_there_is_to_be_told_of_is_read() -> None:
     known = kept("a/b")
     for b in (0.0, None):
-        assert known.again("a/b", {"a": 1.0, "b": b}, lambda _: None) is None
+        assert known.recalculate("a/b", {"a": 1.0, "b": b}, lambda _: None) is None
     with pytest.raises(Finding, match="not a finite number"):
         compile_expression("a/b", Scope({"a": 1.0, "b": 0.0}, calculations=known))
 
 
 def test_other_dimensions_are_read_anew() -> None:
     known = kept("a + b")
-    given = {"a": GivenParameter(LENGTH, "2 m"), "b": GivenParameter(FORCE, "1 N")}
+    given = {"a": DimensionedParameter(LENGTH, "2 m"), "b": DimensionedParameter(FORCE, "1 N")}
     with pytest.raises(Finding, match="adds"):
         compile_expression("a + b", Scope(FIRST, given=given, calculations=known))
-    alike = {"a": GivenParameter(LENGTH, "2 m"), "b": GivenParameter(LENGTH, "1 m")}
+    alike = {"a": DimensionedParameter(LENGTH, "2 m"), "b": DimensionedParameter(LENGTH, "1 m")}
     for _ in range(2):
         assert compile_expression("a + b", Scope(FIRST, given=alike, calculations=known)).dimension == LENGTH
     assert compile_expression("a + b", Scope(FIRST, calculations=known)).dimension is None
-    assert len(known.known["a + b"]) == 2
+    assert len(known.entries["a + b"]) == 2

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.scene.file_format.columns import CsvError, columns_of
-from heuncli.scene.file_format.headings import unit_in_heading
+from heuncli.scene.file_format.columns import CsvError, read_column_numbers
+from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 
@@ -42,7 +42,7 @@ MAYBE = ["F_min", "force_in", "p_bar", "F_lb", "x/l", "t/h", "N/mm"]
 def test_every_form_states_the_unit(unit: str) -> None:
     for name in NAMES:
         for form in BRACKETS + (BEHIND if len(unit) > 1 and unit not in ("bar", "N/mm") else []):
-            stated = unit_in_heading(form.format(name=name, unit=unit))
+            stated = find_heading_unit(form.format(name=name, unit=unit))
             assert stated is not None, (form, name)
             assert stated.size == pytest.approx(SIZES[unit], rel=1e-15), (form, name)
             assert stated.name == name
@@ -50,13 +50,13 @@ def test_every_form_states_the_unit(unit: str) -> None:
 
 @pytest.mark.parametrize("text", NO_UNITS)
 def test_no_unit_is_read_into_a_name(text: str) -> None:
-    stated = unit_in_heading(text)
+    stated = find_heading_unit(text)
     assert stated is None or stated.size == 1.0
 
 
 @pytest.mark.parametrize("text", TWO_MEANINGS + MAYBE)
 def test_what_has_two_meanings_is_none_for_certain(text: str) -> None:
-    stated = unit_in_heading(text)
+    stated = find_heading_unit(text)
     assert stated is not None
     assert stated.size is None
     assert stated.meanings
@@ -137,7 +137,7 @@ def test_two_decimal_marks_are_refused_and_one_is_read(seed: int) -> None:
     text = "t;F\n" + "".join(f"{x};{y};1.5,2\n" for x, y in zip(numbers[::2], numbers[1::2], strict=True))
     if {",", "."} <= set(marks):
         with pytest.raises(CsvError, match="two decimal marks"):
-            columns_of(text, 1, 2)
+            read_column_numbers(text, 1, 2)
         return
-    found = [value for row in zip(*columns_of(text, 1, 2), strict=True) for value in row]
+    found = [value for row in zip(*read_column_numbers(text, 1, 2), strict=True) for value in row]
     assert found == [float(number.replace(",", ".")) for number in numbers]

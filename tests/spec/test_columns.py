@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.base.errors import SpecError
 from heuncli.scene.file_format import columns
-from heuncli.scene.file_format.columns import CsvError, NoColumn, columns_of
+from heuncli.scene.file_format.columns import CsvError, MissingColumnError, read_column_numbers
 from heuncli.scene.file_format.load import load
 
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n"
@@ -26,8 +26,8 @@ EXTRA = ["", "   ", "# half way", "  # 1,2", "\t", "1"]
 
 def outcome(text: str) -> object:
     try:
-        return [list(column) for column in columns_of(text, 1, 2)]
-    except (CsvError, NoColumn) as error:
+        return [list(column) for column in read_column_numbers(text, 1, 2)]
+    except (CsvError, MissingColumnError) as error:
         return type(error), str(error), getattr(error, "line", None), error.finding.hint
 
 
@@ -99,9 +99,9 @@ def test_two_million_rows(tmp_path: Path) -> None:
 
 def test_more_rows_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(columns, "MOST_ROWS", 10)
-    assert len(columns_of("1,2\n" * 10, 1)[0]) == 10
+    assert len(read_column_numbers("1,2\n" * 10, 1)[0]) == 10
     with pytest.raises(CsvError) as caught:
-        columns_of("1,2\n" * 11, 1)
+        read_column_numbers("1,2\n" * 11, 1)
     assert caught.value.finding.code == "too-large"
 
 
@@ -123,18 +123,18 @@ def test_points_that_have_no_slope_are_told_without_a_warning(interpolation: str
     ((1.5, "b"), "there is no column 1.5"),
 ])  # fmt: skip
 def test_columns_are_named_as_they_are(wanted: tuple[object, ...], words: str) -> None:
-    with pytest.raises(NoColumn) as caught:
-        columns_of("a,b,a\n1,2,3\n4,5,6\n", *wanted)
+    with pytest.raises(MissingColumnError) as caught:
+        read_column_numbers("a,b,a\n1,2,3\n4,5,6\n", *wanted)
     assert words in caught.value.finding.message
 
 
 def test_a_column_that_is_there_twice_is_named_by_its_number() -> None:
     text = "a,b,a\n1,2,3\n4,5,6\n"
-    assert [*map(list, columns_of(text, "b", 3))] == [[2.0, 5.0], [3.0, 6.0]]
-    with pytest.raises(NoColumn) as caught:
-        columns_of(text, "a", "b")
+    assert [*map(list, read_column_numbers(text, "b", 3))] == [[2.0, 5.0], [3.0, 6.0]]
+    with pytest.raises(MissingColumnError) as caught:
+        read_column_numbers(text, "a", "b")
     assert caught.value.finding.hint == "name it by its number: 1 or 3"
-    assert list(columns_of("²,b\n1,2\n", "²")[0]) == [1.0]
+    assert list(read_column_numbers("²,b\n1,2\n", "²")[0]) == [1.0]
 
 
 @pytest.mark.parametrize("word", ["tables.f.x=²", "tables.f.x.²=1", f"tables.f.x.{'9' * 5000}=1", "expect.²=1"])
@@ -175,10 +175,10 @@ def test_no_message_tells_what_stands_in_a_file_that_is_no_table(wanted: str, se
 
 def test_a_wrong_cell_among_numbers_is_told() -> None:
     with pytest.raises(CsvError) as caught:
-        columns_of("a,b,c\n1,2,z\n3,four,z\n", "a", "b")
+        read_column_numbers("a,b,c\n1,2,z\n3,four,z\n", "a", "b")
     assert (caught.value.line, caught.value.finding.message) == (3, "'four' in column 2 is not a number")
-    with pytest.raises(NoColumn) as other:
-        columns_of("a,b\n1,2\n", "d")
+    with pytest.raises(MissingColumnError) as other:
+        read_column_numbers("a,b\n1,2\n", "d")
     assert other.value.finding.hint == "columns are: a, b; columns may be named by 1, 2, ..., too"
 
 

@@ -9,19 +9,19 @@ import pytest
 
 from heuncli.base.errors import Finding
 from heuncli.base.units import LENGTH, UNITS, parse_unit
-from heuncli.scene.expressions.grammar import GivenParameter, Scope, compile_expression
+from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format.quantity import condition
+from heuncli.scene.file_format.quantity import read_condition
 
 JOINTS = {"shaft": "pin", "guide": "slide"}
-GIVEN = {"L": GivenParameter(LENGTH, "0.5 m")}
+GIVEN = {"L": DimensionedParameter(LENGTH, "0.5 m")}
 SCOPE = Scope({"L": 0.5, "q": 3.0, "m": 2.0}, JOINTS, in_time=True, given=GIVEN)
 COORDINATES = {"shaft.angle": "rad", "shaft.rate": "rad/s", "guide.travel": "m", "guide.speed": "m/s", "t": "s"}
 
 
 def numbers(text: str) -> list[float]:
     """The margins at which a condition in one coordinate changes: the last constant of its comparison."""
-    return [condition(text, SCOPE).constants[-1]]
+    return [read_condition(text, SCOPE).constants[-1]]
 
 
 @pytest.mark.parametrize(
@@ -45,19 +45,19 @@ def test_every_unit_is_read_as_beside_a_key() -> None:
     for unit in UNITS:
         figure = round(rng.uniform(0.1, 50.0), 3)
         size, dimension = parse_unit(unit)
-        found = condition(f"guide.travel*q > {figure} {unit}", SCOPE)
+        found = read_condition(f"guide.travel*q > {figure} {unit}", SCOPE)
         assert found.constants[-1] == figure * size, unit
         same = [name for name, own in COORDINATES.items() if parse_unit(own)[1] == dimension]
         for name in COORDINATES:
             if name in same:
-                condition(f"{name} > {figure} {unit}", SCOPE)
+                read_condition(f"{name} > {figure} {unit}", SCOPE)
             else:
                 assert refused(f"{name} > {figure} {unit}").code == "wrong-dimension", (name, unit)
 
 
 def test_it_is_true_where_the_same_in_si_is() -> None:
-    units = condition("20 mm < guide.travel <= 5 cm and (t > 3 ms or shaft.rate < -30 rpm)", SCOPE)
-    plain = condition("0.02 < guide.travel <= 0.05 and (t > 0.003 or shaft.rate < -30*rpm)", SCOPE)
+    units = read_condition("20 mm < guide.travel <= 5 cm and (t > 3 ms or shaft.rate < -30 rpm)", SCOPE)
+    plain = read_condition("0.02 < guide.travel <= 0.05 and (t > 0.003 or shaft.rate < -30*rpm)", SCOPE)
     rng = random.Random(6)
     for _ in range(200):
         t, x, w = rng.uniform(0.0, 0.006), rng.uniform(0.0, 0.07), rng.uniform(-6.0, 0.0)
@@ -73,7 +73,7 @@ def value(found: Expression, t: float, travel: float, rate: float) -> float:
 def refused(text: str) -> Finding:
     """What is said of a condition that is none."""
     with pytest.raises(Finding) as caught:
-        condition(text, SCOPE)
+        read_condition(text, SCOPE)
     return caught.value
 
 

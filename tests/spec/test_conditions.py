@@ -7,7 +7,7 @@ import math
 import pytest
 
 from heuncli.analyses.variants.axes import AxisError
-from heuncli.analyses.variants.conditions import MeasureCondition, condition_of, in_si
+from heuncli.analyses.variants.conditions import MeasureCondition, find_si_value, parse_condition
 from heuncli.scene.file_format.load import load
 from tests.shared.folders import SPECS
 
@@ -17,7 +17,7 @@ SCENE = load(str(SPECS / "double.yaml"))._replace(parameters={"F": 7.0})
 
 def read(text: str) -> MeasureCondition:
     """What the words mean."""
-    return condition_of(text, "expected MEASURE < VALUE", HINT)
+    return parse_condition(text, "expected MEASURE < VALUE", HINT)
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_refused(text: str, said: str) -> None:
     ],
 )
 def test_in_si(text: str, unit: str, value: float) -> None:
-    assert in_si(read(text), unit, [SCENE], HINT) == pytest.approx(value, rel=1e-15)
+    assert find_si_value(read(text), unit, [SCENE], HINT) == pytest.approx(value, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -75,11 +75,11 @@ def test_in_si(text: str, unit: str, value: float) -> None:
 )
 def test_a_unit_that_does_not_fit(text: str, unit: str, said: str) -> None:
     with pytest.raises(AxisError, match=said):
-        in_si(read(text), unit, [SCENE], HINT)
+        find_si_value(read(text), unit, [SCENE], HINT)
 
 
 def test_a_value_that_hangs_on_what_is_varied() -> None:
     other = SCENE._replace(parameters={"F": 8.0})
-    assert in_si(read("x < 2"), "N", [SCENE, other], HINT) == 2.0
+    assert find_si_value(read("x < 2"), "N", [SCENE, other], HINT) == 2.0
     with pytest.raises(AxisError, match="hangs on what is varied"):
-        in_si(read("x < 2*F"), "N", [SCENE, other], HINT)
+        find_si_value(read("x < 2*F"), "N", [SCENE, other], HINT)

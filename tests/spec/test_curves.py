@@ -13,11 +13,11 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from heuncli.base.errors import SpecError
 from heuncli.kernel.choose import expressions
-from heuncli.scene.expressions.curves import fit
-from heuncli.scene.expressions.discontinuities import discontinuities
+from heuncli.scene.expressions.curves import interpolate_points
+from heuncli.scene.expressions.discontinuities import find_discontinuities
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression, Pack, TableFunction
-from heuncli.scene.file_format.columns import CsvError, NoColumn, columns_of
+from heuncli.scene.file_format.columns import CsvError, MissingColumnError, read_column_numbers
 from heuncli.scene.file_format.load import load
 
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
@@ -36,7 +36,7 @@ def points(n: int, seed: int = 1) -> tuple[list[float], list[float]]:
 @pytest.mark.parametrize("kind", ["linear", "cubic", "pchip"])
 def test_curves_are_scipys(n: int, kind: str) -> None:
     x, y = points(n, seed=n)
-    curve = of(fit("f", x, y, kind, None, None))
+    curve = of(interpolate_points("f", x, y, kind, None, None))
     oracle = {"linear": None, "cubic": CubicSpline(x, y), "pchip": PchipInterpolator(x, y)}[kind]
     for t in np.linspace(x[0], x[-1], 101).tolist():
         value, first, second = curve.derivatives(t)
@@ -50,7 +50,7 @@ def test_curves_are_scipys(n: int, kind: str) -> None:
 @pytest.mark.parametrize("n", [2, 3, 4, 5, 17])
 def test_a_natural_spline_is_scipys(n: int) -> None:
     x, y = points(n, seed=n)
-    curve, oracle = of(fit("f", x, y, "natural", "hold", None)), CubicSpline(x, y, bc_type="natural")
+    curve, oracle = of(interpolate_points("f", x, y, "natural", "hold", None)), CubicSpline(x, y, bc_type="natural")
     for t in np.linspace(x[0], x[-1], 101)[1:-1].tolist():
         found, known = list(curve.derivatives(t)), [float(oracle(t, k)) for k in range(3)]
         assert found == pytest.approx(known, rel=1e-9, abs=1e-9)
@@ -88,18 +88,18 @@ def test_periodic_curves_close_smoothly(n: int) -> None:
     x, y = points(n, seed=n)
     y[-1] = y[0]
     period = x[-1] - x[0]
-    spline = of(fit("f", x, y, "cubic", None, period))
+    spline = of(interpolate_points("f", x, y, "cubic", None, period))
     oracle = CubicSpline(x, y, bc_type="periodic")
     for t in np.linspace(x[0] - 3 * period, x[-1] + 3 * period, 203).tolist():
         assert spline.value(t) == pytest.approx(float(oracle(t)), abs=1e-9)
     for kind in ("cubic", "pchip"):
-        curve = of(fit("f", x, y, kind, None, period))
+        curve = of(interpolate_points("f", x, y, kind, None, period))
         before, after = curve.derivatives(math.nextafter(x[-1], 0.0)), curve.derivatives(x[-1])
         assert before[:2] == pytest.approx(after[:2], abs=1e-9)
 
 
 def test_a_monotone_curve_does_not_overshoot() -> None:
-    curve = of(fit("f", [0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 1.0, 1.0], "pchip", None, None))
+    curve = of(interpolate_points("f", [0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 1.0, 1.0], "pchip", None, None))
     values = [curve.value(t) for t in np.linspace(0.0, 3.0, 301)]
     assert min(values) == 0.0
     assert max(values) == 1.0
@@ -107,7 +107,10 @@ def test_a_monotone_curve_does_not_overshoot() -> None:
 
 def test_outside() -> None:
     x, y = [1.0, 2.0, 3.0], [5.0, 7.0, 4.0]
-    refused, held = of(fit("f", x, y, "linear", None, None)), of(fit("f", x, y, "linear", "hold", None))
+    refused, held = (
+        of(interpolate_points("f", x, y, "linear", None, None)),
+        of(interpolate_points("f", x, y, "linear", "hold", None)),
+    )
     for t in (0.999999, 3.000001, -1e9, 1e9):
         assert math.isnan(refused.value(t))
         assert all(map(math.isnan, refused.derivatives(t)))
@@ -118,16 +121,16 @@ def test_outside() -> None:
 
 
 def test_the_chain_rule_goes_through_tables() -> None:
-    curve = of(fit("f", *points(9), "cubic", None, None), "table(f, 2 + sin(t))")
+    curve = of(interpolate_points("f", *points(9), "cubic", None, None), "table(f, 2 + sin(t))")
     value, first, second = curve.derivatives(0.4)
-    inner = of(fit("f", *points(9), "cubic", None, None)).derivatives(2.0 + math.sin(0.4))
+    inner = of(interpolate_points("f", *points(9), "cubic", None, None)).derivatives(2.0 + math.sin(0.4))
     c, s = math.cos(0.4), math.sin(0.4)
     assert [value, first, second] == pytest.approx([inner[0], inner[1] * c, inner[2] * c * c - inner[1] * s], rel=1e-12)
 
 
 def test_constants_from_tables() -> None:
-    table = fit("f", [0.0, 1.0], [2.0, 4.0], "linear", None, None)
-    other = fit("g", [0.0, 1.0], [0.0, 10.0], "linear", None, None)
+    table = interpolate_points("f", [0.0, 1.0], [2.0, 4.0], "linear", None, None)
+    other = interpolate_points("g", [0.0, 1.0], [0.0, 10.0], "linear", None, None)
     scope = Scope(tables={"f": table, "g": other}, in_time=True)
     found = compile_expression("table(f, 0.5) + table(g, 0.1)*table(f, 0)", scope)
     assert found.constant == 5.0
@@ -140,12 +143,12 @@ def test_constants_from_tables() -> None:
     "a,c,b\n1,x,2\n3,y,4\n",
 ])  # fmt: skip
 def test_files_as_programs_write_them(text: str) -> None:
-    assert [*map(list, columns_of(text, "a", "b"))] == [[1.0, 3.0], [2.0, 4.0]]
+    assert [*map(list, read_column_numbers(text, "a", "b"))] == [[1.0, 3.0], [2.0, 4.0]]
 
 
 def test_columns_by_number() -> None:
-    assert [*map(list, columns_of("1,2,3\n4,5,6\n", 3, "1"))] == [[3.0, 6.0], [1.0, 4.0]]
-    assert [*map(list, columns_of("a,b\n1,2\n", 2, 1))] == [[2.0], [1.0]]
+    assert [*map(list, read_column_numbers("1,2,3\n4,5,6\n", 3, "1"))] == [[3.0, 6.0], [1.0, 4.0]]
+    assert [*map(list, read_column_numbers("a,b\n1,2\n", 2, 1))] == [[2.0], [1.0]]
 
 
 @pytest.mark.parametrize(("text", "line", "words"), [
@@ -156,7 +159,7 @@ def test_columns_by_number() -> None:
 ])  # fmt: skip
 def test_files_with_accidents(text: str, line: int, words: str) -> None:
     with pytest.raises(CsvError) as caught:
-        columns_of(text, "a", "b")
+        read_column_numbers(text, "a", "b")
     assert caught.value.line == line
     assert words in caught.value.finding.message
 
@@ -169,8 +172,8 @@ def test_files_with_accidents(text: str, line: int, words: str) -> None:
     ("1,2\n", (0, 1), 0, "no column 0", "from 1 to 2"),
 ])  # fmt: skip
 def test_columns_that_are_not_there(text: str, wanted: tuple[object, ...], number: int, words: str, hint: str) -> None:
-    with pytest.raises(NoColumn) as caught:
-        columns_of(text, *wanted)
+    with pytest.raises(MissingColumnError) as caught:
+        read_column_numbers(text, *wanted)
     assert caught.value.number == number
     assert words in caught.value.finding.message
     assert hint in (caught.value.finding.hint or "")
@@ -267,7 +270,7 @@ def test_units_inside_lists() -> None:
 def test_the_numbers_of_a_table_stand_once_however_many_expressions_use_it() -> None:
     """Values, bounds and jumps of a hundred expressions, one of them at a constant: no copy of the table is made."""
     many = 20_000
-    table = fit("f", [0.001 * i for i in range(many)], [0.0] * many, "linear", "hold", None)
+    table = interpolate_points("f", [0.001 * i for i in range(many)], [0.0] * many, "linear", "hold", None)
     scope = Scope(tables={"f": table}, in_time=True)
     size = 8 * len(table.numbers)
     tracemalloc.start()
@@ -275,7 +278,7 @@ def test_the_numbers_of_a_table_stand_once_however_many_expressions_use_it() -> 
         made = [compile_expression(f"{i} + table(f, {'t' if i else '0.5'})", scope) for i in range(100)]
         assert [e.value(0.25) for e in made] == list(range(100))
         assert [e.bounds([0.0], [1.0])[1][0] for e in made[1:]] == list(range(1, 100))
-        assert discontinuities(made[1], 0.0, 0.0025) == pytest.approx([0.001, 0.002])
+        assert find_discontinuities(made[1], 0.0, 0.0025) == pytest.approx([0.001, 0.002])
         pack = Pack()
         for e in made:
             pack.add(e)
@@ -289,7 +292,7 @@ def test_the_numbers_of_a_table_stand_once_however_many_expressions_use_it() -> 
 
 @pytest.mark.skipif(not expressions.COMPILED, reason="only there it is read by its address")
 def test_numbers_that_the_kernel_reads_keep_their_place() -> None:
-    table = fit("f", [0.0, 1.0], [0.0, 1.0], "linear", "hold", None)
+    table = interpolate_points("f", [0.0, 1.0], [0.0, 1.0], "linear", "hold", None)
     pack = compile_expression("table(f, t)", Scope(tables={"f": table}, in_time=True)).pack
     assert pack.expressions is not None
     with pytest.raises(BufferError):

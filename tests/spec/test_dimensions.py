@@ -12,8 +12,8 @@ from heuncli.base.errors import Finding, SpecError
 from heuncli.base.records import replace
 from heuncli.base.units import NUMBER, Dimension, parse_unit
 from heuncli.scene.expressions import dimensions
-from heuncli.scene.expressions.curves import fit
-from heuncli.scene.expressions.grammar import GivenParameter, Scope, compile_expression
+from heuncli.scene.expressions.curves import interpolate_points
+from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.load import load
 from tests.shared.folders import ROOT
@@ -25,9 +25,11 @@ WRITTEN = {
     "J": "2 kg*m^2",
 }  # fmt: skip
 DIMENSIONS = {name: parse_unit(text.partition(" ")[2])[1] for name, text in WRITTEN.items()}
-GIVEN = {name: GivenParameter(DIMENSIONS[name], text) for name, text in WRITTEN.items()}
+GIVEN = {name: DimensionedParameter(DIMENSIONS[name], text) for name, text in WRITTEN.items()}
 VALUES = {name: 0.7 + 0.13 * i for i, name in enumerate(WRITTEN)}
-GAS = replace(fit("gas", [0.0, 1.0], [2.0, 3.0], "linear", "hold", None), dimensions=(NUMBER, parse_unit("bar")[1]))
+GAS = replace(
+    interpolate_points("gas", [0.0, 1.0], [2.0, 3.0], "linear", "hold", None), dimensions=(NUMBER, parse_unit("bar")[1])
+)
 SCOPE = Scope({**VALUES, "q": 3.0}, {"pin": "pin", "guide": "slide"}, {"gas": GAS}, in_time=True, given=GIVEN)
 
 
@@ -149,13 +151,13 @@ def value(text: str, units: tuple[float, float, float]) -> float:
 def test_a_certain_dimension_is_what_a_change_of_units_shows(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where nothing without a unit is added to what has one: that is taken to have the same."""
     kinds: list[set[str]] = []
-    alike = dimensions.alike
+    alike = dimensions.common_dimension
 
     def kept(name: str, a: dimensions.Measure, b: dimensions.Measure, strict: bool) -> dimensions.Measure:
         kinds.append({a.kind, b.kind})
         return alike(name, a, b, strict)
 
-    monkeypatch.setattr(dimensions, "alike", kept)
+    monkeypatch.setattr(dimensions, "common_dimension", kept)
     draw = random.Random(seed)
     text = drawn(draw, draw.randint(1, 4))
     units = (1.7, 0.6, 2.3)

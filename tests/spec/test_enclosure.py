@@ -17,7 +17,7 @@ import pytest
 
 from heuncli.kernel.choose import enclosure, jets
 from heuncli.kernel.form import KERNEL
-from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression, Pack
 from tests.shared.random_programs import (
@@ -33,12 +33,12 @@ PROGRAMS = 1000 if KERNEL == "compiled" else 60
 TIME, NONE, ANY = (1.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), (-math.inf, math.inf)
 KNOTS = [-9.0, -1.0, 0.5, 1.0, 2.0, 9.0]
 TABLES = {
-    "ramp": fit("ramp", [-9.0, 2.0, 9.0], [0.0, 1.0, 5.0], "linear", "hold", None),
-    "ends": fit("ends", KNOTS, [2.0, 0.0, -1.0, 4.0, 4.0, 2.0], "linear", None, None),
-    "curve": fit("curve", KNOTS, [2.0, 0.0, -1.0, 4.0, 4.0, 2.0], "cubic", "hold", None),
-    "gentle": fit("gentle", KNOTS, [2.0, 0.0, -1.0, 4.0, 4.0, 2.0], "pchip", None, None),
-    "turns": fit("turns", [-1.0, 0.5, 1.0, 3.0], [2.0, -1.0, 4.0, 2.0], "linear", None, 4.0),
-    "round": fit("round", [-1.0, 0.5, 1.0, 3.0], [2.0, -1.0, 4.0, 2.0], "cubic", None, 4.0),
+    "ramp": interpolate_points("ramp", [-9.0, 2.0, 9.0], [0.0, 1.0, 5.0], "linear", "hold", None),
+    "ends": interpolate_points("ends", KNOTS, [2.0, 0.0, -1.0, 4.0, 4.0, 2.0], "linear", None, None),
+    "curve": interpolate_points("curve", KNOTS, [2.0, 0.0, -1.0, 4.0, 4.0, 2.0], "cubic", "hold", None),
+    "gentle": interpolate_points("gentle", KNOTS, [2.0, 0.0, -1.0, 4.0, 4.0, 2.0], "pchip", None, None),
+    "turns": interpolate_points("turns", [-1.0, 0.5, 1.0, 3.0], [2.0, -1.0, 4.0, 2.0], "linear", None, 4.0),
+    "round": interpolate_points("round", [-1.0, 0.5, 1.0, 3.0], [2.0, -1.0, 4.0, 2.0], "cubic", None, 4.0),
 }
 ONE = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "step", "sign")
 TWO = ("min({}, {})", "max({}, {})", "hypot({}, {})", "atan2({}, {})")
@@ -62,16 +62,18 @@ def test_no_value_rate_or_second_derivative_of_any_program_is_outside() -> None:
         programs, span = programs_of(program), (0, len(program.code))
         for _ in range(3):
             begin, end = some_stretch(random)
-            found = enclosure.span_of(programs, *span, [(begin, end, *TIME)] * VARIABLES)
+            found = enclosure.find_span(programs, *span, [(begin, end, *TIME)] * VARIABLES)
             for t in instants(random, begin, end, 10):
                 value = programs.evaluate(*span, [t] * VARIABLES)
                 if math.isnan(value):
                     continue
                 bounds = found
-                if jets.derivatives(programs, *span, t)[0] != value:  # of the branch that begins there
+                if jets.find_derivatives(programs, *span, t)[0] != value:  # of the branch that begins there
                     behind = (begin, max(end, math.nextafter(t, math.inf)), *TIME)
-                    bounds = enclosure.span_of(programs, *span, [behind] * VARIABLES)
-                for low, high, x in zip(bounds[::2], bounds[1::2], jets.derivatives(programs, *span, t), strict=True):
+                    bounds = enclosure.find_span(programs, *span, [behind] * VARIABLES)
+                for low, high, x in zip(
+                    bounds[::2], bounds[1::2], jets.find_derivatives(programs, *span, t), strict=True
+                ):
                     assert not math.isfinite(x) or low <= x <= high, (program, begin, end, t)
                     seen += math.isfinite(x)
                     bounded += math.isfinite(x) and high - low < math.inf
@@ -97,7 +99,7 @@ def test_held_values_are_inside_and_changes_of_branch_in_doubt() -> None:
         ends = zip(at(begin), at(end), slopes, strict=True)
         ranges = [(min(x, y), max(x, y), slope, slope, 0.0, 0.0) for x, y, (_, slope) in ends]
         programs.hold(HELD)
-        low, high = enclosure.span_of(programs, *span, ranges)[:2]
+        low, high = enclosure.find_span(programs, *span, ranges)[:2]
         doubts = programs.take_doubts()
         assert programs.take_doubts() == []
         clear += not doubts
@@ -125,9 +127,9 @@ def doubts(text: str, held: float, *ranges: tuple[float, float], rate: tuple[flo
     """The doubts of an expression whose branches are all held as given, over ranges of its coordinates."""
     pack, expression = Pack(), read(text)
     span = pack.add(expression)
-    pack.expressions.hold_branches([held] * pack.held)
+    pack.expressions.hold_branches([held] * pack.branch_count)
     pack.expressions.hold(HELD)
-    enclosure.span_of(pack.expressions, *span, [(0.0, 1.0, *TIME), *((*r, *rate, *ANY) for r in ranges)])
+    enclosure.find_span(pack.expressions, *span, [(0.0, 1.0, *TIME), *((*r, *rate, *ANY) for r in ranges)])
     return list(pack.expressions.take_doubts())
 
 
@@ -233,7 +235,9 @@ def test_bounds_come_down_with_the_stretch(text: str) -> None:
     expression = read(text)
     natural, closer, rounding = [], [], 1e-14 * abs(expression.value(1.2))
     for width in (1e-2, 1e-3, 1e-4):
-        low, high = enclosure.span_of(expression.pack.expressions, 0, expression.count, [(1.2, 1.2 + width, *TIME)])[:2]
+        low, high = enclosure.find_span(expression.pack.expressions, 0, expression.count, [(1.2, 1.2 + width, *TIME)])[
+            :2
+        ]
         least, largest = expression.bounds([1.2], [1.2 + width])
         values = np.array(expression.sample(np.linspace(1.2, 1.2 + width, 101).tolist()))
         natural.append(high - low)
@@ -251,7 +255,7 @@ def test_tables_lie_between_their_least_and_largest_value(name: str) -> None:
     random, expression = Random(24), read(f"table({name}, t)")
     for _ in range(40):
         begin, end = some_stretch(random)
-        found = enclosure.span_of(expression.pack.expressions, 0, expression.count, [(begin, end, *TIME)])
+        found = enclosure.find_span(expression.pack.expressions, 0, expression.count, [(begin, end, *TIME)])
         values = np.array(expression.sample(np.linspace(begin, end, 20_001 if KERNEL == "compiled" else 501).tolist()))
         slack = 5 * 2.3e-16 * 1540 + (1e-6 if KERNEL == "compiled" else 1e-2) * (end - begin)
         assert found[0] == pytest.approx(values.min(), abs=slack) and found[0] <= values.min()
@@ -261,7 +265,7 @@ def test_tables_lie_between_their_least_and_largest_value(name: str) -> None:
 def test_beyond_its_ends_a_table_stands_still_or_has_no_value() -> None:
     held, refused = read("table(ramp, t)"), read("table(ends, t)")
     for expression, found in ((held, (5.0, 5.0, *NONE)), (refused, (math.nan,) * 6)):
-        given = enclosure.span_of(expression.pack.expressions, 0, expression.count, [(9.5, 11.0, *TIME)])
+        given = enclosure.find_span(expression.pack.expressions, 0, expression.count, [(9.5, 11.0, *TIME)])
         assert given == pytest.approx(found, rel=1e-15, nan_ok=True)
 
 
@@ -274,14 +278,14 @@ def test_beyond_its_ends_a_table_stands_still_or_has_no_value() -> None:
 ])  # fmt: skip
 def test_functions_are_taken_where_they_have_values(text: str, low: float, high: float) -> None:
     expression = read(text)
-    found = enclosure.span_of(expression.pack.expressions, 0, expression.count, [(-1.0, 4.0, *TIME)])
+    found = enclosure.find_span(expression.pack.expressions, 0, expression.count, [(-1.0, 4.0, *TIME)])
     assert found[0] == pytest.approx(low, rel=3e-15) and found[1] == pytest.approx(high, rel=3e-15)
 
 
 @pytest.mark.parametrize("text", ["sqrt(t)", "log(t)", "asin(t)", "acos(t - 2)", "t**0.5", "(0*t)**-1", "1/(0*t)"])
 def test_what_has_no_value_at_all_has_no_bounds(text: str) -> None:
     expression = read(text)
-    found = enclosure.span_of(expression.pack.expressions, 0, expression.count, [(-4.0, -2.0, *TIME)])
+    found = enclosure.find_span(expression.pack.expressions, 0, expression.count, [(-4.0, -2.0, *TIME)])
     assert all(map(math.isnan, found))
 
 
@@ -293,7 +297,7 @@ def test_what_has_no_value_at_all_has_no_bounds(text: str) -> None:
 def test_derivatives_are_unknown_where_there_may_be_a_jump_between(text: str, rate: Any, second: Any) -> None:
     """Of a kink the rate is known: it is one or the other."""
     expression = read(text)
-    found = enclosure.span_of(expression.pack.expressions, 0, expression.count, [(0.0, 2.0, *TIME)])
+    found = enclosure.find_span(expression.pack.expressions, 0, expression.count, [(0.0, 2.0, *TIME)])
     assert found[2:4] == pytest.approx(rate, rel=3e-15)
     if text != "sqrt(t)":
         assert found[4:] == second
@@ -336,8 +340,8 @@ def test_compiled_and_plain_give_the_same_bits() -> None:
 def test_the_doors_refuse_what_does_not_fit() -> None:
     programs = read("2*t").pack.expressions
     with pytest.raises(ValueError, match="no program"):
-        enclosure.span_of(programs, 0, 4, [(0.0, 1.0, *TIME)])
+        enclosure.find_span(programs, 0, 4, [(0.0, 1.0, *TIME)])
     with pytest.raises(ValueError, match="1 variables, not 2"):
-        enclosure.span_of(programs, 0, 3, [(0.0, 1.0, *TIME)] * 2)
+        enclosure.find_span(programs, 0, 3, [(0.0, 1.0, *TIME)] * 2)
     with pytest.raises(ValueError, match="as many"):
-        enclosure.bounds_over(programs, 0, 3, *(array("d", [0.0] * n) for n in (2, 2, 2, 1)))
+        enclosure.find_bounds(programs, 0, 3, *(array("d", [0.0] * n) for n in (2, 2, 2, 1)))

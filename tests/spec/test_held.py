@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from heuncli.kernel.choose import expressions
-from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import OPS, Expression, Pack
 from tests.shared.plain_kernel import plain_module
@@ -20,9 +20,9 @@ from tests.shared.random_programs import VARIABLES, random_program
 FREE, HELD, TAKEN = (expressions.HOLDING[name] for name in ("free", "held", "taken"))
 KNOTS, HEIGHTS = [-1.0, 0.5, 1.0, 3.0], [2.0, -1.0, 4.0, 2.0]
 TABLES = {
-    "ends": fit("ends", KNOTS, HEIGHTS, "cubic", None, None),
-    "goes_on": fit("goes_on", KNOTS, HEIGHTS, "linear", "hold", None),
-    "turns": fit("turns", KNOTS, HEIGHTS, "linear", None, 4.0),
+    "ends": interpolate_points("ends", KNOTS, HEIGHTS, "cubic", None, None),
+    "goes_on": interpolate_points("goes_on", KNOTS, HEIGHTS, "linear", "hold", None),
+    "turns": interpolate_points("turns", KNOTS, HEIGHTS, "linear", None, 4.0),
 }
 SCOPE = Scope(joints={"g": "slide", "p": "pin"}, tables=TABLES, in_time=True)
 
@@ -119,7 +119,7 @@ def test_a_cubic_goes_on_as_the_same_cubic() -> None:
 
 def test_each_link_of_a_chain_has_its_own_branch() -> None:
     held = Held("5 if 0 < x <= 2 else 7", 1.0)
-    assert held.expression.held == ("0 < g.travel", "g.travel <= 2")
+    assert held.expression.held_branches == ("0 < g.travel", "g.travel <= 2")
     assert held.branches == [1.0, 1.0]
     assert held(3.0) == held(-3.0) == 5.0
     assert Held("5 if 0 < x <= 2 else 7", 3.0).branches == [1.0, 0.0]
@@ -136,7 +136,7 @@ def test_no_value_but_with_its_branch() -> None:
 
 def test_what_is_not_run_keeps_its_branch() -> None:
     held = Held("sign(x) if y > 0 else 3", 1.0, -5.0)
-    assert held.expression.held == ("sign(g.travel)", "p.angle > 0")
+    assert held.expression.held_branches == ("sign(g.travel)", "p.angle > 0")
     held.programs.hold_branches([7.0, 5.0])
     held.programs.hold(TAKEN)
     held.programs.evaluate(*held.span, [0.0, -1.0, -5.0])
@@ -150,7 +150,7 @@ def test_what_is_not_run_keeps_its_branch() -> None:
     "x if t and not t else 1",
 ])  # fmt: skip
 def test_branches_in_time_alone_are_not_held(text: str) -> None:
-    assert read(text).held == ()
+    assert read(text).held_branches == ()
     assert OPS["hold"] not in read(text).code[::2]
 
 
@@ -162,16 +162,16 @@ def test_branches_in_time_alone_are_not_held(text: str) -> None:
     ("1 if step(x) and (y > 0 or y < -1) else 0", ("step(g.travel)", "p.angle > 0", "p.angle < -1")),
 ])  # fmt: skip
 def test_branches_are_named_as_they_are_written(text: str, held: tuple[str, ...]) -> None:
-    assert read(text).held == held
+    assert read(text).held_branches == held
 
 
 def test_a_pack_knows_whose_branches_it_holds() -> None:
     pack = Pack()
     first, second = read("sign(x)*step(y)"), read("abs(y - x)")
     spans = [pack.add(e) for e in (first, read("t*x"), second, first)]
-    assert (pack.held, len(pack.expressions.branches())) == (5, 5)
-    assert [(e.source, e.held[k]) for e, k in pack.branches] == [
-        (e.source, text) for e in (first, second, first) for text in e.held
+    assert (pack.branch_count, len(pack.expressions.branches())) == (5, 5)
+    assert [(e.source, e.held_branches[k]) for e, k in pack.branches] == [
+        (e.source, text) for e in (first, second, first) for text in e.held_branches
     ]
     pack.expressions.hold(TAKEN)
     for span, x in zip(spans, (1.0, 2.0, 3.0, -4.0), strict=True):

@@ -10,15 +10,15 @@ import pytest
 
 from heuncli.base.errors import SpecError
 from heuncli.kernel.choose import expressions
-from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.grammar import Scope, compile_expression
-from heuncli.scene.expressions.integrals import begun_at, integral
+from heuncli.scene.expressions.integrals import add_start_value, integrate_rate
 from heuncli.scene.expressions.programs import Expression, Pack
 from tests.shared.evaluators import COMPILED, PLAIN, answers
 from tests.shared.scenes import near
 
 LAST = 10.0
-TABLES = {"v": fit("v", [0, 1, 3, 10], [0, 2, -1, -1], "linear", None, None)}
+TABLES = {"v": interpolate_points("v", [0, 1, 3, 10], [0, 2, -1, -1], "linear", None, None)}
 LAWS: dict[str, Callable[[float], float]] = {  # of a rate its integral from 0
     "5": lambda t: 5 * t,
     "0": lambda t: 0.0,
@@ -44,7 +44,7 @@ def read(text: str) -> Expression:
 def test_value_and_derivatives(text: str) -> None:
     """The value in closed form, at knots and between; the derivatives are the rate and its own."""
     rate = read(text)
-    value = begun_at(integral(rate, LAST), 0.5)
+    value = add_start_value(integrate_rate(rate, LAST), 0.5)
     times = [*np.linspace(0.0, LAST, 41).tolist(), 1.0, 1.00013, 2.5, 3.29999, 3.300007]
     size = max(1.0, *(abs(LAWS[text](t)) for t in times))
     fastest = max(map(abs, rate.sample([1.0, *times])))
@@ -61,7 +61,7 @@ def test_value_and_derivatives(text: str) -> None:
 @pytest.mark.parametrize("text", LAWS)
 def test_bounds(text: str) -> None:
     """No value of a stretch lies outside the bounds over it, and these close in on it."""
-    value = integral(read(text), LAST)
+    value = integrate_rate(read(text), LAST)
     rng = np.random.default_rng(5)
     for width in (3.0, 1e-2, 1e-6):
         begin = rng.uniform(0.0, LAST - width, 20).tolist()
@@ -79,14 +79,14 @@ def test_beside_others_in_a_pack() -> None:
     """An integral finds its constants and tables behind those of other programs."""
     pack = Pack()
     pack.add(read("3 + table(v, t)"))
-    place = pack.add(integral(read("2*table(v, t) + 1"), LAST))
+    place = pack.add(integrate_rate(read("2*table(v, t) + 1"), LAST))
     near(pack.value(*place, [2.0]), 2 * LAWS["table(v, t)"](2.0) + 2, 1.0, 2e-15)
 
 
 @pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")
 @pytest.mark.parametrize("text", LAWS)
 def test_compiled_and_plain_give_the_same_bits(text: str) -> None:
-    value = integral(read(text), LAST)
+    value = integrate_rate(read(text), LAST)
     for t in np.linspace(0.0, LAST, 23).tolist():
         assert answers(COMPILED, value.pack, value.count, [t]) == answers(PLAIN, value.pack, value.count, [t])
 
@@ -94,7 +94,7 @@ def test_compiled_and_plain_give_the_same_bits(text: str) -> None:
 def test_no_integral() -> None:
     """Over a pole there is none; behind the end of a domain there is no value."""
     with pytest.raises(SpecError, match="'1/\\(4 - t\\)' grows without bound at t = 4 s"):
-        integral(read("1/(4 - t)"), LAST)
-    value = integral(read("sqrt(4 - t)"), LAST)
+        integrate_rate(read("1/(4 - t)"), LAST)
+    value = integrate_rate(read("sqrt(4 - t)"), LAST)
     near(value.value(4.0), 16 / 3, 1.0, 2e-15)
     assert math.isnan(value.value(4.1))

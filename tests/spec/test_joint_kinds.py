@@ -7,7 +7,7 @@ from typing import get_args
 
 import pytest
 
-from heuncli.base.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, Kind
+from heuncli.base.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, JointKind
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.entries import fields_of, keys_of
 
@@ -22,7 +22,7 @@ def test_the_format_and_the_table_know_the_same_kinds() -> None:
 
 
 @WRITTEN
-def test_keys(kind: Kind) -> None:
+def test_keys(kind: JointKind) -> None:
     """The format takes the keys that the row has a use for, and no other."""
     keys = {"type", "from", "to", "stiffness"}
     keys |= {kind.axis_key} if kind.axis_key else set()
@@ -36,7 +36,7 @@ def test_keys(kind: Kind) -> None:
 
 
 @WRITTEN
-def test_what_must_be_given(kind: Kind) -> None:
+def test_what_must_be_given(kind: JointKind) -> None:
     fields = fields_of(f.JOINTS[kind.name])
     must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].is_required}
     wanted = {kind.axis_key, "to_axis" if kind.to_axis == "required" else None}
@@ -44,7 +44,7 @@ def test_what_must_be_given(kind: Kind) -> None:
 
 
 @WRITTEN
-def test_start_values(kind: Kind) -> None:
+def test_start_values(kind: JointKind) -> None:
     """Each coordinate and its rate may be held at the start."""
     fields = fields_of(f.JOINTS[kind.name])
     parts = get_args(fields["initial"].annotation) if "initial" in fields else ()
@@ -62,24 +62,24 @@ def test_loads_have_types() -> None:
 
 
 @ROWS
-def test_what_is_not_held_is_free(kind: Kind) -> None:
+def test_what_is_not_held_is_free(kind: JointKind) -> None:
     """Six freedoms of one body against another: held ones are rows, the others freedoms; a rod's are not told apart."""
-    bends = 2 if kind.turn.asks == "alike" else 0  # of shafts that turn alike the bend is free, either way
-    free = len(kind.shifts) + (3 if kind.ball else bends + len(kind.turns))
-    assert kind.rows + free == 6 or (kind.keeps_distance and kind.rows == 1)
+    bends = 2 if kind.turn.condition == "alike" else 0  # of shafts that turn alike the bend is free, either way
+    free = len(kind.shifts) + (3 if kind.is_ball else bends + len(kind.turns))
+    assert kind.row_count + free == 6 or (kind.keeps_distance and kind.row_count == 1)
 
 
 @pytest.mark.parametrize("kind", IN_PLANE.values(), ids=IN_PLANE)
-def test_what_is_not_held_in_the_plane_is_free(kind: Kind) -> None:
+def test_what_is_not_held_in_the_plane_is_free(kind: JointKind) -> None:
     """Three freedoms of one body against another in a plane: held ones are rows; no condition across it is left."""
-    assert kind.rows + len(kind.shifts) + len(kind.turns) == 3 or (kind.keeps_distance and kind.rows == 1)
+    assert kind.row_count + len(kind.shifts) + len(kind.turns) == 3 or (kind.keeps_distance and kind.row_count == 1)
     assert set(kind.coordinates) <= {*["angle"] * bool(kind.turns), *["travel"] * bool(kind.shifts)}
 
 
 @pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
-def test_every_kind_has_its_forms_in_the_plane(kind: Kind) -> None:
+def test_every_kind_has_its_forms_in_the_plane(kind: JointKind) -> None:
     """With its axis along the normal and across it; without an axis one."""
-    if kind.turn.asks == "alike":
+    if kind.turn.condition == "alike":
         assert not {(kind.name, True), (kind.name, False)} & FLAT.keys()  # shafts that bend need space
         return
     assert (kind.name, True) in FLAT
@@ -87,26 +87,26 @@ def test_every_kind_has_its_forms_in_the_plane(kind: Kind) -> None:
 
 
 @ROWS
-def test_loads_act_on_what_is_free(kind: Kind) -> None:
-    assert "turning" not in kind.motions or kind.ball or kind.turns or kind.turn.asks == "alike"
+def test_loads_act_on_what_is_free(kind: JointKind) -> None:
+    assert "turning" not in kind.motions or kind.is_ball or kind.turns or kind.turn.condition == "alike"
     assert "sliding" not in kind.motions or kind.shifts
     assert bool(kind.loads) <= bool(kind.motions)
     assert set(kind.coordinates) <= {*["angle"] * bool(kind.turns), *["travel"] * bool(kind.shifts)}
 
 
 @ROWS
-def test_looser_joints_hold_less(kind: Kind) -> None:
-    assert all(JOINTS[other].rows < kind.rows for other in kind.looser)
-    assert all(JOINTS[other].rows_in_plane < kind.rows_in_plane for other in kind.looser_in_plane)
+def test_looser_joints_hold_less(kind: JointKind) -> None:
+    assert all(JOINTS[other].row_count < kind.row_count for other in kind.weaker_kinds)
+    assert all(JOINTS[other].planar_row_count < kind.planar_row_count for other in kind.weaker_planar_kinds)
 
 
 @WRITTEN
-def test_the_planar_form_holds_no_less_of_the_plane(kind: Kind) -> None:
+def test_the_planar_form_holds_no_less_of_the_plane(kind: JointKind) -> None:
     """A planar scene may add what holds the plane, and take nothing away."""
     if kind.planar is not None:
         flat = JOINTS[kind.planar]
-        assert flat.rows >= kind.rows
-        assert 1 <= flat.rows_in_plane <= 3
+        assert flat.row_count >= kind.row_count
+        assert 1 <= flat.planar_row_count <= 3
 
 
 def test_a_word_means_one_kind() -> None:

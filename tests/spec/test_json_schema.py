@@ -15,9 +15,9 @@ from jsonschema import Draft7Validator
 
 from heuncli.base.joint_kinds import TYPES
 from heuncli.output.tables.export import to_json
-from heuncli.output.tables.results_json_schema import results_schema
+from heuncli.output.tables.results_json_schema import make_results_schema
 from heuncli.results.results_schema import REPORTS, SHARES
-from heuncli.scene.file_format.json_schema import spec_schema
+from heuncli.scene.file_format.json_schema import make_spec_schema
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -34,14 +34,14 @@ OF_STRUCTURE = {  # codes of specs in specs/broken that are wrong in keys, types
 
 @cache
 def of_specs() -> Draft7Validator:
-    schema = spec_schema()
+    schema = make_spec_schema()
     Draft7Validator.check_schema(schema)
     return Draft7Validator(schema)
 
 
 @cache
 def of_results() -> Draft7Validator:
-    schema = results_schema()
+    schema = make_results_schema()
     Draft7Validator.check_schema(schema)
     return Draft7Validator(schema)
 
@@ -49,7 +49,7 @@ def of_results() -> Draft7Validator:
 @pytest.mark.heavy
 def test_check_jsonschema_passes_every_spec_and_starter(tmp_path: Path) -> None:
     schema = tmp_path / "heun.schema.json"
-    schema.write_text(json.dumps(spec_schema()))
+    schema.write_text(json.dumps(make_spec_schema()))
     starters = sorted((ROOT / "heuncli" / "starters").glob("*.yaml"))
     words = [sys.executable, "-m", "check_jsonschema", "--schemafile", str(schema), *map(str, [*SPECS, *starters])]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
@@ -151,7 +151,7 @@ def test_lists_keep_one_entry_of_each_kind() -> None:
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
 def test_every_result_is_what_the_schema_of_results_says(path: Path) -> None:
     wanted = frozenset({*REPORTS, SHARES})
-    results = json.loads(to_json(solve(load(str(path)), Options(wanted=wanted)).results))
+    results = json.loads(to_json(solve(load(str(path)), Options(requested_reports=wanted)).results))
     assert [error.json_path for error in of_results().iter_errors(kinds(results)[0])] == []
 
 

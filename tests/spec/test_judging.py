@@ -17,10 +17,10 @@ from heuncli.base.errors import Finding, SpecError
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import document
 from heuncli.scene.file_format.entries import Entry, fields_of
-from heuncli.scene.file_format.fields import Context
-from heuncli.scene.file_format.judging import judged
+from heuncli.scene.file_format.fields import ReadContext
+from heuncli.scene.file_format.judging import validate_entry
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.pydantic_models import model_of
+from heuncli.scene.file_format.pydantic_models import make_model
 
 SPECS = Path(heuncli.__file__).parents[1] / "specs"
 FILES = sorted([*SPECS.glob("*.yaml"), *SPECS.glob("broken/*.yaml")])
@@ -28,18 +28,18 @@ WRONG = [
     None, True, "", "5 s", "nonsense*2", "ground.O", -1, 2.5, [], [1, 2], [1, 2, 3], ["a", None, {}], [[1, 2, 3]] * 3,
     {}, {"body": "ground"}, {"vector": [1, 2, 3], "frame": "moon"},
 ]  # fmt: skip
-Read = tuple[type[Entry], Any, Context]
+Read = tuple[type[Entry], Any, ReadContext]
 
 
 def reads(path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Read]:
     """What is read as entries of which kinds when a spec is loaded."""
     found: list[Read] = []
 
-    def listening(model: type[Entry], data: Any, context: Context) -> Entry:
+    def listening(model: type[Entry], data: Any, context: ReadContext) -> Entry:
         found.append((model, copy.deepcopy(data), context))
-        return judged(model, data, context)
+        return validate_entry(model, data, context)
 
-    monkeypatch.setattr(document, "judged", listening)
+    monkeypatch.setattr(document, "validate_entry", listening)
     with contextlib.suppress(SpecError):
         load(path)
     return found
@@ -98,8 +98,8 @@ def test_as_models_of_pydantic_do(path: Path, monkeypatch: pytest.MonkeyPatch) -
     draw = random.Random(path.stem)
     for model, data, context in reads(path, monkeypatch)[:40]:
         for given in (data, *(changed(data, draw) for _ in range(5))):
-            own = outcome(lambda: judged(model, given, context))  # noqa: B023
-            assert own == outcome(lambda: model_of(model).model_validate(given, context=context)), given  # noqa: B023
+            own = outcome(lambda: validate_entry(model, given, context))  # noqa: B023
+            assert own == outcome(lambda: make_model(model).model_validate(given, context=context)), given  # noqa: B023
 
 
 def kinds() -> Iterator[type[Entry]]:
@@ -112,7 +112,7 @@ def kinds() -> Iterator[type[Entry]]:
 @pytest.mark.parametrize("model", sorted(set(kinds()), key=lambda model: model.__name__))
 def test_defaults_are_those_of_the_model(model: type[Entry]) -> None:
     required = {name: field for name, field in fields_of(model).items() if field.is_required}
-    own, made = model.model_construct(), model_of(model).model_construct()
+    own, made = model.model_construct(), make_model(model).model_construct()
     assert {name for name in fields_of(model) if name not in own.__dict__} == required.keys()
     assert told(own) == told(made)
     assert own == model.model_construct() and own.model_copy({"extra": 1}) != own

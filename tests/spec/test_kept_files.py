@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import Asker, Recipe
-from heuncli.analyses.variants.axes import axis_of
-from heuncli.analyses.variants.files import with_files, with_more_files
-from heuncli.analyses.variants.plans import Plan, plan_of
+from heuncli.analyses.variants.asking import Recipe, VariantEvaluator
+from heuncli.analyses.variants.axes import parse_axis_values
+from heuncli.analyses.variants.files import add_files, add_named_files
+from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.output.snapshots import measure
-from heuncli.scene.file_format.named_files import FileNotKept
+from heuncli.scene.file_format.named_files import FileNotPreloaded
 from heuncli.study.model.options import Options
 from tests.shared import triangles
 
@@ -56,47 +56,47 @@ def beside(tmp_path: Path) -> Path:
 
 def recipe_in(folder: Path) -> Recipe:
     path = str(folder / "driven.yaml")
-    return Recipe(path, (folder / "driven.yaml").read_text(), tuple(measure.parse_all(MEASURES)), Options(), {})
+    return Recipe(path, (folder / "driven.yaml").read_text(), tuple(measure.parse_measures(MEASURES)), Options(), {})
 
 
 def plan(*words: str) -> Plan:
-    return plan_of([axis_of(word) for word in words or AXES])
+    return make_axes_plan([parse_axis_values(word) for word in words or AXES])
 
 
 def test_variants_answer_elsewhere_what_they_answer_here(beside: Path) -> None:
     recipe = recipe_in(beside)
-    here = Asker(recipe)
-    variants = [plan().values(number) for number in plan().numbers()] + [{}, {"case": "other"}]
+    here = VariantEvaluator(recipe)
+    variants = [plan().find_values(number) for number in plan().iter_numbers()] + [{}, {"case": "other"}]
     asked = [here.answer(values) for values in variants]
     assert {answer.code for answer in asked} == {"", "table-file", "too-large"}
     far = {"tables.push.file": "../far.csv"}
     warned = here.load(far).warnings
     assert [problem.code for problem in warned] == ["outside-folder"]
-    sent = pickle.dumps(with_files(recipe, plan()))
+    sent = pickle.dumps(add_files(recipe, plan()))
     for file in [*beside.iterdir(), beside.parent / "far.csv"]:
         file.unlink()
-    there = Asker(pickle.loads(sent))
+    there = VariantEvaluator(pickle.loads(sent))
     assert [there.answer(values) for values in variants] == asked
     assert there.load(far).warnings == warned
 
 
 def test_what_was_read_is_what_counts(beside: Path) -> None:
-    sent = with_files(recipe_in(beside), plan())
-    before = Asker(sent).answer({})
+    sent = add_files(recipe_in(beside), plan())
+    before = VariantEvaluator(sent).answer({})
     (beside / "a.csv").write_text("0,0\n1,2\n")
-    assert Asker(sent).answer({}) == before
-    assert Asker(recipe_in(beside)).answer({}) != before
+    assert VariantEvaluator(sent).answer({}) == before
+    assert VariantEvaluator(recipe_in(beside)).answer({}) != before
 
 
 def test_a_file_that_was_not_sent_is_asked_for_and_not_looked_for_on_a_disk(beside: Path) -> None:
     recipe = recipe_in(beside)
     whole = {"tables.push": "{file: b.csv, y_unit: mm}"}
-    sent = with_files(recipe, plan("tables.push.y_unit=mm,cm"))
-    with pytest.raises(FileNotKept) as missing:
-        Asker(sent).answer(whole)
+    sent = add_files(recipe, plan("tables.push.y_unit=mm,cm"))
+    with pytest.raises(FileNotPreloaded) as missing:
+        VariantEvaluator(sent).answer(whole)
     assert missing.value.name == "b.csv"
-    more = with_more_files(sent, ["b.csv"])
-    assert Asker(more).answer(whole) == Asker(recipe).answer(whole)
+    more = add_named_files(sent, ["b.csv"])
+    assert VariantEvaluator(more).answer(whole) == VariantEvaluator(recipe).answer(whole)
 
 
 SOLID = """\
@@ -123,15 +123,15 @@ def test_variants_of_meshes_answer_as_each_alone_here_and_elsewhere(tmp_path: Pa
     for name, surface in {"a": box, "b": triangles.torus(9, 7, 30.0, 20.0), "open": box[1:]}.items():
         (tmp_path / f"{name}.stl").write_bytes(triangles.binary_stl(surface))
     (tmp_path / "solid.yaml").write_text(SOLID)
-    recipe = Recipe(str(tmp_path / "solid.yaml"), SOLID, tuple(measure.parse_all(PULLS)), Options(), {})
+    recipe = Recipe(str(tmp_path / "solid.yaml"), SOLID, tuple(measure.parse_measures(PULLS)), Options(), {})
     axes = plan(*SOLIDS)
-    here = Asker(recipe)
-    variants = [axes.values(number) for number in axes.numbers()]
+    here = VariantEvaluator(recipe)
+    variants = [axes.find_values(number) for number in axes.iter_numbers()]
     asked = [here.answer(values) for values in variants]
-    assert asked == [Asker(recipe).answer(values) for values in variants]
+    assert asked == [VariantEvaluator(recipe).answer(values) for values in variants]
     assert {answer.code for answer in asked} == {"", "open-mesh", "mesh-file"}
     assert len({repr(answer) for answer in asked if not answer.code}) == 4
-    sent = pickle.dumps(with_files(recipe, axes))
+    sent = pickle.dumps(add_files(recipe, axes))
     for file in tmp_path.glob("*.stl"):
         file.unlink()
-    assert [Asker(pickle.loads(sent)).answer(values) for values in variants] == asked
+    assert [VariantEvaluator(pickle.loads(sent)).answer(values) for values in variants] == asked

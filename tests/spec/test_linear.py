@@ -9,8 +9,8 @@ from collections.abc import Callable
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.base.nearest import begin_file, did_you_mean
-from heuncli.results.path_hints import meant
+from heuncli.base.nearest import reset_effort, suggest
+from heuncli.results.path_hints import find_similar_path
 from heuncli.scene.file_format.brackets import QUOTED
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.quantity import OVER_UNIT, WITH_UNIT, Scope, product_hint
@@ -88,13 +88,13 @@ def test_the_first_dozens_get_suggestions_and_the_next_file_again() -> None:
 def test_long_words_are_not_compared() -> None:
     begun = time.process_time()
     names = [f"{'x' * 3000}{i}" for i in range(1000)]
-    assert (did_you_mean("x" * 3001, names, "names") or "").startswith("known names: ")
+    assert (suggest("x" * 3001, names, "names") or "").startswith("known names: ")
     assert time.process_time() - begun < SECONDS
 
 
 def test_paths_of_many_words_have_no_other_reading() -> None:
-    begin_file()
-    assert meant(".".join(["fx"] * 40), lambda words: False) is None  # 2**40 of them
+    reset_effort()
+    assert find_similar_path(".".join(["fx"] * 40), lambda words: False) is None  # 2**40 of them
 
 
 @pytest.mark.parametrize(

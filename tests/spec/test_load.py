@@ -211,7 +211,7 @@ def test_joints(text: str, expected: dict[str, Any]) -> None:
     found = joint(text)
     kind: Any = text.split()[1].rstrip(",")
     none = dict.fromkeys(("angle", "rate", "travel", "speed", "length", "stiffness", "drive", "restitution"))
-    none |= dict.fromkeys(("bearing", "path")) | {"way": -1, "one_sided": False}
+    none |= dict.fromkeys(("bearing", "path")) | {"path_index": -1, "one_sided": False}
     ends = {"a": "ground", "p": (0.0, 0.0, 0.0), "p_name": "O", "b": "b", "q": (1.0, 2.0, 3.0), "q_name": "q"}
     axis = expected.get("axis", (0.0, 0.0, 1.0))
     axes = {"axis": axis, "to_axis": axis, "to_axis_given": "to_axis" in expected, "tension_only": False}
@@ -258,11 +258,11 @@ def test_drives_and_impulses() -> None:
     found = scene(top + "impulses: {i: {on: b.q, vector: [0, 1 N*s, 0]}, k: {body: b, couple: [0, 0, 1], time: 0.5, "
                   "frame: body}}\nanalysis: {duration: 1}\n").impulses  # fmt: skip
     at = (1.0, 2.0, 3.0)
-    assert fields(found["i"]) == fields(m.Blow("i", "b", at, (0.0, 1.0, 0.0), False, 0.0, "impulse"))
-    assert fields(found["k"]) == fields(m.Blow("k", "b", None, (0.0, 0.0, 1.0), True, 0.5, "couple"))
+    assert fields(found["i"]) == fields(m.AppliedImpulse("i", "b", at, (0.0, 1.0, 0.0), False, 0.0, "impulse"))
+    assert fields(found["k"]) == fields(m.AppliedImpulse("k", "b", None, (0.0, 0.0, 1.0), True, 0.5, "couple"))
     at_point = scene(top + "impulses: {i: {on: b.q, couple: [0, 0, 1]}, k: {on: b, couple: [0, 0, 1]}}\n").impulses
-    assert fields(at_point["i"]) == fields(m.Blow("i", "b", at, (0.0, 0.0, 1.0), False, 0.0, "couple"))
-    assert fields(at_point["k"]) == fields(m.Blow("k", "b", None, (0.0, 0.0, 1.0), False, 0.0, "couple"))
+    assert fields(at_point["i"]) == fields(m.AppliedImpulse("i", "b", at, (0.0, 0.0, 1.0), False, 0.0, "couple"))
+    assert fields(at_point["k"]) == fields(m.AppliedImpulse("k", "b", None, (0.0, 0.0, 1.0), False, 0.0, "couple"))
 
 
 def test_stops() -> None:

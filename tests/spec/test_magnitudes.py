@@ -10,8 +10,8 @@ from heuncli.base.number_range import are_in_range, is_in_range
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.rules.products import mass_of
-from heuncli.scene.shapes.forms import form
+from heuncli.scene.file_format.rules.products import shape_mass
+from heuncli.scene.shapes.forms import make_composite_solid
 from tests.shared.solids import SOLIDS
 
 SCENE = """\
@@ -75,8 +75,8 @@ def test_masses_of_shapes_are_those_that_are_computed_with(name: str) -> None:
     shape = SOLIDS[name]
     written = fs.SHAPES[shape.type]
     keys = {key: getattr(shape, key) for key in fields_of(written) if hasattr(shape, key)}
-    mass = float(form([shape]).whole()[3, 3])
-    assert mass_of(written.model_construct(**keys)) == pytest.approx(mass, rel=1e-13)
+    mass = float(make_composite_solid([shape]).whole_inertia()[3, 3])
+    assert shape_mass(written.model_construct(**keys)) == pytest.approx(mass, rel=1e-13)
 
 
 def test_all_kinds_of_shapes_are_among_them() -> None:

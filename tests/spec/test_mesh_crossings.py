@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.base.errors import Finding
 from heuncli.results.results import Array
-from heuncli.scene.meshes.reading import mesh_of
+from heuncli.scene.meshes.reading import read_closed_mesh
 from tests.shared import triangles as t
 from tests.shared.solids import rotation
 
@@ -21,7 +21,7 @@ DIGITS = 2.0**-21  # of the largest coordinate, here 2: eight steps of a float32
 def verdict(*solids: Array) -> str:
     """ok, or the code with which these solids in one file are refused."""
     try:
-        mesh = mesh_of(t.obj(np.concatenate(solids)).encode(), "a.obj")
+        mesh = read_closed_mesh(t.obj(np.concatenate(solids)).encode(), "a.obj")
     except Finding as finding:
         return f"{finding.code}, touches" if "touches" in finding.message else finding.code
     assert mesh.shells == len(solids)
@@ -134,7 +134,7 @@ def test_slivers_that_rounding_turns_over_are_no_crossing(seed: int) -> None:
         outline = np.array([(0, 0), *zip(along, -off, strict=True), (1, 0), (1, 1), (0, 1)])
         cap = [(0, i, i + 1) for i in range(1, len(outline) - 1)]
         body = t.prism(outline, cap, 1.0) @ rotation(rng).T + rng.normal(size=3) * (k % 3)
-        assert math.isclose(mesh_of(t.binary_stl(body), "a.stl").volume, 1.0, rel_tol=1e-4)
+        assert math.isclose(read_closed_mesh(t.binary_stl(body), "a.stl").volume, 1.0, rel_tol=1e-4)
 
 
 def test_triangles_narrower_than_the_digits_are_refused() -> None:

@@ -11,7 +11,7 @@ from heuncli.base.errors import Finding, SpecError
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.meshes.model import TriangleMesh
-from heuncli.scene.meshes.reading import mesh_of
+from heuncli.scene.meshes.reading import read_closed_mesh
 from tests.shared import triangles as t
 
 UNIT = t.box()
@@ -19,7 +19,7 @@ RING = t.torus(30, 16)
 
 
 def read(triangles: Array) -> TriangleMesh:
-    return mesh_of(t.binary_stl(triangles), "body.stl")
+    return read_closed_mesh(t.binary_stl(triangles), "body.stl")
 
 
 def code_of(triangles: Array) -> str:
@@ -48,7 +48,7 @@ WRITERS = {
 
 @pytest.mark.parametrize("name", WRITERS)
 def test_every_format_gives_the_solid(name: str) -> None:
-    mesh = mesh_of(WRITERS[name](RING), name)
+    mesh = read_closed_mesh(WRITERS[name](RING), name)
     assert mesh.volume == pytest.approx(volume(RING), rel=3e-7 if name.lower().endswith("stl") else 1e-14)
     assert (len(mesh.corners), len(mesh.triangles), mesh.shells, mesh.notes) == (480, 960, 1, ())
     assert mesh.low == pytest.approx(RING.min(axis=(0, 1)), abs=1e-6)
@@ -57,22 +57,22 @@ def test_every_format_gives_the_solid(name: str) -> None:
 def test_all_solids_of_a_text_are_read_however_they_are_written() -> None:
     small, capital = t.text_stl(UNIT), t.text_stl(UNIT + 2.0, "other").upper()
     for written in (small + capital, capital + small, small + t.text_stl(UNIT + 2.0)):
-        mesh = mesh_of(written.encode(), "a.stl")
+        mesh = read_closed_mesh(written.encode(), "a.stl")
         assert (mesh.shells, mesh.volume) == (2, pytest.approx(2.0))
 
 
 def test_faces_of_four_corners_and_numbers_counted_back() -> None:
     corners = [f"v {k & 1} {k >> 1 & 1} {k >> 2 & 1}" for k in range(8)]
     faces = [f"f {' '.join(str(k + 1) for k in face)}" for face in t.FACES]
-    assert mesh_of("\n".join([*corners, *faces]).encode(), "a.obj").volume == pytest.approx(1.0)
+    assert read_closed_mesh("\n".join([*corners, *faces]).encode(), "a.obj").volume == pytest.approx(1.0)
     back = [f"f {' '.join(f'{k - 8}/1/{k - 8}' for k in face)}" for face in t.FACES]
-    assert mesh_of("\n".join([*corners, *back]).encode(), "a.obj").volume == pytest.approx(1.0)
+    assert read_closed_mesh("\n".join([*corners, *back]).encode(), "a.obj").volume == pytest.approx(1.0)
     several = [line.replace("f ", "f \\\n") for line in faces]
-    assert mesh_of("\n".join([*corners, *several]).encode(), "a.obj").volume == pytest.approx(1.0)
+    assert read_closed_mesh("\n".join([*corners, *several]).encode(), "a.obj").volume == pytest.approx(1.0)
     head = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
     head += "element face 6\nproperty list uchar int vertex_index\nproperty uchar red\nend_header\n"
     rows = [*(line[2:] for line in corners), *(f"4 {' '.join(map(str, face))} 9" for face in t.FACES)]
-    assert mesh_of((head + "\n".join(rows)).encode(), "a.ply").volume == pytest.approx(1.0)
+    assert read_closed_mesh((head + "\n".join(rows)).encode(), "a.ply").volume == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
@@ -171,7 +171,7 @@ def test_whatever_is_written_is_read_or_refused(name: str) -> None:
                 case _:
                     content[at:at] = content[at : at + many]
         try:
-            mesh_of(content, name)
+            read_closed_mesh(content, name)
         except Finding as finding:
             refused += 1
             assert finding.hint and finding.code in {
@@ -185,7 +185,7 @@ def test_a_file_that_breaks_off_is_refused(name: str) -> None:
     whole = SEEDS[name].rstrip()
     for length in sorted({*range(0, len(whole), 1 + len(whole) // 40), len(whole) - 10}):
         with pytest.raises(Finding):
-            mesh_of(whole[:length], name)
+            read_closed_mesh(whole[:length], name)
 
 
 @pytest.mark.parametrize(
@@ -200,7 +200,7 @@ def test_a_file_that_breaks_off_is_refused(name: str) -> None:
 )  # fmt: skip
 def test_what_is_said(content: bytes, name: str, told: str) -> None:
     with pytest.raises(Finding, match=told):
-        mesh_of(content, name)
+        read_closed_mesh(content, name)
 
 
 SCENE = """heun: 1

@@ -6,7 +6,7 @@ import pytest
 
 from heuncli.base.errors import Finding
 from heuncli.scene.expressions.grammar import Scope, compile_expression
-from heuncli.scene.file_format.quantity import condition
+from heuncli.scene.file_format.quantity import read_condition
 
 POINTS = {"drill": ["top", "bit"], "rod": ["top", "eye"], "bare": [], "ground": ["post", "eye"]}
 SCOPE = Scope({"q": 3.0}, {"shaft": "pin", "points": "pin"}, in_time=True, points=POINTS)
@@ -57,9 +57,9 @@ def test_not_before_the_run() -> None:
 
 
 def test_their_dimensions() -> None:
-    assert condition("points.bit.x < 20 mm", SCOPE).is_truth
-    assert condition("points.bit.vx < 20 mm/s", SCOPE).is_truth
+    assert read_condition("points.bit.x < 20 mm", SCOPE).is_truth
+    assert read_condition("points.bit.vx < 20 mm/s", SCOPE).is_truth
     for text in ("points.bit.vx < 20 mm", "points.bit.x > 3 deg", "points.bit.x - 1 s > 0"):
         with pytest.raises(Finding) as caught:
-            condition(text, SCOPE)
+            read_condition(text, SCOPE)
         assert caught.value.code == "wrong-dimension"

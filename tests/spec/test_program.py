@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from heuncli.kernel.choose import expressions, jets
-from heuncli.scene.expressions.discontinuities import discontinuities
+from heuncli.scene.expressions.discontinuities import find_discontinuities
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression, Pack
 from tests.shared.evaluators import COMPILED, PLAIN, answers, bits
@@ -153,8 +153,8 @@ def test_a_course_is_the_derivatives_at_its_instants() -> None:
     for text in (*SMOOTH, "t*sqrt(t)"):
         expression = read(text)
         one_by_one = [expression.derivatives(t) for t in times]
-        np.testing.assert_array_equal(np.transpose(expression.course(times)), one_by_one)
-    assert math.isnan(read("sqrt(t)").course(times)[0][0])
+        np.testing.assert_array_equal(np.transpose(expression.sample_derivatives(times)), one_by_one)
+    assert math.isnan(read("sqrt(t)").sample_derivatives(times)[0][0])
 
 
 def compile_complex(text: str) -> str:
@@ -191,7 +191,7 @@ def test_a_pack_holds_programs_side_by_side() -> None:
 
 
 def test_constants_need_no_program_run() -> None:
-    expression = Expression.of(2.5)
+    expression = Expression.from_number(2.5)
     assert (expression.constant, expression.value(), expression.derivatives(3.0)) == (2.5, 2.5, (2.5, 0.0, 0.0))
     assert not expression.time_dependent
     assert list(read("t*t").sample([1.0, 2.0, 3.0])) == [1.0, 4.0, 9.0]
@@ -305,7 +305,7 @@ def test_code_that_is_no_program_is_refused(pairs: list[tuple[int, int]]) -> Non
 
 
 def test_a_switch_deeper_than_its_expression_is_met() -> None:
-    assert discontinuities(read("min(100*t, 5)"), 0.0, 1.0)[-1] == math.nextafter(0.05, 1.0)
+    assert find_discontinuities(read("min(100*t, 5)"), 0.0, 1.0)[-1] == math.nextafter(0.05, 1.0)
 
 
 def test_programs_added_later_are_run_too() -> None:
@@ -321,7 +321,7 @@ def test_what_is_no_program_is_not_run(start: int, count: int) -> None:
     programs = read("2*t").pack.expressions
     for run in (
         lambda: programs.evaluate(start, count, [1.0]),
-        lambda: jets.derivatives(programs, start, count, 1.0),
+        lambda: jets.find_derivatives(programs, start, count, 1.0),
         lambda: programs.sample(start, count, array("d", [1.0]), array("d", [0.0])),
     ):
         with pytest.raises(ValueError, match="no program"):

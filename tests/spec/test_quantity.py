@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
 from heuncli.scene.expressions.grammar import Scope
-from heuncli.scene.file_format.quantity import in_time, number
+from heuncli.scene.file_format.quantity import read_function, read_number
 
 SCOPE = Scope(parameters={"L": 2.0, "m": 3.0})
 
@@ -34,10 +34,10 @@ SCOPE = Scope(parameters={"L": 2.0, "m": 3.0})
     ("2 kN/mm", 2e6, u.STIFFNESS), ("1 l", 1e-3, u.VOLUME), ("2 kW", 2000.0, u.POWER), ("2 J", 2.0, u.MOMENT),
 ])  # fmt: skip
 def test_units(text: str, value: float, dimension: u.Dimension) -> None:
-    found = in_time(text, None, SCOPE)
+    found = read_function(text, None, SCOPE)
     assert found.constant == pytest.approx(value, rel=1e-6 if text[0] == "1" else 1e-15)
     assert found.dimension == dimension
-    assert number(text, dimension, SCOPE) == found.constant
+    assert read_number(text, dimension, SCOPE) == found.constant
 
 
 @pytest.mark.parametrize(("text", "value"), [
@@ -46,7 +46,7 @@ def test_units(text: str, value: float, dimension: u.Dimension) -> None:
     ("2 if L > 1 else 3", 2.0), ("2 if 0 else 3", 3.0), ("90*deg", math.pi / 2), (" 4 ", 4.0), ("1 and 0", 0.0),
 ])  # fmt: skip
 def test_plain_numbers_and_expressions(text: object, value: float) -> None:
-    assert number(text, u.LENGTH, SCOPE) == pytest.approx(value, rel=1e-15)
+    assert read_number(text, u.LENGTH, SCOPE) == pytest.approx(value, rel=1e-15)
 
 
 @pytest.mark.parametrize(("value", "code", "words"), [
@@ -106,19 +106,19 @@ def test_plain_numbers_and_expressions(text: object, value: float) -> None:
 ])  # fmt: skip
 def test_refusals(value: object, code: str, words: str) -> None:
     with pytest.raises(Finding) as caught:
-        number(value, u.LENGTH, SCOPE)
+        read_number(value, u.LENGTH, SCOPE)
     assert caught.value.code == code
     assert words in f"{caught.value.message} {caught.value.hint}"
 
 
 @pytest.mark.parametrize("value", [0, 0.0, -0.0, 1e-60, -1e60, "0 mm", "1e-30*1e-30"])
 def test_what_is_just_computed_with(value: object) -> None:
-    assert number(value, u.LENGTH, SCOPE) == in_time(value, u.LENGTH, SCOPE).constant
+    assert read_number(value, u.LENGTH, SCOPE) == read_function(value, u.LENGTH, SCOPE).constant
 
 
 def test_in_time_a_multiple_of_time_is_meant() -> None:
     with pytest.raises(Finding) as caught:
-        in_time("100 t", u.ANGLE, Scope(in_time=True))
+        read_function("100 t", u.ANGLE, Scope(in_time=True))
     assert "100*t" in (caught.value.hint or "")
 
 
@@ -137,6 +137,6 @@ def test_the_list_of_units_is_readable() -> None:
 def test_any_text_is_a_number_or_a_finding(text: str) -> None:
     for words in (text, f"2 {text}"):
         try:
-            assert math.isfinite(number(words, None, SCOPE))
+            assert math.isfinite(read_number(words, None, SCOPE))
         except Finding as finding:
             assert finding.message

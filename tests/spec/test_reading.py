@@ -37,7 +37,7 @@ def test_the_null_device_is_empty() -> None:
 def test_a_file_beyond_the_limit_is_refused_by_its_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with (tmp_path / "large").open("wb") as file:
         file.truncate(1_000_000_000)
-    monkeypatch.setattr("heuncli.scene.file_format.reading._bounded", None)  # it is not read
+    monkeypatch.setattr("heuncli.scene.file_format.reading._read_limited", None)  # it is not read
     code, message = refusal(str(tmp_path / "large"), 64_000_000)
     assert (code, message) == ("too-large", "this has 1000 MB; at most 64 MB are read")
 

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 
 from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.source import SMALLEST, SourceFile, parse, plain, read
+from heuncli.scene.file_format.source import SMALLEST_SPEC, SourceFile, parse_plain_scalar, parse_source, read_source
 
 
 def codes(text: str) -> list[tuple[str, int, int]]:
     """Codes, lines and columns of all that is wrong with a text."""
     try:
-        problems = parse("f", text, "").problems
+        problems = parse_source("f", text, "").problems
     except SpecError as error:
         problems = error.problems
     return [(p.code, p.location.line, p.location.column) for p in problems if p.location]
@@ -35,17 +35,17 @@ def codes(text: str) -> list[tuple[str, int, int]]:
     ("1e", "1e"), ("e3", "e3"), ("-", "-"), ("٣", "٣"), ("12345678901234567890", 12345678901234567890.0),
 ])  # fmt: skip
 def test_scalars_are_those_of_yaml_1_2(word: str, value: object) -> None:
-    found = plain(word)
+    found = parse_plain_scalar(word)
     assert found == value
     assert type(found) is type(value)
 
 
 def test_quotes_make_text() -> None:
-    assert parse("f", "{a: '1', b: \"true\", c: 1}", "").data == {"a": "1", "b": "true", "c": 1}
+    assert parse_source("f", "{a: '1', b: \"true\", c: 1}", "").data == {"a": "1", "b": "true", "c": 1}
 
 
 def test_everything_has_its_place() -> None:
-    source = parse("f", "a: 1\nb:\n  c: [10, {d: 20}]\n  'e': x\n", "")
+    source = parse_source("f", "a: 1\nb:\n  c: [10, {d: 20}]\n  'e': x\n", "")
     assert source.data == {"a": 1, "b": {"c": [10, {"d": 20}], "e": "x"}}
 
     def at(*path: Any, key: bool = False) -> tuple[int, int]:
@@ -96,7 +96,7 @@ def test_accidents(text: str, expected: list[tuple[str, int, int]]) -> None:
 
 
 def test_the_first_of_two_equal_keys_stands() -> None:
-    source = parse("f", "a: {b: 1}\na: {b: [2, 3]}\n", "")
+    source = parse_source("f", "a: {b: 1}\na: {b: [2, 3]}\n", "")
     assert source.data == {"a": {"b": 1}}
     assert source.location(("a", "b")).line == 1
 
@@ -104,7 +104,7 @@ def test_the_first_of_two_equal_keys_stands() -> None:
 def test_hints_for_usual_accidents() -> None:
     def hint(text: str) -> str:
         with pytest.raises(SpecError) as caught:
-            parse("f", text, "")
+            parse_source("f", text, "")
         return caught.value.problems[-1].hint or ""
 
     assert "spaces" in hint("a:\n\tb: 1\n")
@@ -119,7 +119,7 @@ def test_hints_for_usual_accidents() -> None:
 def test_files(tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
     path.write_bytes(b"\xef\xbb\xbfa: \xc3\xa4\n")
-    source = read(str(path), None)
+    source = read_source(str(path), None)
     assert source.data == {"a": "ä"}
     assert source.location(("a",)).line == 1
     assert source.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
@@ -133,7 +133,7 @@ def test_other_encodings(tmp_path: Path, content: bytes, code: str, line: int, c
     path = tmp_path / "a.yaml"
     path.write_bytes(content)
     with pytest.raises(SpecError) as caught:
-        read(str(path), None)
+        read_source(str(path), None)
     (problem,) = caught.value.problems
     assert problem.location is not None
     assert (problem.code, problem.location.line, problem.location.column) == (code, line, column)
@@ -143,7 +143,7 @@ def test_what_cannot_be_read(tmp_path: Path) -> None:
     cases = ((tmp_path / "none.yaml", "no such file"), (tmp_path, "folder"), (Path("a\0b"), "cannot be the name"))
     for path, words in cases:
         with pytest.raises(SpecError) as caught:
-            read(str(path), None)
+            read_source(str(path), None)
         (problem,) = caught.value.problems
         assert problem.code == "unreadable"
         assert words in problem.message
@@ -152,13 +152,13 @@ def test_what_cannot_be_read(tmp_path: Path) -> None:
 
 def test_too_much_is_refused_unread() -> None:
     with pytest.raises(SpecError) as caught:
-        parse("f", "a" * 64_000_001, "")
+        parse_source("f", "a" * 64_000_001, "")
     assert caught.value.problems[0].code == "too-large"
 
 
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"a: 1\n")))
-    source = read("-", None)
+    source = read_source("-", None)
     assert (source.file, source.data) == ("<stdin>", {"a": 1})
 
 
@@ -175,7 +175,7 @@ def test_lines_count_the_same_however_they_end(end: str) -> None:
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_any_text_is_a_source_or_an_error(text: str) -> None:
     try:
-        source = parse("f", text, "")
+        source = parse_source("f", text, "")
     except SpecError as error:
         problems = error.problems
     else:
@@ -191,5 +191,5 @@ def test_any_text_is_a_source_or_an_error(text: str) -> None:
 def test_the_hint_for_an_empty_file_is_a_scene() -> None:
     with pytest.raises(SpecError) as caught:
         load("x.yaml", text="# nothing yet\n")
-    assert SMALLEST in (caught.value.problems[0].hint or "")
-    assert list(load("x.yaml", text=SMALLEST).bodies) == ["ball"]
+    assert SMALLEST_SPEC in (caught.value.problems[0].hint or "")
+    assert list(load("x.yaml", text=SMALLEST_SPEC).bodies) == ["ball"]

@@ -14,11 +14,19 @@ from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.format import BallJoint, ForceEntry, PinJoint
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.lookups import GIVEN, KEYS, KIND, Log, Lookup, WatchedDocument, changed_in_document
+from heuncli.scene.file_format.lookups import (
+    GIVEN_FIELDS,
+    KEYS,
+    KIND,
+    Lookup,
+    LookupLog,
+    WatchedDocument,
+    iter_changed_in_document,
+)
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.overrides import FIGURE, of_words
-from heuncli.scene.file_format.sharing import same
-from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.overrides import PLAIN_NUMBER, parse_settings
+from heuncli.scene.file_format.sharing import is_same
+from heuncli.scene.file_format.source import parse_source
 from heuncli.scene.file_format.variants import SpecVariants
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS
@@ -123,15 +131,15 @@ def test_every_variant_is_read_as_if_it_were_the_first(path: Path) -> None:
 
 
 def test_values_are_the_same_to_the_bit_and_by_type() -> None:
-    assert same({"a": (1.0, "x")}, {"a": (1.0, "x")})
-    assert same(np.array([1.0, np.nan]), np.array([1.0, np.nan]))
-    assert not same(0.0, -0.0)
-    assert not same(1, 1.0)
-    assert not same(True, 1)
-    assert not same(np.array([0.0]), np.array([-0.0]))
-    assert not same({"a": 1, "b": 2}, {"b": 2, "a": 1})
-    assert not same((1.0, 2.0), (1.0,))
-    assert not same(object(), object())
+    assert is_same({"a": (1.0, "x")}, {"a": (1.0, "x")})
+    assert is_same(np.array([1.0, np.nan]), np.array([1.0, np.nan]))
+    assert not is_same(0.0, -0.0)
+    assert not is_same(1, 1.0)
+    assert not is_same(True, 1)
+    assert not is_same(np.array([0.0]), np.array([-0.0]))
+    assert not is_same({"a": 1, "b": 2}, {"b": 2, "a": 1})
+    assert not is_same((1.0, 2.0), (1.0,))
+    assert not is_same(object(), object())
 
 
 def test_idle_parameters_are_those_on_which_nothing_hangs(scene: Path) -> None:
@@ -141,7 +149,7 @@ def test_idle_parameters_are_those_on_which_nothing_hangs(scene: Path) -> None:
     )
     variants = SpecVariants(scene)
     names = ["L", "H", "F", "T", "g", "spare", "twice", "once", "limit", "bodies.long.points.a.0", "no"]
-    assert variants.idle(names) == {"spare", "twice", "once", "limit"}
+    assert variants.unused_parameters(names) == {"spare", "twice", "once", "limit"}
 
 
 @pytest.mark.heavy
@@ -149,7 +157,7 @@ def test_idle_parameters_are_those_on_which_nothing_hangs(scene: Path) -> None:
 def test_idle_parameters_change_nothing(path: Path) -> None:
     variants = SpecVariants(path, checking=False)
     parameters = variants.spec.parameters
-    for name in variants.idle([*parameters]):
+    for name in variants.unused_parameters([*parameters]):
         other = variants.load({name: repr(1.001 * parameters[name] + 1e-3 * (parameters[name] == 0.0))})
         for field in set(Spec._fields) - {"parameters", "expect", "locations", "warnings"}:
             assert [*bits(getattr(other, field))] == [*bits(getattr(variants.spec, field))], (name, field)
@@ -157,22 +165,22 @@ def test_idle_parameters_change_nothing(path: Path) -> None:
 
 def test_what_an_entry_is_asked_for_is_written_down_field_by_field(scene: Path) -> None:
     document = SpecVariants(scene)._first.draft.document
-    log = Log()
+    log = LookupLog()
     watched = WatchedDocument("document", document, log)
     assert isinstance(watched.forces["push"], ForceEntry)
-    assert log.taken() == {Lookup("document.forces", "push"), Lookup("document.forces.push", KIND)}
+    assert log.take() == {Lookup("document.forces", "push"), Lookup("document.forces.push", KIND)}
     assert watched.forces["push"].vector is document.forces["push"].vector
-    assert Lookup("document.forces.push", "vector") in log.taken()
+    assert Lookup("document.forces.push", "vector") in log.take()
     assert "vector" in watched.forces["push"].model_fields_set
-    assert Lookup("document.forces.push", GIVEN) in log.taken()
+    assert Lookup("document.forces.push", GIVEN_FIELDS) in log.take()
     assert vars(watched.joints["foot"]) == vars(document.joints["foot"])
-    assert Lookup("document.joints.foot", KEYS) in log.taken()
+    assert Lookup("document.joints.foot", KEYS) in log.take()
     assert "gust" not in watched.forces
-    assert Lookup("document.forces", "gust") in log.taken()
+    assert Lookup("document.forces", "gust") in log.take()
     assert [*watched.bodies] == ["long", "short"]
-    assert log.taken() == {Lookup("document.bodies", KEYS)}
+    assert log.take() == {Lookup("document.bodies", KEYS)}
     assert watched.head.gravity == document.head.gravity
-    assert log.taken() == {Lookup("document.head", "gravity")}
+    assert log.take() == {Lookup("document.head", "gravity")}
 
 
 @pytest.mark.parametrize(
@@ -182,7 +190,7 @@ def test_what_an_entry_is_asked_for_is_written_down_field_by_field(scene: Path) 
         ("g", "9.8", {("head", "gravity"), ("head", KEYS)}),
         ("L", "1.0", set()),
         ("joints.knee.type", "ball", {("joints.knee", KIND), ("joints.knee", KEYS), ("joints.knee", "type")}),
-        ("expect.1.rel", "0.1", {("expect.1", "rel"), ("expect.1", KEYS), ("expect.1", GIVEN)}),
+        ("expect.1.rel", "0.1", {("expect.1", "rel"), ("expect.1", KEYS), ("expect.1", GIVEN_FIELDS)}),
         ("forces.brake", "null", {("forces", "brake"), ("forces", KEYS)}),
     ],
 )
@@ -197,7 +205,9 @@ def test_what_differs_between_two_documents(scene: Path, key: str, value: str, d
         new = old._replace(joints={**old.joints, "knee": ball})
     else:
         new = SpecVariants(scene, overrides={key: value})._first.draft.document
-    found = {(one.of.removeprefix("document."), one.key) for one in changed_in_document("document", new, old)}
+    found = {
+        (one.container.removeprefix("document."), one.key) for one in iter_changed_in_document("document", new, old)
+    }
     if key == "joints.knee.type":  # a pin has keys that a ball does not have
         found -= {("joints.knee", name) for name in fields_of(PinJoint).keys() - fields_of(BallJoint).keys()}
     assert found == differing
@@ -208,28 +218,28 @@ def test_what_is_read_again_is_planned_for_what_differs_and_not_for_names(scene:
     first = variants._first
     for F in ("11 N", "12 N", "13 N"):
         variants.load({"F": F})
-    assert len(first.readings) == len(first.plans) == len(first.meant_still) == 1
-    ((_, again),) = first.readings.items()
+    assert len(first.rereads) == len(first.plans) == len(first.unchanged_parts) == 1
+    ((_, again),) = first.rereads.items()
     assert again == [("forces", "push"), ("expect", 0)]
     ((_, plan),) = first.plans.items()
     assert {rule.code for rule, found in plan.verdicts if found is None} == {"expect-form", "expect-instants"}
-    ((_, standing),) = first.meant_still.items()
+    ((_, standing),) = first.unchanged_parts.items()
     assert ("forces", "push") not in standing.parts
     assert {("forces", "brake"), ("bodies", "long"), ("expect", 1), ("analysis", None)} <= standing.parts
     assert "bodies" in standing.blocks and "forces" not in standing.blocks
     variants.load({"H": "3"})
-    assert len(first.readings) == 2
+    assert len(first.rereads) == 2
 
 
 @pytest.mark.parametrize("text", ["12", "-1.5", "+3", "1.", "0.5e-3", "012", "-0", "1e400", "1E5", "00.5", "9" * 18])
 def test_a_plain_figure_is_what_yaml_makes_of_it(text: str) -> None:
-    assert FIGURE.fullmatch(text)
-    ((setting,), problems) = of_words({"F": text})
+    assert PLAIN_NUMBER.fullmatch(text)
+    ((setting,), problems) = parse_settings({"F": text})
     assert problems == []
-    assert [*bits(setting.value)] == [*bits(parse("x", text, "").data)]
-    assert type(setting.value) is type(parse("x", text, "").data)
+    assert [*bits(setting.value)] == [*bits(parse_source("x", text, "").data)]
+    assert type(setting.value) is type(parse_source("x", text, "").data)
 
 
 @pytest.mark.parametrize("text", ["1:30", "1_000", "0x10", "1e", "- 1", "1 ", "٣", "1.5.2", ".5", "9" * 19, "~"])
 def test_what_is_no_plain_figure_is_read_as_yaml(text: str) -> None:
-    assert not FIGURE.fullmatch(text)
+    assert not PLAIN_NUMBER.fullmatch(text)

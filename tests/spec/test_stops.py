@@ -59,13 +59,13 @@ stops: {s: {joint: pivot, angle: [-1, null], restitution: 0.25}}
 analysis: {duration: 1}
 """
     )
-    hit, twist, spin = found.blows
+    hit, twist, spin = found.impulses
     assert (hit.name, hit.body, hit.in_body, hit.time, hit.kind) == ("hit", 0, True, 0.5, "impulse")
     assert (twist.kind, spin.kind, spin.point) == ("couple", "couple", None)
     assert hit.point is not None
     assert twist.point is not None
     assert [hit.point.tolist(), twist.point.tolist()] == [[1.0, 0.0, 0.0]] * 2
-    assert [blow.vector.tolist() for blow in found.blows] == [[0, 1, 0], [0, 0, 2], [0, 0, 3]]
+    assert [blow.vector.tolist() for blow in found.impulses] == [[0, 1, 0], [0, 0, 2], [0, 0, 3]]
     (stop,) = found.stops
     assert (stop.name, stop.joint, stop.quantity, stop.low, stop.high, stop.restitution) == (
         "s", 0, "angle", -1.0, None, 0.25,

@@ -1,4 +1,4 @@
-"""What a balance is asked for beside its scene."""
+"""Options of a balance that are not part of its scene."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from heuncli.results.results import Array
 
 
 @record
-class AskedWeight:
-    """A counterweight that is looked for: a body's point, and how far from it or its axis [m]; None: as joints are."""
+class WeightRequest:
+    """A requested counterweight: a point of a body, and the distance of the weight from it or from its axis [m].
+
+    radius: None means the distance of the body's farthest joint
+    """
 
     body: str
     point: str
@@ -16,8 +19,10 @@ class AskedWeight:
 
 
 @record
-class AskedWheel:
-    """A flywheel that is looked for: on which joint (empty: the cycle's), for which unevenness."""
+class FlywheelRequest:
+    """A requested flywheel: its joint (empty: the joint of the cycle) and the permitted degree of unevenness
+    `delta`.
+    """
 
     joint: str
     delta: float
@@ -25,7 +30,7 @@ class AskedWheel:
 
 @record
 class BalanceOptions:
-    """What is asked for beside the scene; None: as the scene has it."""
+    """Options of a balance; None means that the scene decides."""
 
     cycle: str | None = None
     turns: int | None = None
@@ -33,11 +38,11 @@ class BalanceOptions:
     orders: tuple[float, ...] | None = None
     about: Array | None = None
     place: str = ""
-    weights: tuple[AskedWeight, ...] = ()
+    weights: tuple[WeightRequest, ...] = ()
     minimise: str | None = None
     lever: float | None = None
-    flywheel: AskedWheel | None = None
+    flywheel: FlywheelRequest | None = None
     period: float | None = None
 
 
-NOTHING_ASKED = BalanceOptions()
+DEFAULT_OPTIONS = BalanceOptions()

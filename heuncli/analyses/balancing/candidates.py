@@ -1,8 +1,9 @@
-"""Places for counterweights, and what a weight there does over a cycle.
+"""Candidate places for counterweights, and the effect of a weight there over a cycle.
 
-A point mass m at place + ρ û of a body adds what is linear in its moments (m, m p, m p p^T), p from the body's origin:
+A point mass m at place + ρ û of a body adds forces that are linear in its moments (m, m p, m p p^T), with p measured
+from the body's origin:
     m p = m place + U,   m p p^T = m place place^T + place U^T + U place^T + ρ U U^T/|U|,   U = m ρ û,  m = |U|/ρ
-Of a body that turns evenly about an axis fixed in the ground the terms in m and ρ do nothing.
+For a body that turns uniformly about an axis fixed in the ground, the terms in m and ρ have no effect.
 """
 
 from __future__ import annotations
@@ -14,12 +15,16 @@ import numpy as np
 from heuncli.base.records import record
 from heuncli.results.results import Array
 
-NO_EFFECT = 1e-10  # of what a product does at most: rounding of a cycle's accelerations
+NO_EFFECT = 1e-10  # of the largest effect of a product: rounding of a cycle's accelerations
 
 
 @record
 class WeightPlace:
-    """Where a counterweight may stand: a body's point, and how far from it (None: the body's farthest joint)."""
+    """A place for a counterweight: a point of a body, and the weight's distance from it.
+
+    point (3,): its position, body axes [m]
+    radius [m]: None means the distance of the body's farthest joint
+    """
 
     body: int
     name: str
@@ -29,11 +34,11 @@ class WeightPlace:
 
 @record
 class Candidate:
-    """A place with the two directions across its body's axis, and the answers to the moments of a weight there.
+    """A place with two directions across its body's axis, and the responses to the moments of a weight there.
 
-    by_mass (n,), by_product (n, 2), by_square (n, 2, 2), n numbers for all forces and moments of the cycle, as they are
-    weighed: what a mass at the place, a product along each direction, and moments of second order make ON the
-    foundation at unit rate.
+    plane_directions (3, 2): the two directions by_mass (n,), by_product (n, 2), by_square (n, 2, 2): weighted forces
+    and moments ON the foundation over the cycle at unit rate, caused by a mass at the place, by a product along each
+    direction, and by moments of second order.
     """
 
     at: WeightPlace
@@ -44,18 +49,20 @@ class Candidate:
     by_square: Array
 
     def effect(self, U: Array) -> Array:
-        """What a weight of product U (2,) adds, (n,)."""
+        """Return the response (n,) to a weight of product U (2,)."""
         size = math.sqrt(float(U @ U))
         if size == 0.0:
             return np.zeros_like(self.by_mass)
-        return np.asarray(self.by_product @ U + size * self.of_size(U / size))
+        return np.asarray(self.by_product @ U + size * self.size_effect(U / size))
 
-    def of_size(self, u: Array) -> Array:
-        """What grows with the size of U whichever its direction u (2,), (n,)."""
+    def size_effect(self, u: Array) -> Array:
+        """Return the part of the response (n,) per unit of |U| that the mass and the second moments cause, for
+        direction u (2,).
+        """
         return np.asarray(self.by_mass / self.radius + self.radius * (self.by_square @ u @ u))
 
     def slope(self, U: Array) -> Array:
-        """The effect's derivative by U, (n, 2)."""
+        """Return the derivative (n, 2) of the response with respect to U."""
         size = math.sqrt(float(U @ U))
         if size == 0.0:
             return self.by_product
@@ -64,17 +71,19 @@ class Candidate:
         curved = 2.0 * square - (square @ u)[:, None] * u
         return np.asarray(self.by_product + self.by_mass[:, None] / self.radius * u + self.radius * curved)
 
-    def is_linear(self, unit: float) -> bool:
-        """Whether mass and second moments do nothing that counts beside the product; unit: what that does at most."""
-        other = np.abs(self.by_mass).max() / self.radius, self.radius * np.abs(self.by_square).max()
-        return bool(max(other) <= NO_EFFECT * unit)
+    def is_linear(self, largest_effect: float) -> bool:
+        """Return whether mass and second moments are negligible compared with the product, whose largest effect is
+        given.
+        """
+        nonlinear_effects = np.abs(self.by_mass).max() / self.radius, self.radius * np.abs(self.by_square).max()
+        return bool(max(nonlinear_effects) <= NO_EFFECT * largest_effect)
 
     @property
     def columns(self) -> Array:
-        """All answers side by side, (n, 7)."""
+        """All responses as one matrix (n, 7)."""
         return np.concatenate([self.by_mass[:, None], self.by_product, self.by_square.reshape(-1, 4)], axis=1)
 
-    def with_columns(self, columns: Array) -> Candidate:
-        """The same place with answers (k, 7) of another kind."""
+    def replace_columns(self, columns: Array) -> Candidate:
+        """Return the same place with transformed responses (k, 7)."""
         square = columns[:, 3:].reshape(-1, 2, 2)
-        return Candidate(self.at, self.radius, self.across, columns[:, 0], columns[:, 1:3], square)
+        return Candidate(self.weight_place, self.radius, self.plane_directions, columns[:, 0], columns[:, 1:3], square)

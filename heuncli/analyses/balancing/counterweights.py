@@ -1,7 +1,7 @@
-"""Counterweights that leave the least force and moment over a cycle: of each body mass times radius, and its angle.
+"""Counterweights that minimise force and moment over a cycle: mass times radius and angle for each body.
 
-What a weight does is linear in its moments (candidates.py), of the angles of the cycle alone; the least squares of it
-stand in least_squares.py. U stands across the axis that the body turns about.
+The effect of a weight is linear in its moments (candidates.py) and depends on the angles of the cycle only;
+least_squares.py solves for the products U, which lie across the axis that the body turns about.
 """
 
 from __future__ import annotations
@@ -13,21 +13,26 @@ import numpy as np
 
 from heuncli.analyses.balancing.candidates import Candidate, WeightPlace
 from heuncli.analyses.balancing.cycle import Cycle
-from heuncli.analyses.balancing.effects import mass_effects
-from heuncli.analyses.balancing.harmonics import plane_across
-from heuncli.analyses.balancing.least_squares import solved
+from heuncli.analyses.balancing.effects import compute_mass_effects
+from heuncli.analyses.balancing.harmonics import make_plane_directions
+from heuncli.analyses.balancing.least_squares import solve_products
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import Body, Mechanism
 from heuncli.results.results import Array
-from heuncli.scene.shapes.inertia import assembled, properties, pseudo_inertia
+from heuncli.scene.shapes.inertia import assemble_pseudo_inertia, pseudo_inertia, split_pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_rows
 
 
 @record
-class Weight:
-    """A counterweight in its body's axes: product (3,) = mass · radius, across the axis, from `place`."""
+class Counterweight:
+    """A counterweight in the axes of its body.
+
+    weight_place: the point from which it is measured
+    product (3,) [kg m]: mass · radius, across the axis
+    reference_direction (3,): the direction from which `angle` is counted
+    """
 
     at: WeightPlace
     product: Array
@@ -38,83 +43,100 @@ class Weight:
 
     @property
     def position(self) -> Array:
-        """Where its mass stands, body axes (3,) [m]."""
+        """The position of the weight's mass, body axes (3,) [m]."""
         size = float(np.sqrt(self.product @ self.product))
-        return self.at.place + (self.radius / size) * self.product if size > 0.0 else self.at.place
+        return self.weight_place.point + (self.radius / size) * self.product if size > 0.0 else self.weight_place.point
 
 
 @record
-class Balanced:
-    """The weights, and whether others would serve as well; linear: whether one system of equations told them."""
+class CounterweightSolution:
+    """The counterweights, whether others would serve as well (`several`), and whether one linear system determined them
+    (`linear`).
+    """
 
-    weights: tuple[Weight, ...]
+    weights: tuple[Counterweight, ...]
     several: bool
     linear: bool
 
 
-def least(cycle: Cycle, places: Sequence[WeightPlace], about: Array, force: float, moment: float) -> Balanced:
-    """The weights with the least mean of |force F|² + |moment M|² over the cycle; moment [1/m] counts against force."""
-    found = mass_effects(cycle, about)
+def find_least_weights(
+    cycle: Cycle, places: Sequence[WeightPlace], reference_point: Array, force: float, moment: float
+) -> CounterweightSolution:
+    """Find the weights with the least mean of |force F|² + |moment M|² over the cycle.
+
+    force, moment [1/m]: the factors of force and moment in that sum
+    """
+    effects = compute_mass_effects(cycle, reference_point)
     weigh = np.repeat([force, moment], 3)
-    often = np.sqrt(cycle.nodes.weights * len(cycle.nodes.weights))  # by which the mean of squares is one over rows
-    weigh = often[:, None] * weigh
-    left = -np.concatenate([found.force.sum(axis=1), found.moment.sum(axis=1)], axis=1) * weigh
-    unit = max(force, moment * (cycle.size + float(np.abs(about - cycle.states.centre).max())))
-    candidates = [candidate(cycle, place, about, weigh) for place in places]
-    linear = [one.is_linear(unit) for one in candidates]
-    require_radii([one for one, easy in zip(candidates, linear, strict=True) if not easy])
-    U, several = solved(left, candidates, linear, unit)
-    weights = tuple(weight(one, own) for one, own in zip(candidates, U, strict=True))
-    return Balanced(weights, several, all(linear))
+    mean_factors = np.sqrt(
+        cycle.nodes.weights * len(cycle.nodes.weights)
+    )  # weighted mean of squares as a mean over rows
+    weigh = mean_factors[:, None] * weigh
+    unbalanced = -np.concatenate([effects.force.sum(axis=1), effects.moment.sum(axis=1)], axis=1) * weigh
+    largest_effect = max(force, moment * (cycle.size + float(np.abs(reference_point - cycle.states.centre).max())))
+    candidates = [make_candidate(cycle, place, reference_point, weigh) for place in places]
+    linear = [one.is_linear(largest_effect) for one in candidates]
+    require_radii([one for one, is_linear in zip(candidates, linear, strict=True) if not is_linear])
+    U, several = solve_products(unbalanced, candidates, linear, largest_effect)
+    weights = tuple(make_weight(one, own) for one, own in zip(candidates, U, strict=True))
+    return CounterweightSolution(weights, several, all(linear))
 
 
 def require_radii(candidates: Sequence[Candidate]) -> None:
-    """Raise SolveError where a weight's own mass counts and nobody said how far out it stands."""
-    wanting = [one.at.name for one in candidates if one.at.radius is None]
-    if wanting:
+    """Raise SolveError [radius-needed] if a weight's own mass matters and its radius was not given."""
+    missing = [one.weight_place.name for one in candidates if one.weight_place.radius is None]
+    if missing:
         raise SolveError(*(
             Problem("radius-needed", f"{name}: what a weight does there hangs on its radius, too",
                     hint=f"say how far out it stands: --counterweight {name}:radius=50mm")
-            for name in wanting
+            for name in missing
         ))  # fmt: skip
 
 
-def candidate(cycle: Cycle, at: WeightPlace, about: Array, weigh: Array) -> Candidate:
-    """A place with what weights there do. Raises SolveError where its body turns about no axis of its own."""
+def make_candidate(cycle: Cycle, weight_place: WeightPlace, reference_point: Array, factors: Array) -> Candidate:
+    """Return a place with the responses to a weight there. Raises SolveError if its body has no single axis of
+    rotation.
+    """
     states = cycle.states
-    axis = own_axis(cycle, at)
-    first, second = plane_across(axis)
-    across = np.stack([first, second], axis=1)
-    radius = at.radius if at.radius is not None else reach(cycle.mechanism, at, axis)
-    R, w, al = (getattr(states, name)[:, at.body] for name in ("R", "omega", "alpha"))
-    place = on_axis(cycle, at, axis)
-    x = states.x[:, at.body] + R @ place - about
+    axis = find_rotation_axis(cycle, weight_place)
+    first_direction, second_direction = make_plane_directions(axis)
+    plane_directions = np.stack([first_direction, second_direction], axis=1)
+    radius = weight_place.radius if weight_place.radius is not None else find_reach(cycle.mechanism, weight_place, axis)
+    R, w, al = (getattr(states, name)[:, weight_place.body] for name in ("R", "omega", "alpha"))
+    place = project_on_axis(cycle, weight_place, axis)
+    x = states.x[:, weight_place.body] + R @ place - reference_point
     arm = R @ place
-    a = states.a[:, at.body] + cross_rows(al, arm) + cross_rows(w, cross_rows(w, arm))
-    spread = np.einsum("tij,jk->tki", R, across)  # (n, 2, 3): the directions in the world
-    turned = np.stack([cross_rows(al, e) + cross_rows(w, cross_rows(w, e)) for e in np.moveaxis(spread, 1, 0)], axis=1)
-    by_mass = -np.concatenate([a, cross_rows(x, a)], axis=1)
-    moment = cross_rows(spread, np.broadcast_to(a[:, None], spread.shape)) + cross_rows(
-        np.broadcast_to(x[:, None], turned.shape), turned
+    a = states.a[:, weight_place.body] + cross_rows(al, arm) + cross_rows(w, cross_rows(w, arm))
+    world_directions = np.einsum("tij,jk->tki", R, plane_directions)  # (n, 2, 3): the directions in the world
+    direction_accelerations = np.stack(
+        [cross_rows(al, e) + cross_rows(w, cross_rows(w, e)) for e in np.moveaxis(world_directions, 1, 0)], axis=1
     )
-    by_product = -np.moveaxis(np.concatenate([turned, moment], axis=2), 1, 2)
+    by_mass = -np.concatenate([a, cross_rows(x, a)], axis=1)
+    moment = cross_rows(world_directions, np.broadcast_to(a[:, None], world_directions.shape)) + cross_rows(
+        np.broadcast_to(x[:, None], direction_accelerations.shape), direction_accelerations
+    )
+    by_product = -np.moveaxis(np.concatenate([direction_accelerations, moment], axis=2), 1, 2)
     square = np.zeros((len(x), 6, 2, 2))
     for i in range(2):
         for j in range(2):
-            both = cross_rows(spread[:, i], turned[:, j]) + cross_rows(spread[:, j], turned[:, i])
-            square[:, 3:, i, j] = -0.5 * both
+            pair_moments = cross_rows(world_directions[:, i], direction_accelerations[:, j]) + cross_rows(
+                world_directions[:, j], direction_accelerations[:, i]
+            )
+            square[:, 3:, i, j] = -0.5 * pair_moments
     return Candidate(
-        replace(at, place=place), radius, across,
-        (by_mass * weigh).ravel(), (by_product * weigh[:, :, None]).reshape(-1, 2),
-        (square * weigh[:, :, None, None]).reshape(-1, 2, 2),
+        replace(weight_place, point=place), radius, plane_directions,
+        (by_mass * factors).ravel(), (by_product * factors[:, :, None]).reshape(-1, 2),
+        (square * factors[:, :, None, None]).reshape(-1, 2, 2),
     )  # fmt: skip
 
 
-def own_axis(cycle: Cycle, at: WeightPlace) -> Array:
-    """The direction, in body axes, about which a body turns all the time. Raises SolveError where there is none."""
-    own = np.einsum("tji,tj->ti", cycle.states.R[:, at.body], cycle.states.omega[:, at.body])
+def find_rotation_axis(cycle: Cycle, weight_place: WeightPlace) -> Array:
+    """Return the direction, body axes (3,), about which a body turns at all times. Raises SolveError [no-counterweight]
+    if there is none.
+    """
+    own = np.einsum("tji,tj->ti", cycle.states.R[:, weight_place.body], cycle.states.omega[:, weight_place.body])
     _, sizes, directions = np.linalg.svd(own, full_matrices=False)
-    name = cycle.mechanism.bodies[at.body].name
+    name = cycle.mechanism.bodies[weight_place.body].name
     if sizes[0] <= tolerances.SAME_VALUE * math.sqrt(len(own)):
         message = f"bodies.{name} does not turn: a weight on it adds to what moves to and fro, and takes nothing away"
         raise SolveError(Problem("no-counterweight", message, hint="name a point of a crank or a coupler"))
@@ -125,62 +147,75 @@ def own_axis(cycle: Cycle, at: WeightPlace) -> Array:
     return np.asarray(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis)
 
 
-def on_axis(cycle: Cycle, at: WeightPlace, axis: Array) -> Array:
-    """The place that a weight is counted from: of a body with a fixed axis the point of the axis level with it."""
-    found = fixed_point(cycle, at.body)
-    return at.place if found is None else found + (axis @ (at.place - found)) * axis
+def project_on_axis(cycle: Cycle, weight_place: WeightPlace, axis: Array) -> Array:
+    """Return the point from which a weight is measured: for a body with a fixed axis the axis point level with the
+    place, else the place.
+    """
+    axis_point = find_fixed_point(cycle, weight_place.body)
+    return weight_place.point if axis_point is None else axis_point + (axis @ (weight_place.point - axis_point)) * axis
 
 
-def fixed_point(cycle: Cycle, body: int) -> Array | None:
-    """A point of the body, its axes (3,), that stays where it is; None where none does."""
+def find_fixed_point(cycle: Cycle, body: int) -> Array | None:
+    """Return a point of the body, body axes (3,), that does not move; None if there is none."""
     states = cycle.states
     R, w = states.R[:, body], states.omega[:, body]
     local = np.einsum("tji,tj->ti", R, w)
-    hats = np.zeros((len(local), 3, 3))
-    hats[:, 0, 1], hats[:, 0, 2], hats[:, 1, 2] = -local[:, 2], local[:, 1], -local[:, 0]
-    hats -= np.swapaxes(hats, 1, 2)
+    cross_matrices = np.zeros((len(local), 3, 3))
+    cross_matrices[:, 0, 1], cross_matrices[:, 0, 2], cross_matrices[:, 1, 2] = -local[:, 2], local[:, 1], -local[:, 0]
+    cross_matrices -= np.swapaxes(cross_matrices, 1, 2)
     v = np.einsum("tji,tj->ti", R, states.v[:, body])
-    point = np.linalg.lstsq(hats.reshape(-1, 3), -v.ravel(), rcond=tolerances.PARALLEL)[0]
-    left = np.abs(v + hats @ point).max()
+    point = np.linalg.lstsq(cross_matrices.reshape(-1, 3), -v.ravel(), rcond=tolerances.PARALLEL)[0]
+    residual = np.abs(v + cross_matrices @ point).max()
     scale = np.abs(states.v).max() + np.abs(v).max()
-    return np.asarray(point) if left <= tolerances.SAME_VALUE * scale else None
+    return np.asarray(point) if residual <= tolerances.SAME_VALUE * scale else None
 
 
-def reach(mechanism: Mechanism, at: WeightPlace, axis: Array) -> float:
-    """How far the farthest joint of a body is from its axis [m]. Raises SolveError where none is off it."""
-    body = mechanism.bodies[at.body]
-    ends = [joint.p for joint in mechanism.joints if joint.a == at.body]
-    ends += [joint.q for joint in mechanism.joints if joint.b == at.body]
-    arms = [end - at.place for end in [*ends, body.center]]
-    found = max((float(np.linalg.norm(arm - (axis @ arm) * axis)) for arm in arms), default=0.0)
-    if found <= tolerances.PARALLEL:
-        hint = f"such as --counterweight {at.name}:radius=50mm"
-        raise SolveError(Problem("radius-needed", f"{at.name}: nothing tells how far out a weight stands", hint=hint))
-    return found
+def find_reach(mechanism: Mechanism, weight_place: WeightPlace, axis: Array) -> float:
+    """Return the distance of a body's farthest joint from its axis [m]. Raises SolveError [radius-needed] if all lie on
+    it.
+    """
+    body = mechanism.bodies[weight_place.body]
+    ends = [joint.p for joint in mechanism.joints if joint.a == weight_place.body]
+    ends += [joint.q for joint in mechanism.joints if joint.b == weight_place.body]
+    arms = [end - weight_place.point for end in [*ends, body.center]]
+    distance = max((float(np.linalg.norm(arm - (axis @ arm) * axis)) for arm in arms), default=0.0)
+    if distance <= tolerances.PARALLEL:
+        hint = f"such as --counterweight {weight_place.name}:radius=50mm"
+        raise SolveError(
+            Problem("radius-needed", f"{weight_place.name}: nothing tells how far out a weight stands", hint=hint)
+        )
+    return distance
 
 
-def weight(one: Candidate, U: Array) -> Weight:
-    """A counterweight of product U (2,) along the place's two directions."""
-    product = one.across @ U
+def make_weight(place_candidate: Candidate, U: Array) -> Counterweight:
+    """Return a counterweight of product U (2,) along the two directions of the place."""
+    product = place_candidate.plane_directions @ U
     size = math.sqrt(float(U @ U))
     angle = math.atan2(U[1], U[0])
     angle = abs(angle) if math.pi - abs(angle) <= tolerances.WRITTEN else angle  # and not minus a half turn
-    return Weight(one.at, product, size / one.radius, one.radius, angle, one.across[:, 0])
+    return Counterweight(
+        place_candidate.weight_place,
+        product,
+        size / place_candidate.radius,
+        place_candidate.radius,
+        angle,
+        place_candidate.plane_directions[:, 0],
+    )
 
 
-def applied(mechanism: Mechanism, weights: Sequence[Weight]) -> Mechanism:
-    """The mechanism with the weights as point masses of their bodies."""
+def add_weights(mechanism: Mechanism, weights: Sequence[Counterweight]) -> Mechanism:
+    """Return the mechanism with the weights as point masses of their bodies."""
     bodies = list(mechanism.bodies)
-    for one in weights:
-        bodies[one.at.body] = with_mass(bodies[one.at.body], one)
+    for weight in weights:
+        bodies[weight.weight_place.body] = add_point_mass(bodies[weight.weight_place.body], weight)
     return replace(mechanism, bodies=tuple(bodies))
 
 
-def with_mass(body: Body, one: Weight) -> Body:
-    """A body with a weight as a point mass of it."""
-    p = one.position
+def add_point_mass(body: Body, weight: Counterweight) -> Body:
+    """Return a body with a weight added as a point mass."""
+    p = weight.position
     P = pseudo_inertia(body.mass, body.center, body.inertia)
-    P = P + assembled(np.array(one.mass), one.mass * p, one.mass * np.outer(p, p))
-    mass, center, inertia = properties(P)
+    P = P + assemble_pseudo_inertia(np.array(weight.mass), weight.mass * p, weight.mass * np.outer(p, p))
+    mass, center, inertia = split_pseudo_inertia(P)
     heavier: Body = replace(body, mass=mass, center=center, inertia=inertia)
     return heavier

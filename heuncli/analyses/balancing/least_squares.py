@@ -1,8 +1,9 @@
-"""The products of counterweights with the least sum of squares over a cycle.
+"""Find the products of counterweights with the least sum of squares over a cycle.
 
-Where all are linear it is one system, of least |U| where several U serve as well. A weight whose mass counts is along a
-direction linear in its size, so that of many directions the best with its sizes is where Newton's iteration begins; the
-size may not be below 0, and is 0 where no weight helps. All is done in the few numbers that QR leaves of the cycle.
+If all weights act linearly, this is one linear system; of several solutions the one of least |U| is taken. A weight
+whose own mass matters acts linearly in its size along a fixed direction, so Newton's iteration begins with the best of
+many directions and the best sizes there; a size is never negative, and is 0 if no weight helps. Everything is computed
+with the few numbers that a QR decomposition of the cycle leaves.
 """
 
 from __future__ import annotations
@@ -16,119 +17,137 @@ import numpy as np
 from heuncli.analyses.balancing.candidates import NO_EFFECT, Candidate
 from heuncli.results.results import Array
 
-DEPENDENT = 1e-10  # of the largest singular value: places that serve as well as each other
-MOST_STARTS = 1000  # of directions, all weights together
-LEAST_DIRECTIONS = 6
-MOST_STEPS, HALVINGS = 200, 40
-DIFFERENCE = 1e-5  # of |U|: by which second derivatives are found; first ones are exact
-GONE = 1e-9  # of the largest: a weight that its iteration makes so small is none
+DEPENDENCE_TOLERANCE = 1e-10  # of the largest singular value: below, places are equivalent
+MAX_STARTS = 1000  # combinations of directions of all weights
+MIN_DIRECTIONS = 6
+MAX_STEPS, MAX_HALVINGS = 200, 40
+RELATIVE_DIFFERENCE = 1e-5  # of |U|: step for second derivatives; first ones are exact
+NEGLIGIBLE_SIZE = 1e-9  # of the largest: a weight smaller than this becomes 0
 
 
-def solved(left: Array, candidates: Sequence[Candidate], linear: Sequence[bool], unit: float) -> tuple[Array, bool]:
-    """U (k, 2) of each candidate, and whether others serve as well; left (n, 6): force and moment as weighed."""
-    columns = [left.reshape(-1, 1), *(one.columns for one in candidates)]
+def solve_products(
+    unbalanced: Array, candidates: Sequence[Candidate], linear: Sequence[bool], largest_effect: float
+) -> tuple[Array, bool]:
+    """Return the products U (k, 2) of the candidates, and whether others would serve as well.
+
+    unbalanced (n, 6): weighted force and moment without counterweights
+    """
+    columns = [unbalanced.reshape(-1, 1), *(one.columns for one in candidates)]
     R: Array = np.linalg.qr(np.concatenate(columns, axis=1))[1]
-    small = [one.with_columns(R[:, 1 + 7 * k : 8 + 7 * k]) for k, one in enumerate(candidates)]
-    size = unit * math.sqrt(left.shape[0])
+    reduced = [one.replace_columns(R[:, 1 + 7 * k : 8 + 7 * k]) for k, one in enumerate(candidates)]
+    size = largest_effect * math.sqrt(unbalanced.shape[0])
     if all(linear):
-        U, several = straight(np.concatenate([one.by_product for one in small], axis=1), R[:, 0], size)
+        U, several = solve_linear(np.concatenate([one.by_product for one in reduced], axis=1), R[:, 0], size)
         return U.reshape(-1, 2), several
-    best = min(starts(R[:, 0], small, linear, size), key=lambda U: float(np.sum(rest(R[:, 0], small, U) ** 2)))
-    return polished(R[:, 0], small, best), False
+    best = min(
+        iter_starts(R[:, 0], reduced, linear, size),
+        key=lambda U: float(np.sum(compute_residual(R[:, 0], reduced, U) ** 2)),
+    )
+    return refine_products(R[:, 0], reduced, best), False
 
 
-def straight(A: Array, left: Array, size: float) -> tuple[Array, bool]:
-    """The x of least |A x + left|, of these the least; whether there are several. size: of columns that act."""
-    doing = np.sqrt(np.sum(A * A, axis=0)) > NO_EFFECT * size
+def solve_linear(A: Array, constant: Array, size: float) -> tuple[Array, bool]:
+    """Return the x that minimises |A x + constant|, of several the smallest, and whether there are several.
+
+    size: reference size of columns that have an effect
+    """
+    is_active = np.sqrt(np.sum(A * A, axis=0)) > NO_EFFECT * size
     x = np.zeros(A.shape[1])
-    if not doing.any():
+    if not is_active.any():
         return x, True
-    own, _, rank, _ = np.linalg.lstsq(A[:, doing] / size, -left / size, rcond=DEPENDENT)
-    x[doing] = own
+    solution, _, rank, _ = np.linalg.lstsq(A[:, is_active] / size, -constant / size, rcond=DEPENDENCE_TOLERANCE)
+    x[is_active] = solution
     return x, int(rank) < A.shape[1]
 
 
-def rest(left: Array, candidates: Sequence[Candidate], U: Array) -> Array:
-    """What weights leave, (n,)."""
+def compute_residual(constant: Array, candidates: Sequence[Candidate], U: Array) -> Array:
+    """Return the force and moment (n,) that remain with the weights."""
     return np.asarray(
-        left + sum((one.effect(own) for one, own in zip(candidates, U, strict=True)), np.zeros_like(left))
+        constant
+        + sum((one.effect(product) for one, product in zip(candidates, U, strict=True)), np.zeros_like(constant))
     )
 
 
-def starts(left: Array, candidates: Sequence[Candidate], linear: Sequence[bool], size: float) -> Iterator[Array]:
-    """Weights to begin with: for many directions of those that are not linear, their best sizes and the others'."""
-    curved = [k for k, easy in enumerate(linear) if not easy]
-    many = max(LEAST_DIRECTIONS, int(MOST_STARTS ** (1.0 / len(curved))))
-    angles = 2.0 * math.pi * np.arange(min(many, 72)) / min(many, 72)
+def iter_starts(
+    constant: Array, candidates: Sequence[Candidate], linear: Sequence[bool], size: float
+) -> Iterator[Array]:
+    """Yield starting weights: many directions of the nonlinear weights, each with its best sizes and the best linear
+    weights.
+    """
+    nonlinear = [k for k, is_linear in enumerate(linear) if not is_linear]
+    direction_count = max(MIN_DIRECTIONS, int(MAX_STARTS ** (1.0 / len(nonlinear))))
+    angles = 2.0 * math.pi * np.arange(min(direction_count, 72)) / min(direction_count, 72)
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    for chosen in product(directions, repeat=len(curved)):
-        yield sized(left, candidates, dict(zip(curved, chosen, strict=True)), size)
+    for chosen_directions in product(directions, repeat=len(nonlinear)):
+        yield solve_sizes(constant, candidates, dict(zip(nonlinear, chosen_directions, strict=True)), size)
 
 
-def sized(left: Array, candidates: Sequence[Candidate], along: dict[int, Array], size: float) -> Array:
-    """The best weights with some along given directions; of these none is below 0."""
+def solve_sizes(constant: Array, candidates: Sequence[Candidate], directions: dict[int, Array], size: float) -> Array:
+    """Return the best weights if some lie along given directions; the sizes of these are not negative."""
     U = np.zeros((len(candidates), 2))
-    free = list(along)
+    free = list(directions)
     while True:
-        own = {k: along[k] for k in free}
-        columns = [one.by_product for k, one in enumerate(candidates) if k not in along]
-        columns += [(candidates[k].by_product @ u + candidates[k].of_size(u))[:, None] for k, u in own.items()]
+        free_directions = {k: directions[k] for k in free}
+        columns = [one.by_product for k, one in enumerate(candidates) if k not in directions]
+        columns += [
+            (candidates[k].by_product @ u + candidates[k].size_effect(u))[:, None] for k, u in free_directions.items()
+        ]
         if not columns:
             return U
-        x, _ = straight(np.concatenate(columns, axis=1), left, size)
+        x, _ = solve_linear(np.concatenate(columns, axis=1), constant, size)
         sizes = x[len(x) - len(free) :] if free else x[:0]
         if (sizes >= 0.0).all():
             break
         free = [k for k, value in zip(free, sizes, strict=True) if value >= 0.0]
-    others = [k for k in range(len(candidates)) if k not in along]
-    for i, k in enumerate(others):
+    linear = [k for k in range(len(candidates)) if k not in directions]
+    for i, k in enumerate(linear):
         U[k] = x[2 * i : 2 * i + 2]
     for k, value in zip(free, sizes, strict=True):
-        U[k] = value * along[k]
+        U[k] = value * directions[k]
     return U
 
 
-def polished(left: Array, candidates: Sequence[Candidate], U: Array) -> Array:
-    """Newton's iteration for the weights that are not 0, each step halved until it leads down."""
+def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) -> Array:
+    """Refine the weights that are not 0 by Newton's iteration; each step is halved until the residual falls."""
     active = [k for k in range(len(U)) if np.any(U[k])]
     if not active:
         return U
-    some = [candidates[k] for k in active]
+    active_candidates = [candidates[k] for k in active]
 
-    def slope(x: Array) -> tuple[Array, Array]:
+    def gradient(x: Array) -> tuple[Array, Array]:
         own = x.reshape(-1, 2)
-        J = np.concatenate([one.slope(each) for one, each in zip(some, own, strict=True)], axis=1)
-        return J.T @ rest(left, some, own), J
+        J = np.concatenate([one.slope(each) for one, each in zip(active_candidates, own, strict=True)], axis=1)
+        return J.T @ compute_residual(constant, active_candidates, own), J
 
     x = U[active].ravel()
-    for _ in range(MOST_STEPS):
-        g, J = slope(x)
-        step = downhill(curvature(lambda at: slope(at)[0], x), J.T @ J, g)
-        now = np.sum(rest(left, some, x.reshape(-1, 2)) ** 2)
-        for _ in range(HALVINGS):
-            if np.sum(rest(left, some, (x + step).reshape(-1, 2)) ** 2) < now:
+    for _ in range(MAX_STEPS):
+        g, J = gradient(x)
+        step = find_descent_step(hessian(lambda at: gradient(at)[0], x), J.T @ J, g)
+        current = np.sum(compute_residual(constant, active_candidates, x.reshape(-1, 2)) ** 2)
+        for _ in range(MAX_HALVINGS):
+            if np.sum(compute_residual(constant, active_candidates, (x + step).reshape(-1, 2)) ** 2) < current:
                 break
             step = 0.5 * step
         else:
             break
         x = x + step
-    found = U.copy()
-    found[active] = x.reshape(-1, 2)
-    sizes = np.sqrt(np.sum(found**2, axis=1))
-    found[sizes <= GONE * sizes.max()] = 0.0
-    return found
+    refined = U.copy()
+    refined[active] = x.reshape(-1, 2)
+    sizes = np.sqrt(np.sum(refined**2, axis=1))
+    refined[sizes <= NEGLIGIBLE_SIZE * sizes.max()] = 0.0
+    return refined
 
 
-def curvature(slope: Callable[[Array], Array], x: Array) -> Array:
-    """Second derivatives, by central differences of the first."""
-    h = DIFFERENCE * float(np.abs(x).max())
-    rows = [(slope(x + h * e) - slope(x - h * e)) / (2.0 * h) for e in np.eye(len(x))]
+def hessian(gradient: Callable[[Array], Array], x: Array) -> Array:
+    """Compute second derivatives by central differences of the first."""
+    h = RELATIVE_DIFFERENCE * float(np.abs(x).max())
+    rows = [(gradient(x + h * e) - gradient(x - h * e)) / (2.0 * h) for e in np.eye(len(x))]
     H = np.array(rows)
     return np.asarray(0.5 * (H + H.T))
 
 
-def downhill(H: Array, gauss: Array, g: Array) -> Array:
-    """Newton's step; Gauss and Newton's where that would lead up."""
+def find_descent_step(H: Array, gauss: Array, g: Array) -> Array:
+    """Return Newton's step; if it leads uphill the Gauss-Newton step, else the negative gradient."""
     for matrix in (H, gauss):
         step = -np.linalg.lstsq(matrix, g, rcond=None)[0]
         if step @ g < 0.0:

@@ -1,7 +1,7 @@
-"""Polynomials on [-1, 1] by the values at Gauss's nodes: coefficients, integrals, Fourier's integrals.
+"""Polynomials on [-1, 1] from their values at Gauss nodes: coefficients, integrals and Fourier integrals.
 
     f = sum c_n P_n,   c_n = (2n + 1)/2 sum w_j P_n(u_j) f_j,   ∫ P_n e^{-iωu} du = 2 (-i)^n j_n(ω)
-j_n: spherical Bessel functions, upwards where ω is larger than n, else downwards (Miller).
+j_n: spherical Bessel functions, by upward recurrence where ω is larger than n, else by downward recurrence (Miller).
 """
 
 from __future__ import annotations
@@ -12,41 +12,41 @@ import numpy as np
 
 from heuncli.results.results import Array
 
-MOST = 16  # nodes; polynomials have as many coefficients
+MAX_NODES = 16  # nodes; polynomials have as many coefficients
 SMALL = 1e-5  # below, j_n is its series of two terms: the third is 1e-21; Miller's recurrence would grow too far
-NEWTON = 2  # steps from eigenvalues of Jacobi's matrix to the last digit of a node
-LEAST = 1e-150  # with which it begins
-BEYOND = 24  # orders above the last from which Miller's recurrence comes down
+NEWTON_STEPS = 2  # steps from eigenvalues of Jacobi's matrix to the last digit of a node
+MILLER_START = 1e-150  # with which it begins
+MILLER_EXTRA_ORDERS = 24  # orders above the last from which Miller's recurrence comes down
 
 
 @cache
-def nodes(n: int) -> tuple[Array, Array]:
-    """Gauss's nodes and weights on [-1, 1], (n,) each; the weights add up to 2."""
+def gauss_nodes(n: int) -> tuple[Array, Array]:
+    """Return the Gauss nodes and weights on [-1, 1], (n,) each; the weights add up to 2."""
     k = np.arange(1.0, n)
-    beside = np.diag(k / np.sqrt(4.0 * k * k - 1.0), 1)
-    u = np.linalg.eigvalsh(beside + beside.T)
+    off_diagonal = np.diag(k / np.sqrt(4.0 * k * k - 1.0), 1)
+    u = np.linalg.eigvalsh(off_diagonal + off_diagonal.T)
     u = 0.5 * (u - u[::-1])
-    for _ in range(NEWTON):
-        own = polynomials(u, n + 1)
-        slope = n * (own[:, n - 1] - u * own[:, n]) / (1.0 - u * u)
-        u = u - own[:, n] / slope
-    own = polynomials(u, n + 1)
-    slope = n * (own[:, n - 1] - u * own[:, n]) / (1.0 - u * u)
+    for _ in range(NEWTON_STEPS):
+        P = legendre_polynomials(u, n + 1)
+        slope = n * (P[:, n - 1] - u * P[:, n]) / (1.0 - u * u)
+        u = u - P[:, n] / slope
+    P = legendre_polynomials(u, n + 1)
+    slope = n * (P[:, n - 1] - u * P[:, n]) / (1.0 - u * u)
     return u, 2.0 / ((1.0 - u * u) * slope * slope)
 
 
 @cache
-def transform(n: int) -> Array:
-    """The matrix (MOST, n) from values at n nodes to coefficients; those from n on are 0."""
-    u, w = nodes(n)
-    found = np.zeros((MOST, n))
+def coefficient_matrix(n: int) -> Array:
+    """Return the matrix (MAX_NODES, n) from values at n nodes to coefficients; rows from n on are 0."""
+    u, w = gauss_nodes(n)
+    found = np.zeros((MAX_NODES, n))
     k = np.arange(n)
-    found[:n] = (k + 0.5)[:, None] * polynomials(u).T[:n] * w
+    found[:n] = (k + 0.5)[:, None] * legendre_polynomials(u).T[:n] * w
     return found
 
 
-def polynomials(u: Array, count: int = MOST) -> Array:
-    """P_0 ... P_(count - 1) at places (m,), (m, count)."""
+def legendre_polynomials(u: Array, count: int = MAX_NODES) -> Array:
+    """Return P_0 ... P_(count - 1) at places (m,), (m, count)."""
     found = np.ones((len(u), count))
     if count > 1:
         found[:, 1] = u
@@ -57,56 +57,60 @@ def polynomials(u: Array, count: int = MOST) -> Array:
 
 @cache
 def integral_matrix() -> Array:
-    """The matrix (MOST + 1, MOST) from coefficients to those of the integral from -1 on."""
-    found = np.zeros((MOST + 1, MOST))
+    """Return the matrix (MAX_NODES + 1, MAX_NODES) from coefficients to those of the integral from -1 on."""
+    found = np.zeros((MAX_NODES + 1, MAX_NODES))
     found[0, 0] = found[1, 0] = 1.0
-    for n in range(1, MOST):
+    for n in range(1, MAX_NODES):
         found[n + 1, n], found[n - 1, n] = 1.0 / (2 * n + 1), -1.0 / (2 * n + 1)
     return found
 
 
 def fourier_integrals(omega: Array) -> Array:
-    """∫ P_n e^{-iωu} du over [-1, 1] at ω >= 0 (m,), complex (m, MOST)."""
-    return np.asarray(2.0 * spherical_bessel(omega) * (-1j) ** np.arange(MOST))
+    """Return ∫ P_n e^{-iωu} du over [-1, 1] at ω >= 0 (m,), complex (m, MAX_NODES)."""
+    return np.asarray(2.0 * spherical_bessel(omega) * (-1j) ** np.arange(MAX_NODES))
 
 
 def spherical_bessel(x: Array) -> Array:
-    """j_0 ... j_(MOST - 1) at x >= 0 (m,), (m, MOST)."""
-    found = np.zeros((len(x), MOST))
-    small, large = x < SMALL, x > MOST
+    """Return j_0 ... j_(MAX_NODES - 1) at x >= 0 (m,), (m, MAX_NODES)."""
+    found = np.zeros((len(x), MAX_NODES))
+    small, large = x < SMALL, x > MAX_NODES
     middle = ~small & ~large
-    found[small], found[middle], found[large] = series(x[small]), downwards(x[middle]), upwards(x[large])
+    found[small], found[middle], found[large] = (
+        bessel_series(x[small]),
+        bessel_downward(x[middle]),
+        bessel_upward(x[large]),
+    )
     return found
 
 
-def series(x: Array) -> Array:
-    """j_n by the first two terms of its power series, (m, MOST)."""
-    found = np.zeros((len(x), MOST))
+def bessel_series(x: Array) -> Array:
+    """Return j_n from the first two terms of its power series, (m, MAX_NODES)."""
+    found = np.zeros((len(x), MAX_NODES))
     power = np.ones_like(x)
-    for n in range(MOST):
+    for n in range(MAX_NODES):
         found[:, n] = power * (1.0 - 0.5 * x * x / (2 * n + 3))
         power = power * x / (2 * n + 3)
     return found
 
 
-def upwards(x: Array) -> Array:
-    """j_n by the recurrence from j_0 and j_1 on, (m, MOST): x is to be above n."""
-    found = np.zeros((len(x), MOST))
+def bessel_upward(x: Array) -> Array:
+    """Return j_n by upward recurrence from j_0 and j_1, (m, MAX_NODES); x must exceed n."""
+    found = np.zeros((len(x), MAX_NODES))
     sine, cosine = np.sin(x), np.cos(x)
     found[:, 0] = sine / x
     found[:, 1] = (found[:, 0] - cosine) / x
-    for n in range(1, MOST - 1):
+    for n in range(1, MAX_NODES - 1):
         found[:, n + 1] = (2 * n + 1) / x * found[:, n] - found[:, n - 1]
     return found
 
 
-def downwards(x: Array) -> Array:
-    """j_n by the recurrence from far above down, scaled to the larger of j_0 and j_1, (m, MOST)."""
-    found = np.zeros((len(x), MOST))
-    above, here, part = np.zeros_like(x), np.full_like(x, LEAST), 1.0 / x
-    for n in range(MOST + BEYOND, 0, -1):
+def bessel_downward(x: Array) -> Array:
+    """Return j_n by downward recurrence, scaled to the larger of j_0 and j_1, (m, MAX_NODES)."""
+    found = np.zeros((len(x), MAX_NODES))
+    above, here, part = np.zeros_like(x), np.full_like(x, MILLER_START), 1.0 / x
+    for n in range(MAX_NODES + MILLER_EXTRA_ORDERS, 0, -1):
         above, here = here, (2 * n + 1) * part * here - above
-        if n <= MOST:
+        if n <= MAX_NODES:
             found[:, n - 1] = here
     first = np.sin(x) / x
     second = (first - np.cos(x)) / x

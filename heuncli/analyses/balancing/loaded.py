@@ -1,4 +1,4 @@
-"""A scene with its loads, followed at the cycle's rate: what its numbers are at any place of the cycle."""
+"""A scene with its loads, followed at the cycle's rate: its results at any place of the cycle."""
 
 from __future__ import annotations
 
@@ -7,33 +7,37 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from heuncli.analyses.balancing.choice import CyclePlan
-from heuncli.analyses.balancing.cycle import driven_mechanism, require_determined, still
+from heuncli.analyses.balancing.cycle import drop_rates, make_driven_mechanism, require_determined
 from heuncli.analyses.balancing.followed import FollowedRun
 from heuncli.analyses.balancing.nodes import PieceNodes
-from heuncli.analyses.balancing.recurring import unlike
-from heuncli.analyses.balancing.resolved import CycleResolver, scales_of
-from heuncli.analyses.balancing.unseen import laws_of_angle, suspects
+from heuncli.analyses.balancing.recurring import describe_nonperiodic_loads
+from heuncli.analyses.balancing.resolved import CycleResolver, make_scales
+from heuncli.analyses.balancing.unseen import find_deviations, iter_angle_laws
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
-from heuncli.loads.redundancy.count import redundancy
-from heuncli.motion.integration.methods.followed import FOLLOWED
-from heuncli.motion.integration.run.runner import ready
+from heuncli.loads.redundancy.count import count_redundancy
+from heuncli.motion.integration.methods.followed import DRIVE_DETERMINED
+from heuncli.motion.integration.run.runner import make_runner
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.prepare import PreparedScene, arranged
+from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.model.model_note import model_note
-from heuncli.study.model.setup import Setup, reduced_runner
+from heuncli.study.model.model_note import make_model_block
+from heuncli.study.model.setup import Setup, reduce_scene
 
-SHORT = 1e-2  # of a turn: steps of less are taken where a load flares up
-FEW = 8
-MOST_ROUNDS = 24  # of looks for what was not seen; each finds one in every piece
+SHORT_STEP = 1e-2  # of a turn: shorter steps occur only where a load changes quickly
+FIRST_SAMPLES = 8
+MAX_SEARCHES = 24  # searches for missed events; each finds at most one per piece
 
 
 class CycleNumbers(NamedTuple):
-    """Numbers over a cycle, (n, columns), at the nodes of its pieces; notes: what is not known to have been seen."""
+    """Numbers over a cycle, (n, columns), at the nodes of its pieces.
+
+    notes: events that may have been missed
+    is_resolved: whether the nodes resolve the numbers everywhere
+    """
 
     nodes: PieceNodes
     values: Array
@@ -43,67 +47,80 @@ class CycleNumbers(NamedTuple):
 
 @record
 class LoadedScene:
-    """A scene with its loads; joint: whose angle the cycle is counted in."""
+    """A scene with its loads.
+
+    joint: the joint whose angle counts the cycle
+    """
 
     setup: Setup
     followed: FollowedRun
     joint: str
 
-    def at(self, x: Array) -> Recovery:
-        """It at places of the cycle (n,), ascending."""
-        return Recovery(self.setup, self.followed.recovered(x), False)
+    def recover(self, x: Array) -> Recovery:
+        """Recover the results at ascending places of the cycle (n,)."""
+        return Recovery(self.setup, self.followed_run.recover(x), False)
 
-    def at_first(self) -> Recovery:
-        """It at a few even places, by which it is told how many numbers there are, and what their terms are."""
-        return self.at(self.followed.length * np.arange(FEW) / FEW)
+    def recover_samples(self) -> Recovery:
+        """Recover the results at a few equally spaced places, to learn how many numbers there are and how large."""
+        return self.recover(self.followed_run.length * np.arange(FIRST_SAMPLES) / FIRST_SAMPLES)
 
-    def numbers(
-        self, columns: Callable[[Recovery], Array], parts: Sequence[int], rounding: Sequence[float]
+    def resolve_numbers(
+        self, compute_columns: Callable[[Recovery], Array], group_sizes: Sequence[int], rounding: Sequence[float]
     ) -> CycleNumbers:
-        """Columns over the cycle, on as many pieces as tell them.
+        """Compute columns over the cycle, on as many pieces as are needed to resolve them.
 
-        parts: so many side by side that are of one kind; rounding: of each kind what of its numbers is that.
+        group_sizes: numbers of adjacent columns that are of one kind
+        rounding: rounding level of each kind
         """
-        run, mechanism = self.followed, self.setup.scene.mechanism
-        resolver = CycleResolver(lambda x: columns(self.at(x)), run.cycle, scales_of(parts, rounding))
+        run, mechanism = self.followed_run, self.setup.scene.mechanism
+        resolver = CycleResolver(
+            lambda x: compute_columns(self.recover(x)), run.cycle, make_scales(group_sizes, rounding)
+        )
         resolver.resolve(run.breaks)
-        found = resolver.probed(np.union1d(run.short_steps(SHORT * run.length / run.turns), run.given_in_time()))
+        resolved = resolver.probe(
+            np.union1d(run.find_short_steps(SHORT_STEP * run.length / run.turns), run.find_time_law_places())
+        )
         values = [value for load in mechanism.loads for value in load.values]
-        laws = list(laws_of_angle(values, self.joint, run.rate))
-        others = has_others(values, self.joint)
+        laws = list(iter_angle_laws(values, self.joint, run.rate))
+        has_other_laws = depends_on_other_joints(values, self.joint)
         undecided: tuple[str, ...] = ()
-        for _ in range(MOST_ROUNDS):
-            places, undecided = suspects(laws, found.nodes)
-            if others:
-                places = np.union1d(places, run.looked_at(found.nodes))
-            count = len(found.nodes.begins)
-            found = resolver.probed(places)
-            if len(found.nodes.begins) == count:
+        for _ in range(MAX_SEARCHES):
+            places, undecided = find_deviations(laws, resolved.nodes)
+            if has_other_laws:
+                places = np.union1d(places, run.find_extra_step_ends(resolved.nodes))
+            count = len(resolved.nodes.begins)
+            resolved = resolver.probe(places)
+            if len(resolved.nodes.begins) == count:
                 break
         else:
             undecided += ("the loads",)
-        notes = [f"bounds do not tell what {law} does between the angles that were looked at" for law in undecided]
-        if run.run.undecided:
-            steps = "one step" if run.run.undecided == 1 else f"{run.run.undecided} steps"
+        notes = [
+            f"bounds do not tell what {law_source} does between the angles that were looked at"
+            for law_source in undecided
+        ]
+        if run.run.uncertain_count:
+            steps = "one step" if run.run.uncertain_count == 1 else f"{run.run.uncertain_count} steps"
             notes.append(f"in {steps} bounds could not decide what loads do: shorter events may be missing")
-        if not found.settled:
+        if not resolved.is_resolved:
             notes.append("loads vary too much to be followed to their digits: what is told errs by as much as it says")
-        settled = found.settled and not notes
-        notes += unlike(run, found.nodes)
-        return CycleNumbers(found.nodes, found.values, tuple(dict.fromkeys(notes)), settled)
+        settled = resolved.is_resolved and not notes
+        notes += describe_nonperiodic_loads(run, resolved.nodes)
+        return CycleNumbers(resolved.nodes, resolved.values, tuple(dict.fromkeys(notes)), settled)
 
 
-def has_others(values: Sequence[Expression], joint: str) -> bool:
-    """Whether laws hang on other coordinates than a joint's."""
+def depends_on_other_joints(values: Sequence[Expression], joint: str) -> bool:
+    """Return whether laws depend on coordinates other than this joint's."""
     return any(name != joint for value in values for name, _ in value.uses)
 
 
-def loaded(spec: Spec, scene: PreparedScene, mechanism: Mechanism, plan: CyclePlan, rate: float) -> LoadedScene:
-    """A mechanism in the scene's place, with its loads, along the cycle."""
-    driven = arranged(driven_mechanism(mechanism, plan, rate, loaded=True), still(scene))
-    own, runner = ready(driven)
-    reduced, runner = reduced_runner(own, runner)
+def make_loaded_scene(
+    spec: Spec, scene: PreparedScene, mechanism: Mechanism, plan: CyclePlan, rate: float
+) -> LoadedScene:
+    """Return a mechanism in the place of the scene's own, with its loads, followed along the cycle."""
+    driven = lay_out_scene(make_driven_mechanism(mechanism, plan, rate, with_loads=True), drop_rates(scene))
+    prepared, runner = make_runner(driven)
+    reduced, runner = reduce_scene(prepared, runner)
     require_determined(runner, plan)
-    note = model_note(own, runner, FOLLOWED.name, redundancy(own, runner))
-    setup = Setup(spec, own, (), runner, FOLLOWED, note, reduced)
-    return LoadedScene(setup, FollowedRun(own.layout, runner, plan.begin, rate, plan.turns), plan.joint)
+    note = make_model_block(prepared, runner, DRIVE_DETERMINED.name, count_redundancy(prepared, runner))
+    setup = Setup(spec, prepared, (), runner, DRIVE_DETERMINED, note, reduced)
+    return LoadedScene(setup, FollowedRun(prepared.layout, runner, plan.begin, rate, plan.turns), plan.joint)

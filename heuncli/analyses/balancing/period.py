@@ -1,10 +1,9 @@
-"""`--period T`: orders of time, of a motion that comes back with a period where no angle tells its cycle.
-
+"""`--period T`: orders in time, for a motion that repeats with a period although no angle determines its cycle.
     F(t) = sum F_k cos(2π k t/T - phase_k),     M(t) likewise,     over the last T of the motion
-Force and moment of the masses ON the foundation, on pieces between what jumps in the last period or in the one before,
-which is looked at beside it, T earlier: what the two differ by in the mean is told, and no order below it,
+Force and moment of the masses ON the foundation, on pieces between the jumps of the last period and of the one before
+it, shifted by T. The mean difference between the two periods is reported, and no order below it,
     |a_k - a_k'| <= 2/T ∫ |F(t) - F(t - T)| dt
-so that a jump which comes a moment earlier counts by that moment.
+so that a jump that comes slightly earlier counts in proportion.
 """
 
 from __future__ import annotations
@@ -14,18 +13,18 @@ import math
 import numpy as np
 
 from heuncli.analyses.balancing.asked import BalanceOptions
-from heuncli.analyses.balancing.cycle import Cycle, at_unit_rate
-from heuncli.analyses.balancing.effects import MassEffects, mass_effects
+from heuncli.analyses.balancing.cycle import Cycle, scale_to_unit_rate
+from heuncli.analyses.balancing.effects import MassEffects, compute_mass_effects
 from heuncli.analyses.balancing.nodes import PieceNodes
-from heuncli.analyses.balancing.over_cycle import of_vectors
-from heuncli.analyses.balancing.resolved import CycleResolver, of_a_cycle, scales_of
+from heuncli.analyses.balancing.over_cycle import compute_vector_magnitudes
+from heuncli.analyses.balancing.resolved import CycleResolver, make_empty_nodes, make_scales
 from heuncli.analyses.balancing.results import BalanceResults, Period
-from heuncli.analyses.balancing.rows import CycleTurning, lengths
-from heuncli.analyses.balancing.told import told
+from heuncli.analyses.balancing.rows import CycleRotation, magnitudes
+from heuncli.analyses.balancing.told import to_results
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.bodies import body_states
+from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import stated_error
@@ -34,14 +33,18 @@ from heuncli.study.model.options import Options
 from heuncli.study.solve.history import resample
 from heuncli.study.workflow import solve
 
-CODE = "no-period"
+PROBLEM_CODE = "no-period"
 KINDS = ("force", "moment")
-FEW = 8  # instants by which it is told what the terms are that force and moment are sums of
+FIRST_SAMPLES = 8  # instants for the size of the terms of force and moment
 
 
 @record
 class TwoPeriods:
-    """The last period of a motion and the one before; begin [s]: of the last; about (3,): where moments are taken."""
+    """The last period of a motion and the one before it.
+
+    begin [s]: start of the last period
+    reference_point (3,): where moments are taken
+    """
 
     study: Study
     seconds: float
@@ -50,125 +53,137 @@ class TwoPeriods:
 
     @property
     def rate(self) -> float:
-        """The angle 2π t/T by the time [rad/s]."""
+        """Rate of the angle 2π t/T [rad/s]."""
         return 2.0 * math.pi / self.seconds
 
     @property
     def cycle(self) -> PieceNodes:
-        """The period as a cycle of that angle, without pieces yet."""
-        return of_a_cycle(self.rate * self.begin, 1)
+        """The period as a cycle of that angle, not yet divided into pieces."""
+        return make_empty_nodes(self.rate * self.begin, 1)
 
-    def effects(self, nodes: PieceNodes, x: Array, before: bool = False) -> MassEffects:
-        """At places of the period (n,), ascending; before: of the period before."""
+    def compute_effects(self, nodes: PieceNodes, x: Array, previous_period: bool = False) -> MassEffects:
+        """Return the mass effects at ascending places of the period (n,).
+
+        previous_period: in the period before the last
+        """
         scene, history = self.study.setup.scene, self.study.history
-        times = self.begin + x / self.rate - (self.seconds if before else 0.0)
+        times = self.begin + x / self.rate - (self.seconds if previous_period else 0.0)
         times = np.clip(times, 0.0, float(history.times[-1]))
-        states = body_states(scene.layout, resample(self.study.setup.runner, history, times))
-        return mass_effects(
-            Cycle(scene.mechanism, nodes, at_unit_rate(states, self.rate), scene.layout.size), self.about
+        states = make_body_states(scene.layout, resample(self.study.setup.runner, history, times))
+        return compute_mass_effects(
+            Cycle(scene.mechanism, nodes, scale_to_unit_rate(states, self.rate), scene.layout.size),
+            self.reference_point,
         )
 
-    def places(self, times: Array) -> Array:
-        """The places of instants (n,) of both periods, ascending."""
+    def find_places(self, times: Array) -> Array:
+        """Return the ascending places of times (n,) in both periods."""
         last = times[times > self.begin]
-        before = times[(times > self.begin - self.seconds) & (times < self.begin)] + self.seconds
-        return np.asarray(np.unique((np.concatenate([last, before]) - self.begin) * self.rate))
+        previous = times[(times > self.begin - self.seconds) & (times < self.begin)] + self.seconds
+        return np.asarray(np.unique((np.concatenate([last, previous]) - self.begin) * self.rate))
 
-    def nodes(self) -> tuple[PieceNodes, bool]:
-        """Nodes on pieces that tell both periods, and whether they do."""
+    def make_nodes(self) -> tuple[PieceNodes, bool]:
+        """Return nodes on pieces that resolve both periods, and whether they do."""
 
         def sample(x: Array) -> Array:
-            both = [self.effects(self.cycle, x, before) for before in (False, True)]
-            return np.concatenate([own.reshape(len(x), -1) for two in both for own in sums(two).values()], axis=1)
+            both = [self.compute_effects(self.cycle, x, before) for before in (False, True)]
+            return np.concatenate([own.reshape(len(x), -1) for two in both for own in sum_bodies(two).values()], axis=1)
 
-        terms = self.effects(self.cycle, np.linspace(0.0, self.cycle.length, FEW)).terms
+        terms = self.compute_effects(self.cycle, np.linspace(0.0, self.cycle.length, FIRST_SAMPLES)).terms
         rounding = [tolerances.SUM_ROUNDING * terms[name] for name in KINDS]
-        resolver = CycleResolver(sample, self.cycle, scales_of([3, 3, 3, 3], [*rounding, *rounding]))
-        resolver.resolve(self.places(np.array(self.study.history.jumps)))
-        resolver.probed(self.places(self.study.close_times()[0]))
-        found = resolver.found()
-        return found.nodes, found.settled
+        resolver = CycleResolver(sample, self.cycle, make_scales([3, 3, 3, 3], [*rounding, *rounding]))
+        resolver.resolve(self.find_places(np.array(self.study.history.jumps)))
+        resolver.probe(self.find_places(self.study.find_close_times()[0]))
+        resolved = resolver.collect_numbers()
+        return resolved.nodes, resolved.is_resolved
 
 
-def over_period(spec: Spec, seconds: float, asked: BalanceOptions, about: Array) -> BalanceResults:
-    """The orders of time. Raises SolveError where there is no motion of two periods, or it does not come back."""
-    study = moved(spec, seconds)
-    both = TwoPeriods(study, seconds, float(study.history.times[-1]) - seconds, about)
-    nodes, settled = both.nodes()
-    last, before = (both.effects(nodes, nodes.places, which) for which in (False, True))
-    one, two = sums(before), sums(last)
-    off = {name: difference(nodes, one[name], two[name], last.terms[name]) for name in KINDS}
-    most = max(own.part for own in off.values())
-    if most > tolerances.COMES_BACK:
-        message = f"--period {seconds:g} s: the last period and the one before differ by {most:.1g} of the mean"
+def balance_over_period(spec: Spec, seconds: float, options: BalanceOptions, reference_point: Array) -> BalanceResults:
+    """Compute the orders in time. Raises SolveError [no-period] if the motion is too short or does not repeat."""
+    study = solve_motion(spec, seconds)
+    periods = TwoPeriods(study, seconds, float(study.history.times[-1]) - seconds, reference_point)
+    nodes, settled = periods.make_nodes()
+    last, previous = (periods.compute_effects(nodes, nodes.places, is_previous) for is_previous in (False, True))
+    previous_sums, last_sums = sum_bodies(previous), sum_bodies(last)
+    differences = {
+        name: compute_difference(nodes, previous_sums[name], last_sums[name], last.terms[name]) for name in KINDS
+    }
+    largest_difference = max(residual.relative for residual in differences.values())
+    if largest_difference > tolerances.COMES_BACK:
+        message = (
+            f"--period {seconds:g} s: the last period and the one before differ by {largest_difference:.1g} of the mean"
+        )
         hint = "another period; or a longer motion, until it has settled: --set analysis.duration=..."
-        raise SolveError(Problem(CODE, message, hint=hint))
-    scale = both.rate**2
-    stated = {name: np.nan_to_num(stated_error(study, ("foundation", "mass_effect", name))) for name in KINDS}
-    noise = {name: scale * off[name].orders + float(stated[name]) for name in KINDS}
-    found = told(spec, "time", CycleTurning(1, None, both.rate), last, about, asked, noise | {"torque": math.inf})
+        raise SolveError(Problem(PROBLEM_CODE, message, hint=hint))
+    scale = periods.rate**2
+    stated_errors = {name: np.nan_to_num(stated_error(study, ("foundation", "mass_effect", name))) for name in KINDS}
+    noise = {name: scale * differences[name].orders + float(stated_errors[name]) for name in KINDS}
+    results = to_results(
+        spec, "time", CycleRotation(1, None, periods.rate), last, reference_point, options, noise | {"torque": math.inf}
+    )
     return replace(
-        found,
-        settled=settled,
-        period=Period(seconds, most),
-        orders={name: rows for name, rows in found.orders.items() if name != "torque"},
-        words={name: words for name, words in found.words.items() if name != "torque"},
-        mean={name: value for name, value in found.mean.items() if name != "torque"},
-        mean_error={name: value for name, value in found.mean_error.items() if name != "torque"},
+        results,
+        is_resolved=settled,
+        period=Period(seconds, largest_difference),
+        orders={name: rows for name, rows in results.orders.items() if name != "torque"},
+        summaries={name: words for name, words in results.summaries.items() if name != "torque"},
+        mean={name: value for name, value in results.mean.items() if name != "torque"},
+        mean_error={name: value for name, value in results.mean_error.items() if name != "torque"},
         residual={
-            name: replace(own, error=own.error + scale * off[name.partition("_")[0]].peak)
-            for name, own in found.residual.items()
+            name: replace(residual, error=residual.error + scale * differences[name.partition("_")[0]].peak)
+            for name, residual in results.residual.items()
             if name != "torque"
         },
     )
 
 
-def moved(spec: Spec, seconds: float) -> Study:
-    """The motion of at least two periods. Raises SolveError."""
+def solve_motion(spec: Spec, seconds: float) -> Study:
+    """Return the motion of at least two periods. Raises SolveError [no-period]."""
     analysis = spec.analysis
     if analysis.type != "motion" or analysis.duration is None:
         message = f"--period is of a motion, and this analysis is none (type: {analysis.type})"
-        raise SolveError(Problem(CODE, message, hint="give analysis.duration"))
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="give analysis.duration"))
     if analysis.duration < 2.0 * seconds:
         message = f"--period {seconds:g} s: the motion takes {analysis.duration:g} s, less than two of them"
-        raise SolveError(Problem(CODE, message, hint=f"--set analysis.duration={2.0 * seconds:g}, or more"))
+        raise SolveError(Problem(PROBLEM_CODE, message, hint=f"--set analysis.duration={2.0 * seconds:g}, or more"))
     begin = analysis.duration - 2.0 * seconds
     times = sorted({0.0, max(begin, 0.0), analysis.duration - seconds, analysis.duration})
     study = solve(spec._replace(analysis=analysis._replace(times=tuple(times)), sections={}), Options())
     end = float(study.history.times[-1])
     if end < analysis.duration:
         message = f"--period {seconds:g} s: the motion ends at t = {end:g} s"
-        raise SolveError(Problem(CODE, message, hint="leave out what ends it"))
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="leave out what ends it"))
     horizon = study.results.horizon
     if horizon is not None:
         message = f"--period {seconds:g} s: from t = {horizon:.4g} s on nothing is claimed of this motion"
-        raise SolveError(Problem(CODE, message, hint="a smaller analysis.tolerance, or a shorter motion"))
-    blows = [blow for blow in study.history.blows if blow.time >= begin]
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="a smaller analysis.tolerance, or a shorter motion"))
+    blows = [blow for blow in study.history.impulses if blow.time >= begin]
     if blows:
         message = f"--period {seconds:g} s: something strikes at t = {blows[-1].time:g} s: a blow has no orders"
-        raise SolveError(Problem(CODE, message, hint="soften it by a spring; or leave it out"))
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="soften it by a spring; or leave it out"))
     return study
 
 
-def sums(effects: MassEffects) -> dict[str, Array]:
-    """Force and moment at unit rate, (n, 3)."""
+def sum_bodies(effects: MassEffects) -> dict[str, Array]:
+    """Return force and moment at unit rate, (n, 3)."""
     return {"force": effects.force.sum(axis=1), "moment": effects.moment.sum(axis=1)}
 
 
 @record
 class PeriodDifference:
-    """What two periods differ by: part of the mean magnitude, what orders may, and what the largest does."""
+    """Difference of two periods: relative to the mean magnitude, bound for any order, and of the peaks."""
 
     part: float
     orders: float
     peak: float
 
 
-def difference(nodes: PieceNodes, before: Array, last: Array, terms: float) -> PeriodDifference:
-    """Of vectors (n, 3) in two periods; none where there is nothing but rounding of their terms."""
-    mean = float(nodes.weights @ lengths(last))
+def compute_difference(nodes: PieceNodes, previous: Array, last: Array, terms: float) -> PeriodDifference:
+    """Return the difference of vectors (n, 3) in two periods; zero if there is only rounding of their terms."""
+    mean = float(nodes.weights @ magnitudes(last))
     if mean <= tolerances.SUM_ROUNDING * terms:
         return PeriodDifference(0.0, 0.0, 0.0)
-    apart = float(nodes.weights @ lengths(last - before))
-    tops = of_vectors({"last": last, "before": before}, nodes)
-    return PeriodDifference(apart / mean, 2.0 * apart, abs(tops["last"].peak - tops["before"].peak))
+    mean_difference = float(nodes.weights @ magnitudes(last - previous))
+    peaks = compute_vector_magnitudes({"last": last, "before": previous}, nodes)
+    return PeriodDifference(
+        mean_difference / mean, 2.0 * mean_difference, abs(peaks["last"].peak - peaks["before"].peak)
+    )

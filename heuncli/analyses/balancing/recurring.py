@@ -1,4 +1,4 @@
-"""Whether loads come back with the cycle: a law of an angle, or of the time, may take more turns than the bodies do."""
+"""Check whether loads repeat with the cycle: a law of an angle, or of time, may take more turns than the bodies do."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from heuncli.analyses.balancing.followed import FollowedRun
 from heuncli.analyses.balancing.nodes import PieceNodes
 from heuncli.base import tolerances
 from heuncli.base.records import record
-from heuncli.loads.kinetostatics.bodies import body_states
-from heuncli.loads.kinetostatics.coordinates import coordinates
-from heuncli.motion.integration.diagnosis.domains import coordinates_at
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
+from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates
 from heuncli.motion.integration.diagnosis.ways import Moving
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.multibody.mechanism.model import JointLoad, Load, path_of_load
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.multibody.mechanism.model import JointLoad, Load, load_path
 from heuncli.results.results import Array, Block
 from heuncli.scene.expressions.programs import Expression
 
@@ -26,81 +26,99 @@ TURN = 2.0 * math.pi
 
 @record
 class NextCycle:
-    """A run of one cycle, by which laws are told a cycle later; nodes: those that resolve its loads."""
+    """A run of one cycle, from which laws are evaluated one cycle later; nodes: those that resolve its loads."""
 
     run: FollowedRun
     nodes: PieceNodes
 
     @cached_property
-    def there(self) -> Recovered:
-        """The kernel's answers at the nodes."""
-        return self.run.recovered(self.nodes.places)
+    def recovered(self) -> Evaluation:
+        """The kernel's results at the nodes."""
+        return self.run.recover(self.nodes.places)
 
     @cached_property
-    def joints(self) -> Block:
+    def joint_coordinates(self) -> Block:
         """The coordinates of the joints at the nodes."""
-        return coordinates(self.run.layout, self.there, body_states(self.run.layout, self.there))
+        return evaluate_joint_coordinates(
+            self.run.layout, self.recovered, make_body_states(self.run.layout, self.recovered)
+        )
 
     @cached_property
-    def others(self) -> list[Moving]:
-        """What else laws may name, at the nodes."""
-        return [coordinates_at(self.run.layout, self.there, k) for k in range(len(self.nodes.places))]
+    def other_coordinates(self) -> list[Moving]:
+        """The other coordinates that laws may use, at the nodes."""
+        return [evaluate_coordinates(self.run.layout, self.recovered, k) for k in range(len(self.nodes.places))]
 
     @cached_property
-    def turned(self) -> dict[str, float]:
-        """By how much joints turn in a cycle [rad]: whole turns, for the bodies are back."""
-        layout, ends = self.run.layout, self.run.recovered(np.array([0.0, self.run.length]))
-        found = coordinates(layout, ends, body_states(layout, ends))
+    def turn_angles(self) -> dict[str, float]:
+        """The angle [rad] by which each joint turns in a cycle: whole turns, as the bodies return to their poses."""
+        layout, ends = self.run.layout, self.run.recover(np.array([0.0, self.run.length]))
+        end_coordinates = evaluate_joint_coordinates(layout, ends, make_body_states(layout, ends))
         return {
-            name: TURN * round(float(own["angle"][1] - own["angle"][0]) / TURN)
-            for name, own in found.items()
-            if "angle" in own
+            name: TURN * round(float(joint_ends["angle"][1] - joint_ends["angle"][0]) / TURN)
+            for name, joint_ends in end_coordinates.items()
+            if "angle" in joint_ends
         }
 
-    def coordinate(self, name: str, quantity: str) -> Array:
-        """A coordinate at the nodes, (n,)."""
-        own = self.joints.get(name, {})
-        return np.asarray(own[quantity]) if quantity in own else np.array([at[name, quantity][0] for at in self.others])
+    def get_coordinate(self, name: str, quantity: str) -> Array:
+        """Return a coordinate at the nodes, (n,)."""
+        joint_values = self.joint_coordinates.get(name, {})
+        return (
+            np.asarray(joint_values[quantity])
+            if quantity in joint_values
+            else np.array([at[name, quantity][0] for at in self.other_coordinates])
+        )
 
-    def repeats(self, load: Load) -> bool:
-        """Whether a load is a cycle later what it was."""
-        if is_turn_spring(load) and self.turned.get(self.run.layout.mechanism.joints[load.joint].name, 0.0):
+    def is_periodic(self, load: Load) -> bool:
+        """Return whether a load is the same one cycle later."""
+        if is_turn_spring(load) and self.turn_angles.get(self.run.layout.mechanism.joints[load.joint].name, 0.0):
             return False
-        return all(self.has_again(value) for value in load.values)
+        return all(self.is_law_periodic(value) for value in load.values)
 
-    def has_again(self, value: Expression) -> bool:
-        """Whether a law has its values again, in the mean: a node may stand beside a jump to rounding.
+    def is_law_periodic(self, value: Expression) -> bool:
+        """Return whether a law repeats its values, in the mean: a node may be within rounding of a jump.
 
-        Where it has no value a cycle later, as a table of one turn, nothing contradicts.
+        A law without a value one cycle later, such as a table of one turn, counts as periodic.
         """
         if not value.uses and not value.time_dependent:
             return True
-        own = np.array([self.coordinate(*use) for use in value.uses]).reshape(len(value.uses), len(self.nodes.places)).T
-        adds = np.array([self.turned.get(name, 0.0) if what == "angle" else 0.0 for name, what in value.uses])
+        arguments = (
+            np.array([self.get_coordinate(*use) for use in value.uses])
+            .reshape(len(value.uses), len(self.nodes.places))
+            .T
+        )
+        increments = np.array(
+            [self.turn_angles.get(name, 0.0) if what == "angle" else 0.0 for name, what in value.uses]
+        )
         times = self.nodes.places / abs(self.run.rate)
-        first = np.array([value.value(t, at) for t, at in zip(times.tolist(), own.tolist(), strict=True)])
-        later = zip((times + self.run.last).tolist(), (own + adds).tolist(), strict=True)
-        then = np.array([value.value(t, at) for t, at in later])
-        off, size = np.abs(then - first), np.maximum(np.abs(first), np.abs(then))
-        known, least = np.isfinite(off), tolerances.SUM_ROUNDING * max(map(abs, value.constants), default=0.0)
-        weights = self.nodes.weights[known]
-        return bool(weights @ off[known] <= tolerances.SAME_VALUE * float(weights @ size[known]) + least)
+        first_values = np.array([value.value(t, at) for t, at in zip(times.tolist(), arguments.tolist(), strict=True)])
+        later = zip((times + self.run.end_time).tolist(), (arguments + increments).tolist(), strict=True)
+        later_values = np.array([value.value(t, at) for t, at in later])
+        differences, size = np.abs(later_values - first_values), np.maximum(np.abs(first_values), np.abs(later_values))
+        is_known, threshold = (
+            np.isfinite(differences),
+            tolerances.SUM_ROUNDING * max(map(abs, value.constants), default=0.0),
+        )
+        weights = self.nodes.weights[is_known]
+        return bool(
+            weights @ differences[is_known] <= tolerances.SAME_VALUE * float(weights @ size[is_known]) + threshold
+        )
 
 
-def unlike(run: FollowedRun, nodes: PieceNodes) -> tuple[str, ...]:
-    """Of each load that is not after the cycle what it was before, that it is so; nodes: those that resolve it.
+def describe_nonperiodic_loads(run: FollowedRun, nodes: PieceNodes) -> tuple[str, ...]:
+    """Return a note for each load that differs after the cycle; nodes: those that resolve the loads.
 
-    The bodies are back there. So is a load that hangs on their poses alone; one that counts turns may not be.
+    The bodies have returned by then, and so have loads that depend only on their poses; a load that counts turns may
+    differ.
     """
-    after = NextCycle(run, nodes)
-    cycle, advice = ("a turn", ": --turns 2, if it takes two") if run.turns == 1 else ("two turns", "")
+    next_cycle = NextCycle(run, nodes)
+    cycle, hint = ("a turn", ": --turns 2, if it takes two") if run.turns == 1 else ("two turns", "")
     return tuple(
-        f"{path_of_load(load)} is not after {cycle} what it was before; it is told as if it began anew there{advice}"
+        f"{load_path(load)} is not after {cycle} what it was before; it is told as if it began anew there{hint}"
         for load in run.layout.mechanism.loads
-        if not after.repeats(load)
+        if not next_cycle.is_periodic(load)
     )
 
 
 def is_turn_spring(load: Load) -> TypeGuard[JointLoad]:
-    """Whether a load counts turns by itself."""
+    """Return whether a load counts turns by itself."""
     return isinstance(load, JointLoad) and load.kind == "turn_spring"

@@ -1,4 +1,4 @@
-"""What is found of a cycle: orders of force, moment and torque with verdicts, what remains, weights, a flywheel."""
+"""Results of a balance: orders of force, moment and torque with verdicts, residuals, counterweights and a flywheel."""
 
 from __future__ import annotations
 
@@ -16,9 +16,12 @@ from heuncli.results.results import Array, Block
 class OrderRow:
     """One order of a quantity: component i is amplitude_i · cos(order · φ - phase_i).
 
-    with_turn, against: the amplitudes of the two vectors that turn across the cycle's axis; None where it has no fixed
-    one. across: whether nothing acts along the axis. own: the sum of the bodies' own amplitudes. error: what any of the
-    amplitudes may be off by. parts: amplitudes and phases of orbital and spin, of a moment.
+    with_turn, against_turn: amplitudes of the two rotating vectors across the cycle's axis; None if the axis is not
+    fixed
+    is_across_axis: whether nothing acts along the axis
+    body_sum: sum of the bodies' own amplitudes
+    error: error of any amplitude
+    parts: amplitudes and phases of the orbital and spin parts of a moment
     """
 
     order: float
@@ -34,56 +37,58 @@ class OrderRow:
     parts: Mapping[str, tuple[Array, Array]] | None = None
 
     @property
-    def reach(self) -> float:
-        """The largest magnitude over a turn: of what swings along a line its amplitude, of a circle its radius."""
+    def peak(self) -> float:
+        """The largest magnitude over a turn: the amplitude of a linear vibration, the radius of a circular one."""
         a = self.amplitude * np.exp(-1j * self.phase)
         return float(np.sqrt(0.5 * (np.sum(np.abs(a) ** 2) + abs(np.sum(a * a)))))
 
-    def block(self) -> Block:
-        """As the JSON has it."""
-        found: Block = {"order": self.order, "amplitude": self.amplitude, "phase": self.phase}
+    def to_block(self) -> Block:
+        """Return the row as a JSON block."""
+        block: Block = {"order": self.order, "amplitude": self.amplitude, "phase": self.phase}
         if self.parts is not None:
-            found |= {name: {"amplitude": a, "phase": p} for name, (a, p) in self.parts.items()}
+            block |= {name: {"amplitude": a, "phase": p} for name, (a, p) in self.parts.items()}
         if len(self.amplitude) == 3:
-            found |= {"with": self.with_turn, "against": self.against}
-        return found | {"own": self.own, "verdict": self.verdict, "error": self.error}
+            block |= {"with": self.with_turn, "against": self.against_turn}
+        return block | {"own": self.body_sum, "verdict": self.verdict, "error": self.error}
 
 
 @record
 class Residual:
-    """What acts over a cycle: root of the mean square, largest, and the angle of that [rad]; error: of both."""
+    """What acts over a cycle: root mean square, peak, the angle of the peak [rad], and the error of rms and peak."""
 
     rms: float
     peak: float
     at: float
     error: float = 0.0
 
-    def block(self) -> Block:
-        """As the JSON has it."""
-        return {"rms": self.rms, "peak": self.peak, "at": self.at, "error": self.error}
+    def to_block(self) -> Block:
+        """Return the residual as a JSON block."""
+        return {"rms": self.rms, "peak": self.peak, "at": self.peak_angle, "error": self.error}
 
 
 @record
-class OverCycle:
-    """Root of the mean square and largest magnitude over a cycle; None where redundant joints leave some of it open.
-
-    error: of both.
+class CycleLoad:
+    """Root mean square and peak of a load over a cycle, with the error of both; None if redundant joints leave it
+    indeterminate.
     """
 
     rms: float | None
     peak: float | None
     error: float | None = None
 
-    def block(self) -> Block:
-        """As the JSON has it."""
+    def to_block(self) -> Block:
+        """Return the load as a JSON block."""
         return {"rms": self.rms, "peak": self.peak, "error": self.error}
 
 
 @record
-class PlacedWeight:
+class CounterweightResult:
     """A counterweight: product [kg m] = mass · radius at an angle [rad] from a direction of the body's axes.
 
-    place: its name; vector (3,) [kg m], at (3,) [m]: product and where its mass stands, body axes.
+    place: name of its point
+    vector (3,) [kg m]: the product, body axes
+    reference_direction (3,): the direction from which `angle` is counted
+    position (3,) [m]: centre of its mass, body axes
     """
 
     body: str
@@ -96,41 +101,48 @@ class PlacedWeight:
     first: Array
     at: Array
 
-    def block(self) -> Block:
-        """As the JSON has it."""
+    def to_block(self) -> Block:
+        """Return the counterweight as a JSON block."""
         return {
             "body": self.body, "place": self.place, "product": self.product, "angle": self.angle, "mass": self.mass,
-            "radius": self.radius, "vector": self.vector, "from": self.first, "at": self.at,
+            "radius": self.radius, "vector": self.vector, "from": self.reference_direction, "at": self.position,
         }  # fmt: skip
 
 
 @record
 class Counterbalance:
-    """The counterweights of least square: of force, moment or both by a lever [m]; what is left, and what they cost.
+    """The counterweights that minimise force, moment, or both combined by a lever [m], with the remaining orders and
+    the loads.
 
-    several: others would serve as well, these are the least; orders: what is left, by quantity; before, after: loads;
-    notes: what is to be told beside these.
+    objective: force, moment or mix
+    several: whether other weights would serve as well; these are the smallest
+    orders: the remaining orders, by quantity
+    loads_without, loads_with: loads without and with the counterweights
+    notes: remarks on these loads
     """
 
-    weights: tuple[PlacedWeight, ...]
+    weights: tuple[CounterweightResult, ...]
     minimised: str
     lever: float | None
     several: bool
     orders: Mapping[str, tuple[OrderRow, ...]]
     words: Mapping[str, str]
-    before: Mapping[str, OverCycle]
-    after: Mapping[str, OverCycle]
+    before: Mapping[str, CycleLoad]
+    after: Mapping[str, CycleLoad]
     notes: tuple[str, ...] = ()
 
 
 @record
 class Flywheel:
-    """A flywheel for a degree of unevenness, and how the machine runs with it, at the mean rate [rad/s].
+    """A flywheel for a degree of unevenness, and how the machine runs with it at the mean rate [rad/s].
 
-    energy: ΔE [J], what work loads and inertia give and take at an even rate; own: the machine's mean reduced inertia,
-    added, and textbook's [kg m2];
-    delta: asked, present: without the wheel; even [N m]: the torque that was added so that the cycle closes; start,
-    fastest, slowest [rad/s]: with the wheel. error: of each of them, by its name; notes: what is not known of loads.
+    delta, present: permitted unevenness, and unevenness without the flywheel
+    energy [J]: ΔE, the energy exchanged by loads and inertia at a constant rate
+    own, added, textbook [kg m2]: mean reduced inertia of the machine; inertia of the flywheel; its textbook value
+    even [N m]: constant torque added so that the cycle closes
+    start, fastest, slowest [rad/s]: rates with the flywheel
+    error: error of each number, by name
+    notes: what could not be determined about the loads
     """
 
     joint: str
@@ -148,15 +160,15 @@ class Flywheel:
     error: Mapping[str, float]
     notes: tuple[str, ...] = ()
 
-    def block(self) -> Block:
-        """As the JSON has it; inertia: all that turns."""
-        own = {name: value for name, value in fields(self).items() if name != "notes"}
-        return {**own, "error": dict(self.error), "inertia": self.own + self.added}
+    def to_block(self) -> Block:
+        """Return the flywheel as a JSON block; `inertia` is the total."""
+        numbers = {name: value for name, value in fields(self).items() if name != "notes"}
+        return {**numbers, "error": dict(self.error), "inertia": self.own + self.added}
 
 
 @record
 class Period:
-    """A period of time [s] with which a motion comes back; off: how much the last differs from the one before."""
+    """A period of time [s] with which a motion repeats, and the relative difference of the last two periods."""
 
     seconds: float
     off: float
@@ -164,11 +176,13 @@ class Period:
 
 @record
 class BalanceResults:
-    """A scene's balance over a cycle; forces at `rate` [rad/s], where none is known at 1 rad/s.
+    """The balance of a scene over a cycle; forces are at `rate` [rad/s], or at 1 rad/s if no rate is known.
 
-    about (3,) [m]: where moments are taken; place: its name; orders: by quantity (force, moment, torque);
-    mean_error: what the means are off by; shown: the orders that tables show;
-    asked: whether these were asked for.
+    is_resolved: whether the nodes resolve all numbers
+    reference_point (3,) [m]: where moments are taken; place: its name
+    orders: by quantity (force, moment, torque)
+    mean_error: errors of the means
+    shown_orders: orders shown in tables; are_orders_requested: whether the user chose them
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""The orders of a cycle's force, moment and torque as rows with their verdicts; what is rounding reads 0."""
+"""Make rows with verdicts from the orders of a cycle's force, moment and torque; values below rounding become 0."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from types import MappingProxyType
 import numpy as np
 
 from heuncli.analyses.balancing.effects import MassEffects
-from heuncli.analyses.balancing.harmonics import turning_vectors
+from heuncli.analyses.balancing.harmonics import compute_rotating_vectors
 from heuncli.analyses.balancing.nodes import CycleNodes
 from heuncli.analyses.balancing.results import OrderRow
-from heuncli.analyses.balancing.verdicts import verdict_of
-from heuncli.analyses.balancing.wanted import ANY, IN_TABLE, WantedOrders
+from heuncli.analyses.balancing.verdicts import classify_order
+from heuncli.analyses.balancing.wanted import ALL_ORDERS, IN_TABLE, OrderSelection
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.results.results import Array
 
 NO_PARTS: Mapping[str, Array] = MappingProxyType({})
-NO_WISHES: Mapping[str, WantedOrders] = MappingProxyType({})
+NO_SELECTIONS: Mapping[str, OrderSelection] = MappingProxyType({})
 
 
 @record
-class CycleTurning:
-    """How a cycle turns: over so many turns, about which axis (None: no fixed one), at which rate [rad/s] if known."""
+class CycleRotation:
+    """How a cycle turns: number of turns, axis (None: not fixed) and rate [rad/s] if known."""
 
     turns: int
     axis: Array | None
@@ -32,93 +32,110 @@ class CycleTurning:
 
     @property
     def scale(self) -> float:
-        """What effects at unit rate are multiplied by."""
+        """Factor from effects at unit rate to effects at the cycle's rate."""
         return (self.rate or 1.0) ** 2
 
 
-def rounding_of(effects: MassEffects, scale: float) -> dict[str, float]:
-    """What is rounding of force, moment and torque at a rate of which `scale` is the square."""
+def compute_rounding(effects: MassEffects, scale: float) -> dict[str, float]:
+    """Return the rounding level of force, moment and torque at a rate whose square is `scale`."""
     return {name: tolerances.ORDERS_SETTLED * scale * terms for name, terms in effects.terms.items()}
 
 
-def all_rows(
+def make_all_rows(
     effects: MassEffects,
-    turning: CycleTurning,
-    least: Mapping[str, float],
-    wanted: Mapping[str, WantedOrders] = NO_WISHES,
+    rotation: CycleRotation,
+    thresholds: Mapping[str, float],
+    selections: Mapping[str, OrderSelection] = NO_SELECTIONS,
 ) -> dict[str, tuple[OrderRow, ...]]:
-    """The orders of force and moment ON the foundation, and of torque, at the rate; below `least` is none."""
-    scale = turning.scale
+    """Return the orders of force and moment ON the foundation, and of torque, at the cycle's rate.
+
+    thresholds: smaller values count as 0
+    """
+    scale = rotation.scale
     nodes, torque = effects.nodes, scale * effects.half_slope[:, :, None]
     parts = {"orbital": -scale * effects.orbital, "spin": -scale * effects.spin}
-    flat = replace(turning, axis=None)
+    rotation_without_axis = replace(rotation, axis=None)
     return {
-        "force": order_rows(-scale * effects.force, nodes, turning, least["force"], wanted=wanted.get("force", ANY)),
-        "moment": order_rows(
-            -scale * effects.moment, nodes, turning, least["moment"], parts, wanted.get("moment", ANY)
+        "force": make_order_rows(
+            -scale * effects.force, nodes, rotation, thresholds["force"], selection=selections.get("force", ALL_ORDERS)
         ),
-        "torque": order_rows(torque, nodes, flat, least["torque"], wanted=wanted.get("torque", ANY)),
+        "moment": make_order_rows(
+            -scale * effects.moment, nodes, rotation, thresholds["moment"], parts, selections.get("moment", ALL_ORDERS)
+        ),
+        "torque": make_order_rows(
+            torque, nodes, rotation_without_axis, thresholds["torque"], selection=selections.get("torque", ALL_ORDERS)
+        ),
     }
 
 
-def order_rows(
-    values: Array, nodes: CycleNodes, turning: CycleTurning, least: float, parts: Mapping[str, Array] = NO_PARTS,
-    wanted: WantedOrders = ANY,
+def make_order_rows(
+    values: Array, nodes: CycleNodes, rotation: CycleRotation, threshold: float, parts: Mapping[str, Array] = NO_PARTS,
+    selection: OrderSelection = ALL_ORDERS,
 ) -> tuple[OrderRow, ...]:  # fmt: skip
-    """The orders of the sum over the bodies of values (n, bodies, c), up to the last that counts, and those asked for.
+    """Return the orders of the sum over the bodies of values (n, bodies, c), up to the last significant one, and those
+    requested.
 
-    least: what is below is rounding of what moves, or an error; parts: of which the values are sums, told beside them.
+    threshold: level of rounding or error, below which values count as 0
+    parts: quantities whose sum the values are, reported with them
     """
-    turns, sum_ = turning.turns, values.sum(axis=1)
-    error = float(lengths(nodes.errors(sum_).order)) + wanted.noise
-    orders = wanted.of(nodes, sum_, max(least, error))
-    amplitudes = nodes.amplitudes(values, orders)
-    apart = {name: nodes.amplitudes(part, orders) for name, part in parts.items()}
-    whole, own = amplitudes.sum(axis=1), lengths(amplitudes).sum(axis=1)
-    largest = float(own.max(initial=0.0))
-    rounding = max(tolerances.ORDERS_SETTLED * largest, least, error)
-    terms = own + sum((lengths(part).sum(axis=1) for part in apart.values()), np.zeros_like(own))
-    counts = rounding if nodes.last_order is not None else max(IN_TABLE * float(terms.max(initial=0.0)), rounding)
-    last = int(orders[np.flatnonzero(terms > counts).max(initial=turns - 1)])
-    told = np.flatnonzero((orders <= last) | wanted.are_asked(orders, turns))
-    left, none = lengths(whole), np.maximum(tolerances.CANCELS * own, rounding)
-    verdicts = [verdict_of(float(left[i]), float(own[i]), largest, max(least, error)) for i in told.tolist()]
-    none[told[[verdict != "remains" for verdict in verdicts]]] = math.inf
-    a = above(whole, none[:, None])
-    sizes, angles, reach = np.abs(a), phases(a), lengths(a)
-    split_none = np.maximum(tolerances.CANCELS * terms, rounding)[:, None]
-    split = {name: above(part.sum(axis=1), split_none) for name, part in apart.items()}
-    split_told = {name: (np.abs(part), phases(part)) for name, part in split.items()}
+    turns, sum_ = rotation.turns, values.sum(axis=1)
+    error = float(magnitudes(nodes.estimate_errors(sum_).order)) + selection.noise
+    orders = selection.select_orders(nodes, sum_, max(threshold, error))
+    amplitudes = nodes.compute_amplitudes(values, orders)
+    part_amplitudes = {name: nodes.compute_amplitudes(part, orders) for name, part in parts.items()}
+    total, body_sums = amplitudes.sum(axis=1), magnitudes(amplitudes).sum(axis=1)
+    largest = float(body_sums.max(initial=0.0))
+    rounding = max(tolerances.ORDERS_SETTLED * largest, threshold, error)
+    terms = body_sums + sum(
+        (magnitudes(part).sum(axis=1) for part in part_amplitudes.values()), np.zeros_like(body_sums)
+    )
+    significance = rounding if nodes.last_order is not None else max(IN_TABLE * float(terms.max(initial=0.0)), rounding)
+    last = int(orders[np.flatnonzero(terms > significance).max(initial=turns - 1)])
+    selected = np.flatnonzero((orders <= last) | selection.are_requested(orders, turns))
+    sizes_of_sums, zero_levels = magnitudes(total), np.maximum(tolerances.CANCELS * body_sums, rounding)
+    verdicts = [
+        classify_order(float(sizes_of_sums[i]), float(body_sums[i]), largest, max(threshold, error))
+        for i in selected.tolist()
+    ]
+    zero_levels[selected[[verdict != "remains" for verdict in verdicts]]] = math.inf
+    cleaned = drop_rounding(total, zero_levels[:, None])
+    sizes, angles, reach = np.abs(cleaned), compute_phases(cleaned), magnitudes(cleaned)
+    part_levels = np.maximum(tolerances.CANCELS * terms, rounding)[:, None]
+    cleaned_parts = {name: drop_rounding(part.sum(axis=1), part_levels) for name, part in part_amplitudes.items()}
+    part_rows = {name: (np.abs(part), compute_phases(part)) for name, part in cleaned_parts.items()}
     rows = []
-    for i, verdict in zip(told.tolist(), verdicts, strict=True):
+    for i, verdict in zip(selected.tolist(), verdicts, strict=True):
         row = OrderRow(
-            float(orders[i] / turns), sizes[i], angles[i], float(reach[i]), float(own[i]), verdict, error,
-            parts={name: (size[i], angle[i]) for name, (size, angle) in split_told.items()} or None,
+            float(orders[i] / turns), sizes[i], angles[i], float(reach[i]), float(body_sums[i]), verdict, error,
+            parts={name: (size[i], angle[i]) for name, (size, angle) in part_rows.items()} or None,
         )  # fmt: skip
-        rows.append(in_the_plane(row, whole[i], turning, float(none[i])))
+        rows.append(add_rotating_vectors(row, total[i], rotation, float(zero_levels[i])))
     return tuple(rows)
 
 
-def in_the_plane(row: OrderRow, a: Array, turning: CycleTurning, none: float) -> OrderRow:
-    """The row with the vectors that turn across the cycle's axis; none: what is no more is rounding."""
-    if turning.axis is None:
+def add_rotating_vectors(row: OrderRow, a: Array, rotation: CycleRotation, zero_level: float) -> OrderRow:
+    """Return the row with the vectors that rotate across the cycle's axis; values up to the zero level are rounding."""
+    if rotation.axis is None:
         return row
-    P, N = (abs(one[0]) if abs(one[0]) > none else 0.0 for one in turning_vectors(a[None, :], turning.axis))
-    across = bool(abs(a @ turning.axis) <= none)
-    return replace(row, with_turn=float(P), against=float(N), across=across)
+    P, N = (
+        abs(vector[0]) if abs(vector[0]) > zero_level else 0.0
+        for vector in compute_rotating_vectors(a[None, :], rotation.axis)
+    )
+    across = bool(abs(a @ rotation.axis) <= zero_level)
+    return replace(row, with_turn=float(P), against_turn=float(N), is_across_axis=across)
 
 
-def above(a: Array, none: float) -> Array:
-    """Complex numbers, 0 where they are no larger than rounding."""
-    return np.asarray(np.where(np.abs(a) > none, a, 0.0))
+def drop_rounding(a: Array, zero_level: float) -> Array:
+    """Set complex numbers to 0 where they do not exceed rounding."""
+    return np.asarray(np.where(np.abs(a) > zero_level, a, 0.0))
 
 
-def phases(a: Array) -> Array:
-    """The phases of complex amplitudes of cos(kφ - phase), in (-π, π]; 0 of what is none."""
-    found = -np.angle(a)
-    return np.asarray(np.where(found <= tolerances.SAME_VALUE - math.pi, found + 2.0 * math.pi, found) + 0.0)
+def compute_phases(a: Array) -> Array:
+    """Return the phases of complex amplitudes of cos(kφ - phase), in (-π, π]; 0 for zero amplitudes."""
+    angles = -np.angle(a)
+    return np.asarray(np.where(angles <= tolerances.SAME_VALUE - math.pi, angles + 2.0 * math.pi, angles) + 0.0)
 
 
-def lengths(vectors: Array) -> Array:
-    """The magnitudes of complex vectors (..., c)."""
+def magnitudes(vectors: Array) -> Array:
+    """Return the magnitudes of complex vectors (..., c)."""
     return np.asarray(np.sqrt(np.sum(np.abs(vectors) ** 2, axis=-1)))

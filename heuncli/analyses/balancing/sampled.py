@@ -1,4 +1,6 @@
-"""The mass effects of a cycle at nodes that tell all of it: even ones of what is smooth, else those of pieces."""
+"""Sample the mass effects of a cycle at nodes that resolve it: equally spaced ones if it is smooth, else nodes on
+pieces.
+"""
 
 from __future__ import annotations
 
@@ -7,84 +9,107 @@ import math
 import numpy as np
 
 from heuncli.analyses.balancing.cycle import MOST_SAMPLES, Cycle, FollowedScene
-from heuncli.analyses.balancing.effects import MassEffects, mass_effects
-from heuncli.analyses.balancing.followed import SAMPLES
-from heuncli.analyses.balancing.harmonics import tail
-from heuncli.analyses.balancing.nodes import QUARTER
-from heuncli.analyses.balancing.resolved import CycleResolver, scales_of
+from heuncli.analyses.balancing.effects import MassEffects, compute_mass_effects
+from heuncli.analyses.balancing.followed import SAMPLES_PER_TURN
+from heuncli.analyses.balancing.harmonics import relative_tail
+from heuncli.analyses.balancing.nodes import TAIL_FRACTION
+from heuncli.analyses.balancing.resolved import CycleResolver, make_scales
 from heuncli.base import tolerances
 from heuncli.base.records import replace
 from heuncli.results.results import Array
 
-BETWEEN = 0.25  # of the distance of even nodes: where steps are shorter a law bends there
-FEW = 8  # angles by which it is told what their terms are
-GOING_DOWN = 2.0  # times: samples doubled must lower the highest orders by as much, else these are rounding
+SHORT_STEP_FRACTION = 0.25  # of the distance of nodes: shorter steps of the run indicate a kink
+FIRST_SAMPLES = 8  # angles for the size of the terms
+MIN_REDUCTION = 2.0  # factor by which doubling the samples must lower the highest orders, else they are rounding
 
 
-def sampled(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
-    """The cycle at nodes that tell all of it, and whether they do: even ones where it is smooth, else on pieces."""
-    cycle = evenly(followed, about) if followed.followed.is_smooth() else None
-    return (cycle, True) if cycle is not None else on_pieces(followed, about)
+def sample_cycle(followed_scene: FollowedScene, reference_point: Array) -> tuple[Cycle, bool]:
+    """Return the cycle at nodes that resolve it, and whether they do: equally spaced if it is smooth, else on
+    pieces.
+    """
+    cycle = sample_evenly(followed_scene, reference_point) if followed_scene.followed_run.is_smooth() else None
+    return (cycle, True) if cycle is not None else sample_on_pieces(followed_scene, reference_point)
 
 
-def evenly(followed: FollowedScene, about: Array) -> Cycle | None:
-    """The cycle at so many angles that the highest orders are rounding; None where it is not as smooth as that."""
-    count, before = SAMPLES * followed.turns, math.inf
+def sample_evenly(followed_scene: FollowedScene, reference_point: Array) -> Cycle | None:
+    """Return the cycle at enough angles that the highest orders are rounding; None if it is not smooth enough for
+    that.
+    """
+    count, previous_tail = SAMPLES_PER_TURN * followed_scene.turns, math.inf
     while True:
-        cycle = followed.at(followed.even(count))
-        found = mass_effects(cycle, about)
-        kinds = {"force": found.force, "moment": found.moment, "torque": found.half_slope}
-        highest = max(tail(own, QUARTER, found.terms[name]) for name, own in kinds.items())
-        rounding = highest < tolerances.CANCELS and highest * GOING_DOWN > before
-        if highest <= tolerances.ORDERS_SETTLED or rounding:
-            return cycle if is_seen(followed, cycle, about) else None
-        if count >= MOST_SAMPLES * followed.turns:
+        cycle = followed_scene.evaluate_cycle(followed_scene.make_even_nodes(count))
+        effects = compute_mass_effects(cycle, reference_point)
+        kinds = {"force": effects.force, "moment": effects.moment, "torque": effects.half_slope}
+        largest_tail = max(relative_tail(own, TAIL_FRACTION, effects.terms[name]) for name, own in kinds.items())
+        is_rounding = largest_tail < tolerances.CANCELS and largest_tail * MIN_REDUCTION > previous_tail
+        if largest_tail <= tolerances.ORDERS_SETTLED or is_rounding:
+            return cycle if is_resolved(followed_scene, cycle, reference_point) else None
+        if count >= MOST_SAMPLES * followed_scene.turns:
             return None
-        count, before = 2 * count, highest
+        count, previous_tail = 2 * count, largest_tail
 
 
-def is_seen(followed: FollowedScene, cycle: Cycle, about: Array) -> bool:
-    """Whether waves through the nodes tell the cycle where its run took short steps, and as laws in time ask for."""
-    run, n = followed.followed, len(cycle.angles)
-    x = np.union1d(run.short_steps(BETWEEN * run.length / n), run.given_in_time())
+def is_resolved(followed_scene: FollowedScene, cycle: Cycle, reference_point: Array) -> bool:
+    """Return whether the interpolant resolves the cycle where the run took short steps, and where laws in time require
+    it.
+    """
+    run, n = followed_scene.followed_run, len(cycle.angles)
+    x = np.union1d(run.find_short_steps(SHORT_STEP_FRACTION * run.length / n), run.find_time_law_places())
     if not len(x):
         return True
-    there = columns_of(mass_effects(replace(cycle, states=followed.states(x)), about))
-    effects = mass_effects(cycle, about)
-    found = columns_of(effects)
-    places = x if followed.rate > 0.0 else run.length - x
-    off = np.abs(cycle.nodes.course(found)(places) - there)
-    return bool((off <= tolerances.CANCELS * scales_of(parts_of(found), rounding_in(effects))(found)).all())
+    exact = join_columns(compute_mass_effects(replace(cycle, states=followed_scene.compute_states(x)), reference_point))
+    effects = compute_mass_effects(cycle, reference_point)
+    columns = join_columns(effects)
+    places = x if followed_scene.rate > 0.0 else run.length - x
+    deviations = np.abs(cycle.nodes.interpolate(columns)(places) - exact)
+    return bool(
+        (
+            deviations <= tolerances.CANCELS * make_scales(count_columns(columns), estimate_rounding(effects))(columns)
+        ).all()
+    )
 
 
-def on_pieces(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
-    """The cycle at the nodes of pieces between its breaks, and whether they tell all of it."""
-    run = followed.followed
+def sample_on_pieces(followed_scene: FollowedScene, reference_point: Array) -> tuple[Cycle, bool]:
+    """Return the cycle at the nodes of pieces between its breaks, and whether they resolve it."""
+    run = followed_scene.followed_run
 
     def sample(x: Array) -> Array:
-        cycle = Cycle(followed.scene.mechanism, run.cycle, followed.states(x), followed.scene.layout.size)
-        return columns_of(mass_effects(cycle, about))
+        cycle = Cycle(
+            followed_scene.scene.mechanism,
+            run.cycle,
+            followed_scene.compute_states(x),
+            followed_scene.scene.layout.size,
+        )
+        return join_columns(compute_mass_effects(cycle, reference_point))
 
-    first = mass_effects(followed.at(followed.even(FEW)), about)
-    resolver = CycleResolver(sample, run.cycle, scales_of(parts_of(columns_of(first)), rounding_in(first)))
+    first_effects = compute_mass_effects(
+        followed_scene.evaluate_cycle(followed_scene.make_even_nodes(FIRST_SAMPLES)), reference_point
+    )
+    resolver = CycleResolver(
+        sample, run.cycle, make_scales(count_columns(join_columns(first_effects)), estimate_rounding(first_effects))
+    )
     resolver.resolve(run.breaks)
-    resolver.probed(np.union1d(run.short_steps(BETWEEN * run.length / SAMPLES), run.given_in_time()))
-    found = resolver.found()
-    return followed.at(found.nodes), found.settled
+    resolver.probe(
+        np.union1d(
+            run.find_short_steps(SHORT_STEP_FRACTION * run.length / SAMPLES_PER_TURN), run.find_time_law_places()
+        )
+    )
+    resolved = resolver.collect_numbers()
+    return followed_scene.evaluate_cycle(resolved.nodes), resolved.is_resolved
 
 
-def columns_of(effects: MassEffects) -> Array:
-    """Force, both moments and torque of all bodies at unit rate, (n, columns)."""
-    own = (effects.force, effects.orbital, effects.spin, effects.half_slope)
-    return np.concatenate([x.reshape(len(x), -1) for x in own], axis=1)
+def join_columns(effects: MassEffects) -> Array:
+    """Return force, both moments and torque of all bodies at unit rate, (n, columns)."""
+    arrays = (effects.force, effects.orbital, effects.spin, effects.half_slope)
+    return np.concatenate([x.reshape(len(x), -1) for x in arrays], axis=1)
 
 
-def parts_of(columns: Array) -> list[int]:
-    """How many of these columns are of force, moment and torque."""
+def count_columns(columns: Array) -> list[int]:
+    """Return the numbers of these columns that belong to force, moment and torque."""
     bodies = columns.shape[1] // 10
     return [3 * bodies, 6 * bodies, bodies]
 
 
-def rounding_in(effects: MassEffects) -> list[float]:
-    """What of force, moment and torque at unit rate is rounding."""
+def estimate_rounding(effects: MassEffects) -> list[float]:
+    """Return the rounding level of force, moment and torque at unit rate."""
     return [tolerances.SUM_ROUNDING * effects.terms[name] for name in ("force", "moment", "torque")]

@@ -1,78 +1,82 @@
-"""The balance of a scene over a cycle: mass effects by orders, the weights that lower them, a flywheel."""
+"""Balance a scene over a cycle: orders of the mass effects, counterweights that reduce them, and a flywheel."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.balancing.asked import NOTHING_ASKED, BalanceOptions
-from heuncli.analyses.balancing.choice import CyclePlan, planned, pressed_alone
-from heuncli.analyses.balancing.cycle import axis_of, turning
-from heuncli.analyses.balancing.effects import mass_effects
+from heuncli.analyses.balancing.asked import DEFAULT_OPTIONS, BalanceOptions
+from heuncli.analyses.balancing.choice import CyclePlan, describe_cam_assumptions, plan_cycle
+from heuncli.analyses.balancing.cycle import find_cycle_axis, make_followed_scene
+from heuncli.analyses.balancing.effects import compute_mass_effects
 from heuncli.analyses.balancing.results import BalanceResults
-from heuncli.analyses.balancing.rows import CycleTurning
-from heuncli.analyses.balancing.sampled import sampled
-from heuncli.analyses.balancing.told import is_asked, told
+from heuncli.analyses.balancing.rows import CycleRotation
+from heuncli.analyses.balancing.sampled import sample_cycle
+from heuncli.analyses.balancing.told import is_requested, to_results
 from heuncli.base.records import replace
 from heuncli.multibody.coupled_start.prepared import prepare_coupled
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import placed
-from heuncli.study.model.setup import draw
+from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import build_with_cuts
 
 
-def balance(spec: Spec, asked: BalanceOptions = NOTHING_ASKED) -> BalanceResults:
-    """The balance of a spec. Raises SpecError, SolveError where it has no cycle."""
-    with placed(spec):
-        return balanced(spec, asked)
+def balance(spec: Spec, options: BalanceOptions = DEFAULT_OPTIONS) -> BalanceResults:
+    """Return the balance of a spec. Raises SpecError; SolveError [no-cycle] if it has no cycle."""
+    with attach_locations(spec):
+        return compute_balance(spec, options)
 
 
-def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
-    """The balance of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
-    about = asked.about if asked.about is not None else np.array(spec.foundation.about or (0.0, 0.0, 0.0))
-    if asked.period is not None:
-        from heuncli.analyses.balancing.period import over_period  # with all that solves motions
+def compute_balance(spec: Spec, options: BalanceOptions) -> BalanceResults:
+    """Return the balance of a spec. Errors name bodies, joints and sections, but not their location in the file."""
+    reference_point = options.about if options.about is not None else np.array(spec.foundation.about or (0.0, 0.0, 0.0))
+    if options.period is not None:
+        from heuncli.analyses.balancing.period import balance_over_period  # with all that solves motions
 
-        return over_period(spec, asked.period, asked, about)
-    scene = drawn(spec)
-    plan = planned(scene, asked.cycle, asked.turns, asked.rate)
-    followed = turning(scene, plan)
-    cycle, settled = sampled(followed, about)
-    effects = mass_effects(cycle, about)
-    turns = CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
-    found = replace(told(spec, plan.coordinate, turns, effects, about, asked), settled=settled)
-    found = replace(found, notes=(*found.notes, *pressed_alone(scene.mechanism)))
-    found = with_loads(found, spec, scene, plan, asked)
-    if asked.weights:
-        from heuncli.analyses.balancing.weights import counterbalanced  # where they are asked for
+        return balance_over_period(spec, options.period, options, reference_point)
+    scene = assemble_scene(spec)
+    plan = plan_cycle(scene, options.cycle, options.turns, options.rate)
+    followed_scene = make_followed_scene(scene, plan)
+    cycle, is_resolved = sample_cycle(followed_scene, reference_point)
+    effects = compute_mass_effects(cycle, reference_point)
+    rotation = CycleRotation(plan.turns, find_cycle_axis(cycle, plan.joint), plan.rate)
+    results = replace(
+        to_results(spec, plan.coordinate, rotation, effects, reference_point, options), is_resolved=is_resolved
+    )
+    results = replace(results, notes=(*results.notes, *describe_cam_assumptions(scene.mechanism)))
+    results = add_load_torque(results, spec, scene, plan, options)
+    if options.weights:
+        from heuncli.analyses.balancing.weights import find_counterbalance  # where they are asked for
 
-        own = counterbalanced(spec, scene, plan, cycle, about, asked)
-        found = replace(found, counterbalance=own, notes=tuple(dict.fromkeys((*found.notes, *own.notes))))
-    if asked.flywheel is not None:
-        from heuncli.analyses.balancing.wheel import with_wheel  # where one is asked for
+        counterbalance = find_counterbalance(spec, scene, plan, cycle, reference_point, options)
+        results = replace(
+            results, counterbalance=counterbalance, notes=tuple(dict.fromkeys((*results.notes, *counterbalance.notes)))
+        )
+    if options.flywheel is not None:
+        from heuncli.analyses.balancing.wheel import add_flywheel  # where one is asked for
 
-        found = with_wheel(found, spec, scene, plan, asked.flywheel)
-    return found
+        results = add_flywheel(results, spec, scene, plan, options.flywheel)
+    return results
 
 
-def with_loads(
-    found: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: BalanceOptions
+def add_load_torque(
+    results: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, options: BalanceOptions
 ) -> BalanceResults:
-    """The results with the orders of what loads put on the shaft, where there are any."""
+    """Return the results with the orders of the torque of the loads on the shaft, if there are any."""
     if not scene.mechanism.loads and not scene.mechanism.gravity.any():
-        return found
-    from heuncli.analyses.balancing.load_torque import load_torque  # with all that solves loads
+        return results
+    from heuncli.analyses.balancing.load_torque import compute_load_torque  # with all that solves loads
 
-    own = load_torque(spec, scene, plan, asked.orders)
-    found = replace(found, notes=(*found.notes, *own.notes))
-    if not own.rows:
-        return found
-    rows = tuple(row for row in own.rows if asked.orders is None or is_asked(row.order, asked.orders))
-    means, errors = {**found.mean, "load": own.mean}, {**found.mean_error, "load": own.error}
-    return replace(found, orders={**found.orders, "load": rows}, mean=means, mean_error=errors)
+    torque = compute_load_torque(spec, scene, plan, options.orders)
+    results = replace(results, notes=(*results.notes, *torque.notes))
+    if not torque.rows:
+        return results
+    rows = tuple(row for row in torque.rows if options.orders is None or is_requested(row.order, options.orders))
+    means, errors = {**results.mean, "load": torque.mean}, {**results.mean_error, "load": torque.error}
+    return replace(results, orders={**results.orders, "load": rows}, mean=means, mean_error=errors)
 
 
-def drawn(spec: Spec) -> PreparedScene:
-    """The scene, assembled."""
-    mechanism, _ = draw(spec._replace(sections={}))
+def assemble_scene(spec: Spec) -> PreparedScene:
+    """Return the assembled scene."""
+    mechanism, _ = build_with_cuts(spec._replace(sections={}))
     t = spec.analysis.times[0] if spec.analysis.type == "state" and spec.analysis.times else 0.0
     return prepare_coupled(mechanism, t)

@@ -1,4 +1,4 @@
-"""What becomes of each order: whether no body makes it, the bodies' own cancel, or how much of them remains."""
+"""Classify each order: no body causes it, the bodies' contributions cancel, or a part of them remains."""
 
 from __future__ import annotations
 
@@ -10,57 +10,64 @@ from heuncli.base import tolerances
 from heuncli.results.results import Array
 
 Verdict = Literal["does not arise", "cancels", "remains"]
-ALONE = 1e-9  # of the larger of two parts: the smaller is none
-FAINT = 1e-3  # of the largest order: smaller ones are summed up in words
-MOST_NAMED = 6
+NEGLIGIBLE_PART = 1e-9  # of the larger of two parts: a smaller one counts as zero
+NEGLIGIBLE_ORDER = 1e-3  # of the largest order: smaller ones are not named one by one
+MAX_NAMED = 6
 SMALLER = "smaller ones"
 ENDLESS = ", fainter ones without end"
 LETTERS = ("x", "y", "z")
 
 
-def verdict_of(left: float, own: float, largest: float, least: float = 0.0) -> Verdict:
-    """What is left of an order whose bodies make `own` between them; largest: that any order's bodies make.
+def classify_order(magnitude: float, body_sum: float, largest: float, threshold: float = 0.0) -> Verdict:
+    """Classify an order by its magnitude and the sum of the bodies' amplitudes.
 
-    least: what is below is rounding of what moves.
+    largest: the largest such sum of any order
+    threshold: smaller values are rounding
     """
-    if own <= max(tolerances.CANCELS * largest, least):
+    if body_sum <= max(tolerances.CANCELS * largest, threshold):
         return "does not arise"
-    rounding = max(tolerances.ORDERS_SETTLED * largest, least)
-    return "cancels" if left <= max(tolerances.CANCELS * own, rounding) else "remains"
+    rounding = max(tolerances.ORDERS_SETTLED * largest, threshold)
+    return "cancels" if magnitude <= max(tolerances.CANCELS * body_sum, rounding) else "remains"
 
 
-def in_words(rows: Sequence[OrderRow], *, endless: bool = False) -> str:
-    """The orders that remain, the largest of them, and along what; endless: whether there is no last one."""
-    left = [row for row in rows if row.verdict == "remains" and row.order > 0.0]
-    if not left:
+def format_remaining_orders(rows: Sequence[OrderRow], *, endless: bool = False) -> str:
+    """Describe the orders that remain, the largest of them, and their direction.
+
+    endless: whether the orders have no end
+    """
+    remaining = [row for row in rows if row.verdict == "remains" and row.order > 0.0]
+    if not remaining:
         return "none" if not any(row.verdict == "cancels" for row in rows) else "all orders cancel"
-    largest = max(row.size for row in left)
-    told = sorted(sorted(left, key=lambda row: -row.size)[:MOST_NAMED], key=lambda row: row.order)
-    told = [row for row in told if row.size > FAINT * largest]
-    ways = {direction(row) for row in told}
-    way = ways.pop() if len(ways) == 1 else ""
-    names = [f"{row.order:g}" + (f" ({direction(row)})" if ways and direction(row) else "") for row in told]
-    if len(left) == 1:
-        return f"order {names[0]} alone remains{f', {way}' if way else ''}"
-    words = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
-    begins = f"order{'s' if len(names) > 1 else ''} {words} remain{'' if len(names) > 1 else 's'}"
-    begins += f", {way}" if way else ""
-    last = max(row.order for row in left)
-    if len(left) == len(told):
-        return begins
-    return f"{begins}; {SMALLER} up to {last:g}{ENDLESS if endless else ''}"
+    largest = max(row.size for row in remaining)
+    named = sorted(sorted(remaining, key=lambda row: -row.size)[:MAX_NAMED], key=lambda row: row.order)
+    named = [row for row in named if row.size > NEGLIGIBLE_ORDER * largest]
+    directions = {format_direction(row) for row in named}
+    common_direction = directions.pop() if len(directions) == 1 else ""
+    names = [
+        f"{row.order:g}" + (f" ({format_direction(row)})" if directions and format_direction(row) else "")
+        for row in named
+    ]
+    if len(remaining) == 1:
+        return f"order {names[0]} alone remains{f', {common_direction}' if common_direction else ''}"
+    joined_names = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+    sentence = f"order{'s' if len(names) > 1 else ''} {joined_names} remain{'' if len(names) > 1 else 's'}"
+    sentence += f", {common_direction}" if common_direction else ""
+    last = max(row.order for row in remaining)
+    if len(remaining) == len(named):
+        return sentence
+    return f"{sentence}; {SMALLER} up to {last:g}{ENDLESS if endless else ''}"
 
 
-def direction(row: OrderRow) -> str:
-    """Along which axis an order acts, or which way it turns; nothing where it is neither."""
-    parts: Array = row.amplitude
-    if len(parts) < 3:
+def format_direction(row: OrderRow) -> str:
+    """Return the axis along which an order acts, or the direction in which it turns; empty if it has neither."""
+    amplitudes: Array = row.amplitude
+    if len(amplitudes) < 3:
         return ""
-    along = [letter for letter, value in zip(LETTERS, parts, strict=True) if value > ALONE * row.size]
+    along = [letter for letter, value in zip(LETTERS, amplitudes, strict=True) if value > NEGLIGIBLE_PART * row.size]
     if len(along) == 1:
         return f"along {along[0]}"
-    if row.with_turn is None or row.against is None:
+    if row.with_turn is None or row.against_turn is None:
         return ""
-    if row.against <= ALONE * row.with_turn and row.across:
+    if row.against_turn <= NEGLIGIBLE_PART * row.with_turn and row.is_across_axis:
         return "with the turn"
-    return "against the turn" if row.with_turn <= ALONE * row.against and row.across else ""
+    return "against the turn" if row.with_turn <= NEGLIGIBLE_PART * row.against_turn and row.is_across_axis else ""

@@ -1,8 +1,9 @@
-"""Which orders are told: those that are asked for, else as many as count.
+"""Select the orders of a quantity: those requested, else all that are significant.
 
-Of what is smooth all up to rounding, by even nodes. What jumps or bends has orders without end; they fall as
+Of smooth quantities all orders up to rounding are selected, by equally spaced nodes. Quantities with jumps or kinks
+have infinitely many orders; they decrease as
     |a_k| <= 2/L (sum of jumps / k + (sum of bends + ∫|F''|) / k²)
-so that from some order on none is a ten-thousandth of the largest.
+so from some order on none reaches a ten-thousandth of the largest.
 """
 
 from __future__ import annotations
@@ -11,108 +12,116 @@ from functools import cache
 
 import numpy as np
 
-from heuncli.analyses.balancing.legendre import MOST, polynomials
+from heuncli.analyses.balancing.legendre import MAX_NODES, legendre_polynomials
 from heuncli.analyses.balancing.nodes import CycleNodes, PieceNodes
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array, Indices, Mask
 
-IN_TABLE = 1e-4  # of the largest order: smaller ones do not stand in a table unless they are asked for
-AT_FIRST = 64
-SURE = 4  # doublings of how many orders were looked at, from which on two in a row without one that counts end the look
-MOST_ORDERS, MOST_WORK = 10_000, 4_000_000  # a turn; orders times pieces
-LOOKED_AT = 33  # places of a piece by which it is told how it bends
+IN_TABLE = 1e-4  # of the largest order: smaller ones are listed only on request
+FIRST_ORDERS = 64
+MIN_DOUBLINGS = (
+    4  # doublings of the number of orders, after which two in a row without a significant order end the search
+)
+MAX_ORDERS, MAX_WORK = 10_000, 4_000_000  # orders per turn; orders times pieces
+SLOPE_PLACES = 33  # places of a piece at which its slopes are computed
 
 
 @record
-class WantedOrders:
-    """Orders that are asked for, counted per turn; None: as many as count. noise: what all are off by besides."""
+class OrderSelection:
+    """Requested orders per turn; None: all significant ones.
+
+    noise: error of every order in addition to that of the nodes
+    """
 
     asked: tuple[float, ...] | None = None
     noise: float = 0.0
 
-    def of(self, nodes: CycleNodes, values: Array, least: float) -> Indices:
-        """The orders of values (n, c) that are looked at, whole numbers a cycle, ascending, from 1 on.
+    def select_orders(self, nodes: CycleNodes, values: Array, threshold: float) -> Indices:
+        """Return the orders of values (n, c) to compute, whole numbers per cycle, ascending from 1.
 
-        least: what is below is none.
+        threshold: smaller values count as 0
         """
         last = nodes.last_order
         if last is None:
             assert isinstance(nodes, PieceNodes)
-            last = last_that_counts(nodes, values, least)
-        asked = [] if self.asked is None else [order * nodes.turns for order in self.asked]
-        more = [round(k) for k in asked if abs(k - round(k)) < tolerances.SAME_VALUE]
-        return np.unique(np.concatenate([np.arange(1, last + 1), np.array(more, dtype=int)]))
+            last = find_last_order(nodes, values, threshold)
+        requested = [] if self.requested is None else [order * nodes.turns for order in self.requested]
+        extra = [round(k) for k in requested if abs(k - round(k)) < tolerances.SAME_VALUE]
+        return np.unique(np.concatenate([np.arange(1, last + 1), np.array(extra, dtype=int)]))
 
-    def are_asked(self, orders: Indices, turns: int) -> Mask:
-        """Which of some orders a cycle are asked for, (m,)."""
-        if self.asked is None:
+    def are_requested(self, orders: Indices, turns: int) -> Mask:
+        """Return which of the orders per cycle are requested, (m,)."""
+        if self.requested is None:
             return np.zeros(len(orders), dtype=bool)
-        own = np.array(self.asked) * turns
-        return np.asarray((np.abs(orders[:, None] - own) < tolerances.SAME_VALUE).any(axis=1))
+        requested = np.array(self.requested) * turns
+        return np.asarray((np.abs(orders[:, None] - requested) < tolerances.SAME_VALUE).any(axis=1))
 
 
-ANY = WantedOrders()
+ALL_ORDERS = OrderSelection()
 
 
-def last_that_counts(nodes: PieceNodes, values: Array, none: float) -> int:
-    """The last order a cycle of values (n, c) that is a ten-thousandth of the largest, or the last that is told.
+def find_last_order(nodes: PieceNodes, values: Array, threshold: float) -> int:
+    """Return the last order per cycle of values (n, c) that reaches a ten-thousandth of the largest, or the last
+    allowed.
 
-    none: what is below is none.
+    threshold: smaller values count as 0
     """
-    most = min(MOST_ORDERS * nodes.turns, max(MOST_WORK // len(nodes.begins), AT_FIRST))
-    jumps, bends = fall(nodes, values)
-    first, largest, band = 1, none, last_wave(nodes, values)
+    last_allowed = min(MAX_ORDERS * nodes.turns, max(MAX_WORK // len(nodes.begins), FIRST_ORDERS))
+    jumps, bends = compute_decay(nodes, values)
+    first, largest, band = 1, threshold, find_fastest_wave(nodes, values)
     sizes = [np.zeros(0)]
-    while first <= most:
-        orders = np.arange(first, min(max(2 * first, AT_FIRST), most) + 1)
-        sizes.append(np.sqrt(np.sum(np.abs(nodes.amplitudes(values, orders)) ** 2, axis=1)))
+    while first <= last_allowed:
+        orders = np.arange(first, min(max(2 * first, FIRST_ORDERS), last_allowed) + 1)
+        sizes.append(np.sqrt(np.sum(np.abs(nodes.compute_amplitudes(values, orders)) ** 2, axis=1)))
         largest = max(largest, float(sizes[-1].max()))
         first = int(orders[-1]) + 1
-        k, least = first / nodes.turns, max(IN_TABLE * largest, none)
-        faint = [float(size.max(initial=0.0)) <= least for size in sizes[-2:]]
-        if jumps / k + bends / k**2 <= least or (len(sizes) > SURE and all(faint) and first > 2.0 * band):
+        k, significance = first / nodes.turns, max(IN_TABLE * largest, threshold)
+        is_negligible = [float(size.max(initial=0.0)) <= significance for size in sizes[-2:]]
+        if jumps / k + bends / k**2 <= significance or (
+            len(sizes) > MIN_DOUBLINGS and all(is_negligible) and first > 2.0 * band
+        ):
             break
-    counts = np.flatnonzero(np.concatenate(sizes) > max(IN_TABLE * largest, none))
-    return max(int(counts[-1]) + 1 if len(counts) else 0, AT_FIRST)
+    significant = np.flatnonzero(np.concatenate(sizes) > max(IN_TABLE * largest, threshold))
+    return max(int(significant[-1]) + 1 if len(significant) else 0, FIRST_ORDERS)
 
 
-def last_wave(nodes: PieceNodes, values: Array) -> float:
-    """The order a cycle of the fastest wave that the polynomials show, of those that count."""
-    own = nodes.coefficients(values)
+def find_fastest_wave(nodes: PieceNodes, values: Array) -> float:
+    """Return the order per cycle of the fastest significant wave that the polynomials show."""
+    coefficients = nodes.compute_coefficients(values)
     width = nodes.ends - nodes.begins
-    shares = np.abs(own).max(axis=2) * (width / nodes.length)[:, None]
-    counts = shares > IN_TABLE * shares.sum(axis=0).max(initial=0.0)
-    degree = (counts * np.arange(MOST)).max(axis=1)
+    shares = np.abs(coefficients).max(axis=2) * (width / nodes.length)[:, None]
+    is_significant = shares > IN_TABLE * shares.sum(axis=0).max(initial=0.0)
+    degree = (is_significant * np.arange(MAX_NODES)).max(axis=1)
     return float((degree * 2.0 / width).max()) * nodes.turns
 
 
-def left_beyond(nodes: CycleNodes, values: Array, order: float) -> float:
-    """What orders beyond one (a turn) may come to at most; 0 of even nodes."""
+def bound_higher_orders(nodes: CycleNodes, values: Array, order: float) -> float:
+    """Bound the orders above a given one (per turn); 0 for equally spaced nodes."""
     if not isinstance(nodes, PieceNodes):
         return 0.0
-    jumps, bends = fall(nodes, values)
+    jumps, bends = compute_decay(nodes, values)
     return jumps / order + bends / order**2
 
 
-def fall(nodes: PieceNodes, values: Array) -> tuple[float, float]:
-    """What falls with the order, and with its square: 2/L times the sums of jumps, and of bends with ∫|F''|."""
-    own = nodes.coefficients(values)
-    jumps = np.sqrt(np.sum(nodes.jumps(own) ** 2, axis=1)).sum()
+def compute_decay(nodes: PieceNodes, values: Array) -> tuple[float, float]:
+    """Return the factors of 1/order and 1/order²: 2/L times the sum of jumps, and of slope changes with ∫|F''|."""
+    coefficients = nodes.compute_coefficients(values)
+    jumps = np.sqrt(np.sum(nodes.compute_jumps(coefficients) ** 2, axis=1)).sum()
     half = 0.5 * (nodes.ends - nodes.begins)
-    slopes = np.einsum("mn,pnc->pmc", slopes_at(), own) / half[:, None, None]
-    inner = np.sqrt(np.sum(np.diff(slopes, axis=1) ** 2, axis=2)).sum()
-    between = slopes[:, 0] - np.roll(slopes[:, -1], 1, axis=0)
-    bends = inner + np.sqrt(np.sum(between**2, axis=1)).sum()
+    slopes = np.einsum("mn,pnc->pmc", polynomial_slopes(), coefficients) / half[:, None, None]
+    inner_bends = np.sqrt(np.sum(np.diff(slopes, axis=1) ** 2, axis=2)).sum()
+    break_bends = slopes[:, 0] - np.roll(slopes[:, -1], 1, axis=0)
+    bends = inner_bends + np.sqrt(np.sum(break_bends**2, axis=1)).sum()
     return 2.0 / nodes.length * float(jumps), 2.0 / nodes.length * float(bends)
 
 
 @cache
-def slopes_at() -> Array:
-    """The slopes of P_0 ... at even places of [-1, 1], (LOOKED_AT, MOST)."""
-    u = np.linspace(-1.0, 1.0, LOOKED_AT)
-    P = polynomials(u)
-    found = np.zeros_like(P)
-    for n in range(1, MOST):
-        found[:, n] = n * P[:, n - 1] + u * found[:, n - 1]
-    return found
+def polynomial_slopes() -> Array:
+    """Return the slopes of P_0 ... at equally spaced places of [-1, 1], (SLOPE_PLACES, MAX_NODES)."""
+    u = np.linspace(-1.0, 1.0, SLOPE_PLACES)
+    P = legendre_polynomials(u)
+    slopes = np.zeros_like(P)
+    for n in range(1, MAX_NODES):
+        slopes[:, n] = n * P[:, n - 1] + u * slopes[:, n - 1]
+    return slopes

@@ -1,11 +1,11 @@
-"""The flywheel of a scene as asked for."""
+"""Find the requested flywheel of a scene."""
 
 from __future__ import annotations
 
-from heuncli.analyses.balancing.asked import AskedWheel
+from heuncli.analyses.balancing.asked import FlywheelRequest
 from heuncli.analyses.balancing.choice import CyclePlan
-from heuncli.analyses.balancing.flywheel import flywheel, require_placed
-from heuncli.analyses.balancing.loaded import loaded
+from heuncli.analyses.balancing.flywheel import find_flywheel, require_position_loads
+from heuncli.analyses.balancing.loaded import make_loaded_scene
 from heuncli.analyses.balancing.results import BalanceResults, Flywheel
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
@@ -13,39 +13,43 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.scene.file_format.models import Spec
 
 
-def with_wheel(
-    found: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: AskedWheel
+def add_flywheel(
+    results: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, request: FlywheelRequest
 ) -> BalanceResults:
-    """The results with the flywheel that is asked for. Raises SolveError where there is none."""
-    wheel = wheel_of(spec, scene, plan, asked)
-    notes = (*found.notes, *notes_on(wheel), *wheel.notes)
-    return replace(found, flywheel=wheel, notes=tuple(dict.fromkeys(notes)))
+    """Return the results with the requested flywheel. Raises SolveError [no-flywheel]."""
+    wheel = find_requested_flywheel(spec, scene, plan, request)
+    notes = (*results.notes, *describe_flywheel(wheel), *wheel.notes)
+    return replace(results, flywheel=wheel, notes=tuple(dict.fromkeys(notes)))
 
 
-def wheel_of(spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: AskedWheel) -> Flywheel:
-    """The wheel on the cycle's shaft."""
-    if asked.joint not in ("", plan.joint):
-        message = f"--flywheel {asked.joint}: a wheel is found for the shaft that the cycle is counted on, {plan.joint}"
-        raise SolveError(Problem("no-flywheel", message, hint=f"--cycle {asked.joint}, or --flywheel {plan.joint}=1%"))
+def find_requested_flywheel(spec: Spec, scene: PreparedScene, plan: CyclePlan, request: FlywheelRequest) -> Flywheel:
+    """Find the flywheel on the cycle's shaft. Raises SolveError [no-flywheel]."""
+    if request.joint not in ("", plan.joint):
+        message = (
+            f"--flywheel {request.joint}: a wheel is found for the shaft that the cycle is counted on, {plan.joint}"
+        )
+        raise SolveError(
+            Problem("no-flywheel", message, hint=f"--cycle {request.joint}, or --flywheel {plan.joint}=1%")
+        )
     if plan.in_time:
         message = "a scene of several drives does not run by itself: their motors hold every rate"
         raise SolveError(Problem("no-flywheel", message, hint="leave the drives out that the wheel is to replace"))
     if plan.rate is None:
         message = "how fast the machine runs in the mean is not known"
         raise SolveError(Problem("no-flywheel", message, hint="--rate 1500rpm, say"))
-    require_placed(scene.mechanism)
-    own = loaded(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
-    return flywheel(own, plan.joint, abs(plan.rate), asked.delta)
+    require_position_loads(scene.mechanism)
+    loaded_scene = make_loaded_scene(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
+    return find_flywheel(loaded_scene, plan.joint, abs(plan.rate), request.delta)
 
 
-def notes_on(wheel: Flywheel) -> tuple[str, ...]:
-    """What is to be told of it beside its numbers."""
-    found = []
+def describe_flywheel(wheel: Flywheel) -> tuple[str, ...]:
+    """Return the notes on a flywheel."""
+    notes = []
     if wheel.even:
-        found.append(
+        notes.append(
             f"the loads do work over the cycle: for the flywheel an even torque of {wheel.even:.6g} N·m "
             f"on {wheel.joint} takes or gives it"
         )
     if wheel.added == 0.0:
-        found.append(f"no flywheel is needed: the machine runs with an unevenness of {wheel.present:.4g} as it is")
-    return tuple(found)
+        notes.append(f"no flywheel is needed: the machine runs with an unevenness of {wheel.present:.4g} as it is")
+    return tuple(notes)

@@ -1,4 +1,4 @@
-"""How a balance is told in tables and pictures alike: its cycle, its units, the point of its moments."""
+"""Labels of a balance that tables and figures share: its cycle, its units, the reference point of its moments."""
 
 from __future__ import annotations
 
@@ -7,28 +7,35 @@ import math
 from heuncli.analyses.balancing.results import BalanceResults
 
 UNITS = {"force": "N", "moment": "N·m", "torque": "N·m", "load": "N·m"}
-BY_RATE = {"force": "kg·m", "moment": "kg·m²", "torque": "kg·m²", "load": "N·m"}  # of 1 rad/s, where no rate is known
-AT_ONE = "at 1 rad/s: by the square of the rate, in kg·m"
+UNITS_PER_RATE = {
+    "force": "kg·m",
+    "moment": "kg·m²",
+    "torque": "kg·m²",
+    "load": "N·m",
+}  # at 1 rad/s, if no rate is known
+UNIT_RATE_TEXT = "at 1 rad/s: by the square of the rate, in kg·m"
 RPM = 30.0 / math.pi
 
 
-def cycle_of(found: BalanceResults) -> str:
-    """The cycle in words."""
-    if found.period is not None:
-        own = found.period
-        back = f"the period before differs by {own.off:.1g} of the mean"
-        return f"the last {own.seconds:.6g} s of the motion, {found.samples} instants; order k is k/T; {back}"
-    turns = "one turn" if found.turns == 1 else "two turns"
-    rate = f"at {found.rate:.6g} rad/s ({found.rate * RPM:.6g} rpm)" if found.rate is not None else AT_ONE
-    return f"{turns} of {found.coordinate} {rate}, {found.samples} angles"
+def format_cycle(results: BalanceResults) -> str:
+    """Describe the cycle in words."""
+    if results.period is not None:
+        period = results.period
+        difference = f"the period before differs by {period.relative_difference:.1g} of the mean"
+        return (
+            f"the last {period.seconds:.6g} s of the motion, {results.samples} instants; order k is k/T; {difference}"
+        )
+    turns = "one turn" if results.turns == 1 else "two turns"
+    rate = f"at {results.rate:.6g} rad/s ({results.rate * RPM:.6g} rpm)" if results.rate is not None else UNIT_RATE_TEXT
+    return f"{turns} of {results.coordinate} {rate}, {results.samples} angles"
 
 
-def unit_of(found: BalanceResults, quantity: str) -> str:
-    """The unit in which a quantity's amplitudes are told."""
-    return (UNITS if found.rate is not None else BY_RATE)[quantity]
+def get_unit(results: BalanceResults, quantity: str) -> str:
+    """Return the unit of a quantity's amplitudes."""
+    return (UNITS if results.rate is not None else UNITS_PER_RATE)[quantity]
 
 
-def place_of(found: BalanceResults) -> str:
-    """The point that moments are taken about, in words."""
-    x, y, z = (f"{value:.6g}" for value in found.about + 0.0)
-    return f"{found.place or 'O' if found.place or not found.about.any() else 'the point'} = ({x}, {y}, {z}) m"
+def format_reference_point(results: BalanceResults) -> str:
+    """Describe the point about which moments are taken."""
+    x, y, z = (f"{value:.6g}" for value in results.reference_point + 0.0)
+    return f"{results.place or 'O' if results.place or not results.reference_point.any() else 'the point'} = ({x}, {y}, {z}) m"

@@ -1,6 +1,6 @@
-"""The motion that a chart is made of: what `heun run` would integrate, over the instants it would tell.
+"""The motion that a chart compares: what `heun run` would integrate, over the same instants.
 
-Impure: looks at the clock.
+Impure: reads the clock.
 """
 
 from __future__ import annotations
@@ -16,24 +16,29 @@ from heuncli.base.records import record
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.determined_motion import BY_JOINTS
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.motion.integration.run.errors import Stiff
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.run.errors import StiffRun
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import ResultCondition, Spec
 from heuncli.study.model.setup import Setup, set_up
-from heuncli.study.solve.history import begin
+from heuncli.study.solve.history import check_start
 
-NOTICED, PATIENCE = 1e-8, 10.0  # local tolerance of the run by which stiffness is noticed; seconds it may take
-NO_TIME = "the time limit was reached before a reference was found"
-NEEDS_MOTION = "a chart compares how a motion is integrated; ask for one: analysis: {duration: 2, samples: 201}"
+STIFFNESS_TEST_TOLERANCE, STIFFNESS_TEST_SECONDS = (
+    1e-8,
+    10.0,
+)  # local tolerance, and time limit, of the run that detects stiffness
+TIME_LIMIT_TEXT = "the time limit was reached before a reference was found"
+NO_MOTION_HINT = "a chart compares how a motion is integrated; ask for one: analysis: {duration: 2, samples: 201}"
 
 
 @record
-class ChartedMotion:
-    """A scene set up to move.
+class MotionProblem:
+    """A scene that is set up to move.
 
-    times: asked ones [s], up to where a condition on results ends it; jumps: its discontinuities in time; deadline:
-    time.monotonic(); ends: the sentence on what ends it, if anything does.
+    times: requested instants [s], up to the one at which a condition on results ends the motion
+    jumps: times of its discontinuities
+    deadline: in terms of time.monotonic()
+    end_note: sentence about what ends the motion, if anything does
     """
 
     setup: Setup
@@ -43,66 +48,71 @@ class ChartedMotion:
     ends: str = ""
 
     @property
-    def determined(self) -> bool:
-        """Whether nothing is free, and every instant follows from the drives."""
-        return self.setup.method is not None and self.setup.method.determined
+    def is_determined(self) -> bool:
+        """Whether no freedom is left, so that the drives determine every instant."""
+        return self.setup.method is not None and self.setup.method.is_determined
 
-    def runs(self, method: Method, seconds: float | None = None, times: Array | None = None) -> Runs:
-        """Runs by a method, each within so many seconds, and all within the time limit; times: other instants."""
+    def make_runs(self, method: Method, seconds: float | None = None, times: Array | None = None) -> Runs:
+        """Return runs by a method, each within `seconds`, and all within the time limit.
+
+        times: instants other than the requested ones
+        """
         limits = [] if self.deadline is None else [self.deadline]
         if seconds is not None:
             limits.append(time.monotonic() + seconds)
-        at = self.times if times is None else times
-        return Runs(self.setup.runner, at, self.jumps, min(limits, default=None), method)
+        instants = self.times if times is None else times
+        return Runs(self.setup.runner, instants, self.jumps, min(limits, default=None), method)
 
     @cached_property
-    def stiff(self) -> Stiff | None:
-        """What tells that the motion is stiff, so that an explicit method would only crawl; None where it is not."""
-        if self.determined:
+    def stiffness(self) -> StiffRun | None:
+        """The Stiff exception of a motion too stiff for an explicit method; None if it is not stiff."""
+        if self.is_determined:
             return None
-        runs = self.runs(method_of(DEFAULT), PATIENCE)
-        runs.watched = True
+        runs = self.make_runs(load_method_by_name(DEFAULT), STIFFNESS_TEST_SECONDS)
+        runs.watch_stiffness = True
         try:
-            runs.run(NOTICED)
-        except Stiff as stiff:
+            runs.run(STIFFNESS_TEST_TOLERANCE)
+        except StiffRun as stiff:
             return stiff
         except (SolveError, LimitError):
-            return None  # the reference tells
+            return None  # the reference run shows the reason
         return None
 
     @property
     def late(self) -> bool:
-        """Whether the time limit is past."""
+        """Whether the time limit is exceeded."""
         return self.deadline is not None and time.monotonic() > self.deadline
 
 
-def motion_of(spec: Spec, deadline: float | None) -> ChartedMotion:
-    """The motion of a spec. Raises SpecError where it asks for none, SolveError where nothing can move."""
+def make_motion(spec: Spec, deadline: float | None) -> MotionProblem:
+    """Return the motion of a spec. Raises SpecError [nothing-to-chart] if it asks for none, SolveError if nothing can
+    move.
+    """
     if spec.analysis.type != "motion":
-        what = {"rest": "a rest pose is looked for, not integrated", "impulse": "an impulse is one instant"}
-        message = f"{what.get(spec.analysis.type, 'a state is one instant')}: no method has anything to integrate"
-        raise SpecError(Problem("nothing-to-chart", message, hint=NEEDS_MOTION))
-    spec, ends = up_to_its_end(spec, deadline)
+        reasons = {"rest": "a rest pose is looked for, not integrated", "impulse": "an impulse is one instant"}
+        message = f"{reasons.get(spec.analysis.type, 'a state is one instant')}: no method has anything to integrate"
+        raise SpecError(Problem("nothing-to-chart", message, hint=NO_MOTION_HINT))
+    spec, ends = resolve_end(spec, deadline)
     setup = set_up(spec, AUTO)
     if BY_JOINTS in setup.model.get("reduced", ()):
         raise SolveError(Problem("nothing-to-chart", BY_JOINTS, hint="free a joint, or drive one"))
-    jumps = begin(setup)
-    return ChartedMotion(setup, np.array(spec.analysis.times, dtype=float), jumps, deadline, ends)
+    jumps = check_start(setup)
+    return MotionProblem(setup, np.array(spec.analysis.times, dtype=float), jumps, deadline, ends)
 
 
-def up_to_its_end(spec: Spec, deadline: float | None) -> tuple[Spec, str]:
-    """A motion that ends on a number of its results, without the condition: up to the instant that `heun run` finds."""
+def resolve_end(spec: Spec, deadline: float | None) -> tuple[Spec, str]:
+    """Replace a condition on results that ends the motion by the end time that `heun run` finds."""
     ending = next((c for c in spec.analysis.conditions if c.ends and isinstance(c, ResultCondition)), None)
     if ending is None:
         return spec, ""
     from heuncli.study.model.options import Options  # few scenes end so
     from heuncli.study.workflow import solve  # few scenes end so
 
-    left = None if deadline is None else deadline - time.monotonic()
-    if left is not None and left <= 0.0:
-        raise LimitError(Problem("time-limit", NO_TIME, hint="a longer --time-limit"))
-    found = solve(spec, Options(wanted=frozenset(), time_limit=left))
-    times = tuple(found.results.time.tolist())
-    ended = times[-1] < spec.analysis.times[-1]
-    sentence = f"the motion ends at t = {times[-1]:.6g} s: {ending.text}" if ended else ""
+    seconds_left = None if deadline is None else deadline - time.monotonic()
+    if seconds_left is not None and seconds_left <= 0.0:
+        raise LimitError(Problem("time-limit", TIME_LIMIT_TEXT, hint="a longer --time-limit"))
+    study = solve(spec, Options(requested_reports=frozenset(), time_limit=seconds_left))
+    times = tuple(study.results.time.tolist())
+    is_shortened = times[-1] < spec.analysis.times[-1]
+    sentence = f"the motion ends at t = {times[-1]:.6g} s: {ending.text}" if is_shortened else ""
     return spec._replace(analysis=spec.analysis._replace(times=times, conditions=())), sentence

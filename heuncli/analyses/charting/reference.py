@@ -1,8 +1,8 @@
-"""The reference of a chart: a run of high order at the least tolerance, checked by one of another method.
+"""Compute the reference of a chart: a run of high order at the smallest tolerance, checked by a run of another method.
 
-Both set out from the same scene, the second from a start moved by rounding, so that what rounding grows to is seen. By
-how much they differ, twice, is what the reference may err by. Where they part, in a chaotic motion, the chart is judged
-up to where they still agree to half the digits: beyond, differences tell of the growth and no more of the methods.
+Both start from the same scene, the second from a start perturbed by rounding, so that the growth of rounding shows.
+Twice their difference bounds the reference's error. Where they diverge, in a chaotic motion, the chart compares runs up
+to where they still agree to half the digits: later differences show the growth, not the methods.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.analyses.charting.judge import Judge, judge_of
-from heuncli.analyses.charting.motion import NO_TIME, ChartedMotion
+from heuncli.analyses.charting.judge import ReferenceComparison, make_comparison
+from heuncli.analyses.charting.motion import TIME_LIMIT_TEXT, MotionProblem
 from heuncli.analyses.charting.results import KINDS, Errors, Reference
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.base.method_rows import DEFAULT, row_of
+from heuncli.base.method_rows import DEFAULT, find_method
 from heuncli.base.records import record
-from heuncli.motion.integration.check.estimate import errors
+from heuncli.motion.integration.check.estimate import estimate_errors
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.methods.followed import FOLLOWED
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.followed import DRIVE_DETERMINED
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.study.solve.error_extents import ESTIMATED
@@ -29,27 +29,41 @@ from heuncli.study.solve.history import require_followed
 
 # Pairs of methods, the first the reference; the second pair where the first does not agree, as in stiff scenes
 PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))
-FINEST = (tolerances.LEAST_TOLERANCE, 1e-12, 1e-10)  # local tolerances, the first by which the motion can be run
-SECONDS = 20.0  # that one of these runs may take
-AGREED = 1e-9  # relative: two runs that agree so well need no other pair
-FEW = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"
-FEW_HINT = "more samples, or a shorter duration"
-ITSELF = "every instant solved by itself"  # as a run that is followed
-WORDS = {"motion": "motion to {} of the scene's size", "reactions": "reactions to {}", "sections": "sections to {}"}
+FINEST_TOLERANCES = (
+    tolerances.LEAST_TOLERANCE,
+    1e-12,
+    1e-10,
+)  # local tolerances, the first by which the motion can be run
+MAX_SECONDS = 20.0  # time limit of one of these runs
+AGREEMENT = 1e-9  # relative: if two runs agree so well, no other pair is tried
+TOO_SHORT_TEXT = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"
+TOO_SHORT_HINT = "more samples, or a shorter duration"
+SOLVED_TEXT = "every instant solved by itself"  # text for a motion that is solved instant by instant
+AGREEMENT_TEXTS = {
+    "motion": "motion to {} of the scene's size",
+    "reactions": "reactions to {}",
+    "sections": "sections to {}",
+}
 
 
 @record
-class JudgedReference:
-    """A reference, and what holds runs against it; seconds: what its run took."""
+class VerifiedReference:
+    """A reference with the comparison of runs with it.
+
+    seconds: processor time of its run
+    """
 
     reference: Reference
-    judge: Judge
+    judge: ReferenceComparison
     seconds: float
 
 
 @record
 class ReferencePair:
-    """Two runs of a motion; error (n,): by how much the motion of the first may err at its instants."""
+    """Two runs of a motion.
+
+    error (n,): estimated error of the first run's motion at its instants
+    """
 
     runs: Runs
     first: Trajectory
@@ -57,167 +71,174 @@ class ReferencePair:
     error: Array
 
     @property
-    def whole(self) -> float:
-        """The largest error."""
+    def largest_error(self) -> float:
+        """The largest error over time."""
         return float(self.error.max(initial=0.0))
 
 
-def refer(motion: ChartedMotion) -> JudgedReference:
-    """The reference of a motion. Raises what kept all pairs from it."""
+def find_reference(motion: MotionProblem) -> VerifiedReference:
+    """Find the reference of a motion. Raises the error of the first pair if all pairs fail."""
     best: ReferencePair | None = None
-    failed: HeunError | None = None
-    stiff = motion.stiff
-    for first, second in pairs(motion, stiff is not None):
+    first_failure: HeunError | None = None
+    stiff = motion.stiffness
+    for first, second in iter_method_pairs(motion, stiff is not None):
         try:
-            found = pair(motion, first, second)
+            candidate = run_pair(motion, first, second)
         except (SolveError, LimitError) as error:
             if motion.late:
-                raise LimitError(Problem("time-limit", NO_TIME, hint="a longer --time-limit")) from None
-            failed = failed or error
+                raise LimitError(Problem("time-limit", TIME_LIMIT_TEXT, hint="a longer --time-limit")) from None
+            first_failure = first_failure or error
             continue
-        best = found if best is None or found.whole < best.whole else best
-        if best.whole <= AGREED:
+        best = candidate if best is None or candidate.largest_error < best.largest_error else best
+        if best.largest_error <= AGREEMENT:
             break
     if best is None:
-        assert failed is not None
-        raise no_reference(failed)
+        assert first_failure is not None
+        raise make_failure(first_failure)
     require_followed(motion.setup.runner, best.first)
-    return referred(motion, best, (f"heun run would take {stiff.method.name}: {stiff.told}",) if stiff else ())
+    return make_reference(motion, best, (f"heun run would take {stiff.method.name}: {stiff.reason}",) if stiff else ())
 
 
-def no_reference(failed: HeunError) -> HeunError:
-    """Why there is none: what the motion fails by, or that it takes too long."""
-    if not isinstance(failed, LimitError):
-        return failed
-    message = f"no reference: {failed.problems[0].message}"
+def make_failure(failure: HeunError) -> HeunError:
+    """Return the error to raise without a reference: that of the motion, or that it takes too long."""
+    if not isinstance(failure, LimitError):
+        return failure
+    message = f"no reference: {failure.problems[0].message}"
     return LimitError(Problem("no-reference", message, hint="a shorter duration; heun run says how long a run takes"))
 
 
-def pairs(motion: ChartedMotion, stiff: bool) -> Iterator[tuple[str, str]]:
-    """The pairs of methods that there are, by their names, those first that suit the motion."""
-    if motion.determined:
-        yield FOLLOWED.name, DEFAULT
-    known = [names for names in PAIRS if all(row_of(name) for name in names)]
-    yield from (known[::-1] if stiff else known) or [(DEFAULT, DEFAULT)]
+def iter_method_pairs(motion: MotionProblem, stiff: bool) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of available methods by name, those that suit the motion first."""
+    if motion.is_determined:
+        yield DRIVE_DETERMINED.name, DEFAULT
+    available = [names for names in PAIRS if all(find_method(name) for name in names)]
+    yield from (available[::-1] if stiff else available) or [(DEFAULT, DEFAULT)]
 
 
-def pair(motion: ChartedMotion, first: str, second: str) -> ReferencePair:
-    """Two runs by two methods. Raises SolveError, LimitError."""
-    runs, a = finest(motion, first)
-    b = beside(motion, second, a)
-    n = common(a, b)
+def run_pair(motion: MotionProblem, first: str, second: str) -> ReferencePair:
+    """Run the motion by two methods. Raises SolveError, LimitError."""
+    runs, a = run_finest(motion, first)
+    b = run_check(motion, second, a)
+    n = count_common_instants(a, b)
     with np.errstate(all="ignore"):
-        error, _ = errors(runs, a, a.times[:n], (a.states[:n], b.states[:n]))
+        error, _ = estimate_errors(runs, a, a.times[:n], (a.states[:n], b.states[:n]))
     return ReferencePair(runs, a, b, error)
 
 
-def finest(motion: ChartedMotion, name: str) -> tuple[Runs, Trajectory]:
-    """The run by a method at the least of the tolerances at which it comes to its end."""
-    method = FOLLOWED if name == FOLLOWED.name else method_of(name)
-    failed: HeunError | None = None
-    for local in FINEST:
-        runs = motion.runs(method, SECONDS)
+def run_finest(motion: MotionProblem, name: str) -> tuple[Runs, Trajectory]:
+    """Run the motion by a method at the smallest tolerance at which it completes."""
+    method = DRIVE_DETERMINED if name == DRIVE_DETERMINED.name else load_method_by_name(name)
+    first_failure: HeunError | None = None
+    for local in FINEST_TOLERANCES:
+        runs = motion.make_runs(method, MAX_SECONDS)
         try:
             return runs, runs.run(local)
         except SolveError as error:
-            failed = failed or error
+            first_failure = first_failure or error
         except LimitError as error:  # a coarser one would take about as long
-            raise failed or error from None
-    assert failed is not None
-    raise failed
+            raise first_failure or error from None
+    assert first_failure is not None
+    raise first_failure
 
 
-def beside(motion: ChartedMotion, name: str, a: Trajectory) -> Trajectory:
-    """The run that checks the reference: by another method, from a start moved by rounding where that can be run.
+def run_check(motion: MotionProblem, name: str, a: Trajectory) -> Trajectory:
+    """Run the check of the reference: by another method, from a perturbed start if that can be run.
 
-    What is followed and cannot be integrated is followed once more.
+    A motion that is solved instant by instant, and cannot be integrated, is solved once more.
     """
-    names = (name, a.method.name) if motion.determined else (name,)
-    failed: HeunError | None = None
+    names = (name, a.method.name) if motion.is_determined else (name,)
+    first_failure: HeunError | None = None
     for other in names:
-        method = a.method if other == a.method.name else method_of(other)
-        runs = motion.runs(method, SECONDS, a.times)
+        method = a.method if other == a.method.name else load_method_by_name(other)
+        runs = motion.make_runs(method, MAX_SECONDS, a.times)
         ratio = 30.0 if method is a.method else 1.0  # the same method once more has to differ in its steps
-        for start in (runs.moved, None):
-            for local in FINEST:
+        for start in (runs.perturbed_start, None):
+            for local in FINEST_TOLERANCES:
                 try:
                     return runs.run(max(local, a.local) * ratio, a.times, start)
                 except SolveError as error:
-                    failed = failed or error
+                    first_failure = first_failure or error
                 except LimitError as error:
-                    raise failed or error from None
-    assert failed is not None
-    raise failed
+                    raise first_failure or error from None
+    assert first_failure is not None
+    raise first_failure
 
 
-def common(a: Trajectory, b: Trajectory) -> int:
-    """How many instants two runs share: where ropes end them, each ends at an instant of its own."""
+def count_common_instants(a: Trajectory, b: Trajectory) -> int:
+    """Return how many instants two runs share: if ropes end them, each ends at a time of its own."""
     n = min(len(a.times), len(b.times))
     return int(np.sum(a.times[:n] == b.times[:n]))
 
 
-def referred(motion: ChartedMotion, best: ReferencePair, more: tuple[str, ...]) -> JudgedReference:
-    """The reference of a pair of runs: what the chart tells of it, and what judges runs by it; more: further notes."""
-    count, horizon = judged_instants(best)
+def make_reference(motion: MotionProblem, best: ReferencePair, extra_notes: tuple[str, ...]) -> VerifiedReference:
+    """Make the reference of a pair of runs, with its description and the comparison of runs with it."""
+    count, horizon = count_valid_instants(best)
     setup = motion.setup
-    judge = judge_of(best.runs, setup, best.first, count)
-    known = judge.apart(best.second, ESTIMATED)
-    # nothing is told of a kind of which there is nothing: no joints, or none that carries anything
-    own = {kind: known[kind] or None for kind in KINDS} | {"motion": float(best.error[:count].max())}
-    until = float(judge.times[-1])
-    notes = (*more, *([motion.ends] if motion.ends else []), *ended(best.first), *open_notes(judge))
+    comparison = make_comparison(best.runs, setup, best.first, count)
+    known = comparison.compute_differences(best.second, ESTIMATED)
+    # None for a kind that does not occur: no joints, or none that carries a load
+    errors_by_kind = {kind: known[kind] or None for kind in KINDS} | {"motion": float(best.error[:count].max())}
+    last_time = float(comparison.times[-1])
+    notes = (
+        *extra_notes,
+        *([motion.end_note] if motion.end_note else []),
+        *describe_early_end(best.first),
+        *describe_indeterminate(comparison),
+    )
     if horizon is not None:
-        notes = (beyond(horizon, until, own["motion"]), *notes)
-    reference = Reference(words(best, own), own, until, count, horizon, notes)
-    return JudgedReference(reference, judge, best.first.seconds)
+        notes = (describe_divergence(horizon, last_time, errors_by_kind["motion"]), *notes)
+    reference = Reference(describe_agreement(best, errors_by_kind), errors_by_kind, last_time, count, horizon, notes)
+    return VerifiedReference(reference, comparison, best.first.seconds)
 
 
-def judged_instants(best: ReferencePair) -> tuple[int, float | None]:
-    """How many of the instants are judged, and the horizon. Raises SolveError where there are too few."""
-    late = np.flatnonzero(best.error > tolerances.CLAIMED)
-    if not len(late):
+def count_valid_instants(best: ReferencePair) -> tuple[int, float | None]:
+    """Return how many instants are compared, and the horizon. Raises SolveError [no-reference] if there are too few."""
+    diverged = np.flatnonzero(best.error > tolerances.CLAIMED)
+    if not len(diverged):
         return len(best.error), None
-    horizon = float(best.first.times[late[0]])
+    horizon = float(best.first.times[diverged[0]])
     for limit in (tolerances.JUDGED, tolerances.CLAIMED):
         count = int(np.flatnonzero(best.error > limit)[0])
         if count >= 2:
             return count, horizon
-    last = float(best.first.times[max(late[0] - 1, 0)])
-    raise SolveError(Problem("no-reference", FEW.format(last), hint=FEW_HINT))
+    last = float(best.first.times[max(diverged[0] - 1, 0)])
+    raise SolveError(Problem("no-reference", TOO_SHORT_TEXT.format(last), hint=TOO_SHORT_HINT))
 
 
-def words(best: ReferencePair, own: Errors) -> str:
-    """Which runs agree how well."""
+def describe_agreement(best: ReferencePair, errors_by_kind: Errors) -> str:
+    """Describe which runs agree, and how well."""
     a, b = best.first, best.second
-    names = [ITSELF if run.method.determined else f"{run.method.name} at {run.local:.0e}" for run in (a, b)]
-    found = [WORDS[kind].format(f"{error:.1e}") for kind, error in own.items() if error is not None]
-    return f"{names[0]} and {names[1]} agree: {', '.join(found)}"
+    names = [SOLVED_TEXT if run.method.is_determined else f"{run.method.name} at {run.local:.0e}" for run in (a, b)]
+    texts = [
+        AGREEMENT_TEXTS[kind].format(f"{error:.1e}") for kind, error in errors_by_kind.items() if error is not None
+    ]
+    return f"{names[0]} and {names[1]} agree: {', '.join(texts)}"
 
 
-def beyond(horizon: float, until: float, own: float | None) -> str:
-    """What is said of a motion whose references part."""
+def describe_divergence(horizon: float, last_time: float, error: float | None) -> str:
+    """Describe the divergence of the two reference runs."""
     return (
         f"the references differ by more than {tolerances.CLAIMED:.0e} at t = {horizon:.6g} s, from where on nobody can "
-        f"compare anything in double precision; run and judged up to t = {until:.6g} s, where they agree to {own:.0e}"
+        f"compare anything in double precision; run and judged up to t = {last_time:.6g} s, where they agree to {error:.0e}"
     )
 
 
-def ended(a: Trajectory) -> list[str]:
-    """What ends the motion before its time."""
-    if a.stopped:
-        return [f"the motion ends at t = {a.times[-1]:.6g} s: the rope {a.stopped} would have to push"]
-    return [f"the motion ends at t = {a.times[-1]:.6g} s, by its condition"] if a.ended else []
+def describe_early_end(a: Trajectory) -> list[str]:
+    """Return a note on what ends the motion early, if anything does."""
+    if a.pushing_rope:
+        return [f"the motion ends at t = {a.times[-1]:.6g} s: the rope {a.pushing_rope} would have to push"]
+    return [f"the motion ends at t = {a.times[-1]:.6g} s, by its condition"] if a.ended_by_condition else []
 
 
-def open_notes(judge: Judge) -> Sequence[str]:
-    """What is left out because it is open."""
-    certain = judge.certain
-    partly = [name for name, (f, m) in certain.items() if not (f.all() and m.all()) and (f.any() or m.any())]
-    wholly = [name for name, (f, m) in certain.items() if not (f.any() or m.any())]
+def describe_indeterminate(comparison: ReferenceComparison) -> Sequence[str]:
+    """Return notes on what is left out because it is indeterminate."""
+    determinate = comparison.determinate
+    partly = [name for name, (f, m) in determinate.items() if not (f.all() and m.all()) and (f.any() or m.any())]
+    wholly = [name for name, (f, m) in determinate.items() if not (f.any() or m.any())]
     notes = []
     if wholly or partly:
         names = ", ".join([*wholly, *(f"{name} in part" for name in partly)])
         notes.append(f"open, and so not judged: reactions of {names}")
-    if judge.setup.cuts and not judge.sections:
+    if comparison.setup.cuts and not comparison.has_sections:
         notes.append("open, and so not judged: sections")
     return notes

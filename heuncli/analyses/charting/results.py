@@ -1,8 +1,9 @@
-"""What a chart of speed against accuracy holds: runs of one motion by several methods, each against a reference.
+"""Results of a chart of speed against accuracy: runs of one motion by several methods, each compared with a reference.
 
-Errors are differences from the reference, at the asked instants up to where it is judged. The reference errs by at most
-`own`, as two runs by different methods show. A run that is no farther from it errs by at most twice that, a bound and
-no error of its own; from twice that on a difference is the run's error within half of it; between, twice `own` is told.
+Errors are differences from the reference at the requested instants, up to where it is valid. The reference's error is
+at most its `error`, as two runs by different methods show. A run that differs by less has an error of at most twice
+that, which is only a bound; a difference of more than twice that is the run's error within half of it; in between,
+twice the reference's error is reported.
 """
 
 from __future__ import annotations
@@ -14,23 +15,24 @@ from typing import Literal
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 
-KINDS = ("motion", "reactions", "sections")  # whose errors are told, the first decides the front
-Errors = Mapping[str, float | None]  # by kind; None: nothing is told of it, or it is open
+KINDS = ("motion", "reactions", "sections")  # kinds of errors; the first decides the front
+Errors = Mapping[str, float | None]  # by kind; None: not known, or indeterminate
 Status = Literal["completed", "failed", "not run"]
 COMPLETED: Status = "completed"
 FAILED: Status = "failed"
 NOT_RUN: Status = "not run"  # or not to its end
-UNFINISHED = "unfinished"  # the code of what was begun, and ended by a limit
+UNFINISHED = "unfinished"  # the code of a run that a limit ended
 NOT_KNOWN: Errors = MappingProxyType(dict.fromkeys(KINDS))
-DOUBTED = 2.0  # times the reference's own error: a larger difference is the run's error within half of it
-SHOWN = 2  # digits of seconds and errors that are compared: those that tables show
+DOUBT_FACTOR = 2.0  # times the reference's own error: a larger difference is the run's error within half of it
+SHOWN_DIGITS = 2  # digits of seconds and errors that are compared: those that tables show
 
 
 @record
 class ChartRow:
     """A method at one tolerance, or one step.
 
-    attitude: how it is held within a step; fixed: whether `local` is the step [s], else the local tolerance.
+    attitude: how attitudes are represented within a step
+    has_fixed_step: whether `local` is the step [s] or the local tolerance
     """
 
     method: str
@@ -40,12 +42,14 @@ class ChartRow:
 
 
 @record
-class ChartedRun:
-    """A row with what came of it.
+class ChartRun:
+    """A row and its outcome.
 
-    seconds: processor time of the integration alone, the median of so many repeats; of what failed, until it did; of
-    what was not run, as projected. error: by kind; bounded: the kinds of which it is a bound alone. at: the instant
-    [s] at which it failed; code, reason: why it failed or was not run.
+    seconds: processor time of the integration alone, median over the repeats; until failure if it failed; estimated if
+    it was not run
+    error: error by kind; upper_bounds: the kinds for which it is only a bound
+    failure_time [s]: instant of failure; code, reason: why it failed or was not run
+    front: whether no other run is better
     """
 
     row: ChartRow
@@ -64,11 +68,13 @@ class ChartedRun:
 
 @record
 class Reference:
-    """What the runs are held against.
+    """The reference of a chart.
 
-    words: which runs agree how well, in a sentence; own: the error of the reference by kind; until: the last instant
-    judged [s]; instants: how many are; horizon: where the two runs part, None if nowhere; notes: what else is worth
-    knowing of it.
+    description: which runs agree, and how well
+    error: the reference's error by kind
+    last_time [s]: last instant compared; instants: their number
+    horizon [s]: where the two runs diverge, None if nowhere
+    notes: further remarks
     """
 
     words: str
@@ -78,77 +84,82 @@ class Reference:
     horizon: float | None = None
     notes: tuple[str, ...] = ()
 
-    def judged(self, apart: Errors) -> tuple[Errors, frozenset[str]]:
-        """The errors of a run so far apart from the reference, and the kinds of which they are bounds alone."""
-        error, bounded = dict(apart), set()
-        for kind, own in self.own.items():
-            difference = apart[kind]
-            if own is None or difference is None:
+    def to_errors(self, differences: Errors) -> tuple[Errors, frozenset[str]]:
+        """Convert the differences of a run from the reference to its errors, and the kinds for which they are only
+        bounds.
+        """
+        error, upper_bounds = dict(differences), set()
+        for kind, reference_error in self.error.items():
+            difference = differences[kind]
+            if reference_error is None or difference is None:
                 error[kind] = None
                 continue
-            error[kind] = max(difference, DOUBTED * own)
-            if difference <= own:
-                bounded.add(kind)
-        return error, frozenset(bounded)
+            error[kind] = max(difference, DOUBT_FACTOR * reference_error)
+            if difference <= reference_error:
+                upper_bounds.add(kind)
+        return error, frozenset(upper_bounds)
 
 
 @record
 class ChartResults:
-    """A scene's chart; size [m]: of the scene, to which errors of motion are relative; notes: sentences below it."""
+    """The chart of a scene.
+
+    size [m]: the scene's size, to which errors of motion are relative
+    notes: sentences below the chart
+    """
 
     title: str
     spec: Mapping[str, str]
     reference: Reference
-    runs: tuple[ChartedRun, ...]
+    runs: tuple[ChartRun, ...]
     size: float
     notes: tuple[str, ...] = ()
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of which the reference tells something."""
-        return tuple(kind for kind in KINDS if self.reference.own[kind] is not None)
+        """The kinds of errors for which the reference has a value."""
+        return tuple(kind for kind in KINDS if self.reference.error[kind] is not None)
 
     @property
-    def by_method(self) -> dict[str, list[ChartedRun]]:
-        """The runs of each method, in their order."""
-        found: dict[str, list[ChartedRun]] = {}
+    def runs_by_method(self) -> dict[str, list[ChartRun]]:
+        """The runs of each method, in order."""
+        found: dict[str, list[ChartRun]] = {}
         for run in self.runs:
             found.setdefault(run.row.method, []).append(run)
         return found
 
 
-def with_front(runs: Sequence[ChartedRun]) -> tuple[ChartedRun, ...]:
-    """The runs, those marked that no other one beats: at least as fast, at least as accurate, and better in one.
+def mark_front(runs: Sequence[ChartRun]) -> tuple[ChartRun, ...]:
+    """Mark the runs that no other run beats: at least as fast, at least as accurate, and better in one of both.
 
-    Seconds are measured and errors estimated: both are compared with the digits that are shown. Of runs that are equal
-    in both the one with fewer evaluations counts as faster, and of those the first. A run that is lost is no result,
-    however fast it was.
+    Times are measured and errors estimated, so both are compared with the digits shown. Of runs equal in both, the one
+    with fewer evaluations counts as faster, then the first. A diverged run is never marked.
     """
-    known = [run for run in runs if run.status == COMPLETED and is_near(run)]
-    merits = {id(run): merit(run) for run in known}
-    order = sorted(known, key=lambda run: merits[id(run)])
+    known = [run for run in runs if run.status == COMPLETED and has_finite_error(run)]
+    merit_by_id = {id(run): compute_merit(run) for run in known}
+    order = sorted(known, key=lambda run: merit_by_id[id(run)])
     best, front = float("inf"), set()
     for run in order:
-        error = merits[id(run)][1]
+        error = merit_by_id[id(run)][1]
         if error < best:
             best = error
             front.add(id(run))
     return tuple(replace(run, front=id(run) in front) for run in runs)
 
 
-def is_near(run: ChartedRun) -> bool:
-    """Whether the motion is known to be no more than the scene's size away."""
+def has_finite_error(run: ChartRun) -> bool:
+    """Return whether the motion is known to be no farther from the reference than the scene's size."""
     error = run.error["motion"]
     return error is not None and error < tolerances.LOST
 
 
-def merit(run: ChartedRun) -> tuple[float, float, int]:
-    """Seconds, error of the motion, as shown, and evaluations: less is better."""
+def compute_merit(run: ChartRun) -> tuple[float, float, int]:
+    """Return time and error of the motion as shown, and evaluations: smaller is better."""
     error = run.error["motion"]
     assert run.seconds is not None and error is not None
-    return shown(run.seconds), shown(error), run.evaluations or 0
+    return round_as_shown(run.seconds), round_as_shown(error), run.evaluations or 0
 
 
-def shown(value: float) -> float:
-    """A number with the digits that tables show of it."""
-    return float(f"{value:.{SHOWN - 1}e}")
+def round_as_shown(value: float) -> float:
+    """Round a number to the digits that tables show."""
+    return float(f"{value:.{SHOWN_DIGITS - 1}e}")

@@ -1,45 +1,47 @@
-"""Speed against accuracy: methods at several tolerances, or steps, on a scene's own motion.
+"""Speed against accuracy: run several methods at several tolerances, or steps, on a scene's own motion.
 
-Each run is held against a reference that is itself checked. Impure: looks at the clock.
+Each run is compared with a reference that is itself verified. Impure: reads the clock.
 """
 
 from __future__ import annotations
 
 import time
 
-from heuncli.analyses.charting.motion import motion_of
-from heuncli.analyses.charting.plan import ChartOptions, plan
-from heuncli.analyses.charting.reference import refer
-from heuncli.analyses.charting.results import ChartResults, with_front
-from heuncli.analyses.charting.runs import ChartRuns, Tell
+from heuncli.analyses.charting.motion import make_motion
+from heuncli.analyses.charting.plan import ChartOptions, plan_chart
+from heuncli.analyses.charting.reference import find_reference
+from heuncli.analyses.charting.results import ChartResults, mark_front
+from heuncli.analyses.charting.runs import ChartRunner, ReportProgress
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import placed
+from heuncli.study.model.error_places import attach_locations
 
-DRIVEN = (
+DRIVEN_NOTE = (
     "the drives leave no freedom: heun run solves every instant by itself (followed) and integrates nothing; the other "
     "rows are what integrating it would take"
 )
 
 
-def chart(spec: Spec, wanted: ChartOptions, tell: Tell = lambda done, of, what: None) -> ChartResults:
-    """The chart of a spec. Raises SpecError, SolveError, LimitError where there is none."""
-    with placed(spec):
-        return charted(spec, wanted, tell)
+def chart(
+    spec: Spec, options: ChartOptions, report_progress: ReportProgress = lambda done, of, what: None
+) -> ChartResults:
+    """Return the chart of a spec. Raises SpecError, SolveError, LimitError if there is none."""
+    with attach_locations(spec):
+        return make_chart(spec, options, report_progress)
 
 
-def charted(spec: Spec, wanted: ChartOptions, tell: Tell) -> ChartResults:
-    """The chart of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
-    deadline = None if wanted.time_limit is None else time.monotonic() + wanted.time_limit
-    motion = motion_of(spec, deadline)
-    rows = plan(motion, wanted)
-    tell(0, 1, "reference")
-    referred = refer(motion)
-    runs = ChartRuns(motion, referred, tell).all(rows.rows)
+def make_chart(spec: Spec, options: ChartOptions, report_progress: ReportProgress) -> ChartResults:
+    """Return the chart of a spec. Errors name bodies, joints and sections, but not their location in the file."""
+    deadline = None if options.time_limit is None else time.monotonic() + options.time_limit
+    motion = make_motion(spec, deadline)
+    chart_plan = plan_chart(motion, options)
+    report_progress(0, 1, "reference")
+    verified = find_reference(motion)
+    runs = ChartRunner(motion, verified, report_progress).run_all(chart_plan.rows)
     return ChartResults(
         title=spec.title,
         spec={"path": spec.path, "sha256": spec.sha256},
-        reference=referred.reference,
-        runs=with_front(runs),
+        reference=verified.reference,
+        runs=mark_front(runs),
         size=motion.setup.scene.layout.size,
-        notes=(*([DRIVEN] if motion.determined else []), *rows.notes),
+        notes=(*([DRIVEN_NOTE] if motion.is_determined else []), *chart_plan.notes),
     )

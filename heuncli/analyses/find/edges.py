@@ -1,8 +1,7 @@
-"""Where what can be solved ends: to the last bit of the unknown, for loads grow without bounds towards such an edge.
+"""Locate the ends of the solvable range to the last bit of the unknown: loads grow without bound towards such an end.
 
-Between the last variant that fails and the first that is solved the middle is asked for, or where the course outside
-says that it ends. Where a loop stops closing, the place x goes with the square of what is measured, or of its inverse:
-
+Between the last variant that fails and the first that is solved, the middle is evaluated, or the place where
+extrapolation predicts the end. Where a loop stops closing, the place x is quadratic in the measure, or in its inverse:
     x = a + b u + c u^2      u: the measure, or 1/measure; the edge is where x is extreme
 """
 
@@ -12,82 +11,84 @@ import math
 from collections.abc import Iterator
 
 from heuncli.analyses.find.search import END_OF_SOLVED
-from heuncli.analyses.variants.course import MeasureCourse, Sample, withheld
+from heuncli.analyses.variants.course import MeasureCourse, Sample, withhold
 
-FIRST_SHARE = 0.05  # of the bracket: so far to both sides of where the course says that it ends is asked first
-LEAST_SHARE = 1e-6
-NEAR_SINGULAR = 1e-6  # of the scan's spacing: so near to singular poses their neighbours are looked at
+FIRST_FRACTION = 0.05  # of the bracket: first distance to both sides of the predicted edge
+MIN_FRACTION = 1e-6
+NEAR_SINGULAR = 1e-6  # of the scan's spacing: how close to singular poses edges are narrowed
 
 
 def close_edges(course: MeasureCourse) -> None:
-    """Narrow all ends of what is solved down to neighbouring numbers. Raises SpentError."""
-    while (pair := next(edges(course), None)) is not None:
+    """Narrow all ends of the solvable range down to adjacent numbers. Raises SpentError."""
+    while (pair := next(iter_edges(course), None)) is not None:
         close_edge(course, *pair)
 
 
-def edges(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
-    """A solved sample and its neighbour that is not, between which there is another number."""
-    for _, one, other in course.pairs():
-        if (one.gap is None) != (other.gap is None) and not is_closed(course, one, other):
-            yield (one, other) if one.gap is not None else (other, one)
+def iter_edges(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
+    """Yield pairs of a solved sample and its failed neighbour with another number between them."""
+    for _, left, right in course.iter_pairs():
+        if (left.gap is None) != (right.gap is None) and not is_closed(course, left, right):
+            yield (left, right) if left.gap is not None else (right, left)
 
 
-def is_closed(course: MeasureCourse, one: Sample, other: Sample) -> bool:
-    """Whether the ends are as near to each other as is looked at; one of both is not solved, or withheld."""
-    withheld = one.withheld is not None or other.withheld is not None
-    return abs(other.x - one.x) <= NEAR_SINGULAR * course.spacing if withheld else between(one.x, other.x) is None
+def is_closed(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether an edge is narrow enough; one of the two samples is not solved, or withheld."""
+    withheld = left.withheld_gap is not None or right.withheld_gap is not None
+    return abs(right.x - left.x) <= NEAR_SINGULAR * course.spacing if withheld else find_middle(left.x, right.x) is None
 
 
-def between(one: float, other: float) -> float | None:
-    """The middle of two numbers; None where there is no number between them."""
-    middle = one + 0.5 * (other - one)
-    return middle if min(one, other) < middle < max(one, other) else None
+def find_middle(low: float, high: float) -> float | None:
+    """Return the middle of two numbers; None if there is no number between them."""
+    middle = low + 0.5 * (high - low)
+    return middle if min(low, high) < middle < max(low, high) else None
 
 
-def close_edge(course: MeasureCourse, solved: Sample, failed: Sample) -> None:
-    """Narrow one end down. Raises SpentError."""
-    share, trusted = FIRST_SHARE, True
-    while not is_closed(course, solved, failed):
-        middle = solved.x + 0.5 * (failed.x - solved.x)
-        width = failed.x - solved.x
-        place = foretold(course, solved, width) if trusted and abs(width) < END_OF_SOLVED * course.spacing else None
-        if place is None:
-            solved, failed = asked(course, solved, failed, middle)
-            trusted = True
+def close_edge(course: MeasureCourse, solved: Sample, unsolved: Sample) -> None:
+    """Narrow one edge down. Raises SpentError."""
+    fraction, is_trusted = FIRST_FRACTION, True
+    while not is_closed(course, solved, unsolved):
+        middle = solved.x + 0.5 * (unsolved.x - solved.x)
+        width = unsolved.x - solved.x
+        predicted = (
+            predict_edge(course, solved, width) if is_trusted and abs(width) < END_OF_SOLVED * course.spacing else None
+        )
+        if predicted is None:
+            solved, unsolved = evaluate_between(course, solved, unsolved, middle)
+            is_trusted = True
             continue
-        was = abs(width)
-        for x in (place - share * width, place + share * width):
-            if min(solved.x, failed.x) < x < max(solved.x, failed.x):
-                solved, failed = asked(course, solved, failed, x)
-        trusted = abs(failed.x - solved.x) < 2.5 * share * was
-        share = max(share * share, LEAST_SHARE) if trusted else FIRST_SHARE
+        old_width = abs(width)
+        for x in (predicted - fraction * width, predicted + fraction * width):
+            if min(solved.x, unsolved.x) < x < max(solved.x, unsolved.x):
+                solved, unsolved = evaluate_between(course, solved, unsolved, x)
+        is_trusted = abs(unsolved.x - solved.x) < 2.5 * fraction * old_width
+        fraction = max(fraction * fraction, MIN_FRACTION) if is_trusted else FIRST_FRACTION
 
 
-def asked(course: MeasureCourse, solved: Sample, failed: Sample, x: float) -> tuple[Sample, Sample]:
-    """The two between which the edge lies, after one more place."""
-    found = course.at(x)
-    if failed.withheld is not None and found.singular:
-        found = withheld(found)
-    return (solved, found) if found.gap is None else (found, failed)
+def evaluate_between(course: MeasureCourse, solved: Sample, unsolved: Sample, x: float) -> tuple[Sample, Sample]:
+    """Evaluate one more place and return the two samples between which the edge lies."""
+    sample = course.sample_at(x)
+    if unsolved.withheld_gap is not None and sample.singular:
+        sample = withhold(sample)
+    return (solved, sample) if sample.gap is None else (sample, unsolved)
 
 
-def foretold(course: MeasureCourse, solved: Sample, width: float) -> float | None:
-    """Where the course says that it ends, within the bracket; None where it tells nothing of that."""
+def predict_edge(course: MeasureCourse, solved: Sample, width: float) -> float | None:
+    """Return the edge that the solved samples predict within the bracket; None if they predict none."""
     samples = course.samples
-    k, way = samples.index(solved), -1 if width > 0.0 else 1
-    three = [samples[k + way * j] for j in range(3) if 0 <= k + way * j < len(samples)]
-    if len(three) < 3 or any(sample.gap is None for sample in three):
+    k, direction = samples.index(solved), -1 if width > 0.0 else 1
+    nearest = [samples[k + direction * j] for j in range(3) if 0 <= k + direction * j < len(samples)]
+    if len(nearest) < 3 or any(sample.gap is None for sample in nearest):
         return None
-    m = [(sample.gap or 0.0) + course.value for sample in three]
+    m = [(sample.gap or 0.0) + course.value for sample in nearest]
     if abs(m[0]) > abs(m[1]) > abs(m[2]) > 0.0:
-        m = [1.0 / each for each in m]
+        m = [1.0 / value for value in m]
     if not (m[0] < m[1] < m[2] or m[0] > m[1] > m[2]):
         return None
-    x = [sample.x - solved.x for sample in three]
-    first = (x[1] - x[0]) / (m[1] - m[0])
-    bend = ((x[2] - x[1]) / (m[2] - m[1]) - first) / (m[2] - m[0])
+    x = [sample.x - solved.x for sample in nearest]
+    chord = (x[1] - x[0]) / (m[1] - m[0])
+    bend = ((x[2] - x[1]) / (m[2] - m[1]) - chord) / (m[2] - m[0])
     if bend == 0.0 or not math.isfinite(bend):
         return None
-    slope = first - bend * (m[1] - m[0])  # of x over u, at the solved sample
-    ahead = -0.25 * slope * slope / bend
-    return solved.x + ahead if 0.0 < ahead / width < 1.0 else None
+    slope = chord - bend * (m[1] - m[0])  # of x over u, at the solved sample
+    distance = -0.25 * slope * slope / bend
+    return solved.x + distance if 0.0 < distance / width < 1.0 else None

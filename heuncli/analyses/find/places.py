@@ -1,11 +1,9 @@
-"""The places at which a course meets its value, read from its samples, and how well they are known.
-
-    |x - x0| <= E / |g'|            E: the error of the measure and what is left of g at the place [that of g]
-
-with the slope g' from the neighbours that are well told from the value, less what it may be off by, and no more than
-the chords to them; never further than the next neighbours that lie on one side for certain. Where the course bends at
-the value, or its slope falls towards it as at an inflection, slopes of the neighbours tell nothing of the place itself:
-the crossing is then enclosed, and the place is as far off as its enclosure reaches.
+"""Find the places where a measure meets its target value, from its samples, and the error of each place.
+    |x - x0| <= E / |g'|            E: the error of the measure and the residual of g at the place [that of g]
+The slope g' comes from neighbours clearly off the value, minus its own error, and is no more than the chords to them.
+The place is never farther than the next neighbours that are certainly on one side. Where the measure bends at the
+value, or its slope falls towards it as at an inflection, the neighbours' slopes do not describe the place itself: the
+crossing is then enclosed, and the enclosure is its error.
 """
 
 from __future__ import annotations
@@ -15,31 +13,32 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from heuncli.analyses.find.results import (
-    CourseJump,
     Crossing,
     EdgeKind,
-    Met,
+    MeasureJump,
     MetEdge,
-    OpenBracket,
+    MetStretch,
     Touch,
+    UnresolvedBracket,
     UnsolvedStretch,
 )
-from heuncli.analyses.find.touches import least_distances, touch_at
-from heuncli.analyses.variants.course import APART, MeasureCourse, Sample, slope
+from heuncli.analyses.find.touches import find_touch_range, iter_minima
+from heuncli.analyses.variants.course import MIN_DISTANCE, MeasureCourse, Sample, interpolate_slope
 from heuncli.base.named_tuples import NamedTuple
 
-CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
-SURE = 0.5  # of a slope: what it may be off by
-BENT = 0.5  # of the steeper chord: where the other is less, the course bends
-SAGS = 1.5  # power of the distance with which g grows on all sides: more than that is flat at the place
-ENCLOSE = 2.0  # times E / chord: where a crossing is enclosed
-ENCLOSED = 4.0  # times E / chord: an enclosure that is not flat
+CLEAR_FACTOR = 20.0  # times E: distance from the value of neighbours that give a slope to a tenth
+MAX_SLOPE_ERROR = 0.5  # of a slope: its permitted error
+MIN_CHORD_RATIO = 0.5  # of the steeper chord: if the other is less, the measure bends
+MAX_POWER = 1.5  # largest power of the distance with which g may grow; a larger one is flat at the place
+ENCLOSURE_FACTOR = 2.0  # times E / chord: where a crossing is enclosed
+FLAT_FACTOR = 4.0  # times E / chord: an enclosure that is not flat
 
 
-class KnownSlope(NamedTuple):
-    """What is known of a course at a sample: the least that |g'| may be, and |g''|/2.
+class SlopeEstimate(NamedTuple):
+    """What is known of the slope at a sample: the least |g'| possible, and |g''|/2.
 
-    chord: the least slope of the chords to the neighbours; sure: whether the slopes beside the sample hold up to it.
+    chord: the least slope of the chords to the neighbours
+    is_reliable: whether the neighbours' slopes hold up to the sample
     """
 
     least: float
@@ -47,215 +46,239 @@ class KnownSlope(NamedTuple):
     chord: float
     sure: bool
 
-    def tells(self, size: float) -> bool:
-        """Whether it tells the place well, of an error of that size."""
-        return self.sure and self.least > 0.0 and self.least**2 > 4.0 * self.bend * size / SURE
+    def is_sufficient(self, error: float) -> bool:
+        """Return whether the estimate locates the place well for an error of this size."""
+        return self.is_reliable and self.least > 0.0 and self.least**2 > 4.0 * self.bend * error / MAX_SLOPE_ERROR
 
-    def reach(self, size: float) -> float | None:
-        """How far the place may be from the sample; None: the slope is too small to tell."""
-        under = self.least * self.least - 4.0 * self.bend * size
-        return 2.0 * size / (self.least + math.sqrt(under)) if self.least > 0.0 and under > 0.0 else None
+    def compute_distance(self, error: float) -> float | None:
+        """Return how far the place may be from the sample; None if the slope is too small."""
+        discriminant = self.least * self.least - 4.0 * self.bend * error
+        return 2.0 * error / (self.least + math.sqrt(discriminant)) if self.least > 0.0 and discriminant > 0.0 else None
 
 
 class SideGroup(list[Sample]):
-    """Neighbouring samples of one side."""
+    """Adjacent samples on one side of the value."""
 
     @property
     def side(self) -> int | None:
-        """Their side."""
+        """The side on which the samples lie."""
         return self[0].side
 
 
-def groups(course: MeasureCourse) -> list[SideGroup]:
-    """The samples in groups of one side."""
-    return [SideGroup(members) for _, members in groupby(course.samples, key=lambda sample: sample.side)]
+def group_by_side(course: MeasureCourse) -> list[SideGroup]:
+    """Return the samples in groups on one side of the value."""
+    return [SideGroup(samples) for _, samples in groupby(course.samples, key=lambda sample: sample.side)]
 
 
-def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump | OpenBracket]:
-    """Where the course meets its value, jumps across it, or passes it in a way that is not known."""
-    found = groups(course)
-    for _, middle, _ in least_distances(course):
-        if (reached := touch_at(course, middle)) is not None:
-            yield Touch(middle, *reached, middle.side or 0)
+def iter_meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | MeasureJump | UnresolvedBracket]:
+    """Yield where the measure meets its value, jumps across it, or passes it in an unknown way."""
+    found = group_by_side(course)
+    for _, middle, _ in iter_minima(course):
+        if (ends := find_touch_range(course, middle)) is not None:
+            yield Touch(middle, *ends, middle.side or 0)
     for k, group in enumerate(found):
         before = found[k - 1].side if k else None
         after = found[k + 1].side if k + 1 < len(found) else None
         if group.side == 0:
-            met = met_by(course, group, before, after)
-            if isinstance(met, Touch) and met.side:  # it is between the next that are told from the value
-                met = met._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
-            yield met
+            meeting = classify_group(course, group, before, after)
+            if (
+                isinstance(meeting, Touch) and meeting.side
+            ):  # it lies between the next samples that differ from the value
+                meeting = meeting._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
+            yield meeting
         elif group.side and before and before == -group.side:
-            one, other = found[k - 1][-1], group[0]
-            if (one.x, other.x) in course.jumps:
-                yield CourseJump(one, other)
-            elif (one.x, other.x) in course.steep:
-                yield Crossing(min(one, other, key=_size), other.x - one.x, group.side)
-            elif not course.parted(course.samples.index(one)):
-                yield OpenBracket(one, other)
+            left, right = found[k - 1][-1], group[0]
+            if (left.x, right.x) in course.jumps:
+                yield MeasureJump(left, right)
+            elif (left.x, right.x) in course.steep:
+                yield Crossing(min(left, right, key=_compute_distance), right.x - left.x, group.side)
+            elif not course.is_interrupted(course.samples.index(left)):
+                yield UnresolvedBracket(left, right)
 
 
-def met_by(course: MeasureCourse, group: SideGroup, before: int | None, after: int | None) -> Crossing | Touch:
-    """What samples are that are not told from the value; before, after: the sides beside them."""
-    best = min(group, key=_size)
-    if before and before == after:
-        return Touch(best, group[0].x, group[-1].x, before)
-    if not before and not after:
+def classify_group(
+    course: MeasureCourse, group: SideGroup, previous_side: int | None, next_side: int | None
+) -> Crossing | Touch:
+    """Classify samples that cannot be distinguished from the value, by the sides of the adjacent groups."""
+    best = min(group, key=_compute_distance)
+    if previous_side and previous_side == next_side:
+        return Touch(best, group[0].x, group[-1].x, previous_side)
+    if not previous_side and not next_side:
         return Touch(best, group[0].x, group[-1].x, 0)
-    error, flat = reach(course, group, best)
-    return Crossing(best, error, after if before and after else 0, flat)
+    error, is_flat = estimate_place_error(course, group, best)
+    return Crossing(best, error, next_side if previous_side and next_side else 0, is_flat)
 
 
-def reach(course: MeasureCourse, group: SideGroup, best: Sample) -> tuple[float, bool]:
-    """How far the true place may be from a sample, and whether the slope there is too small to tell."""
-    size = size_at(group, best)
-    limit = max(abs((outer or end).x - best.x) for _, end, outer in enclosure(course, group))
-    found = slope_at(course, group, best, size)
-    if found is None:
+def estimate_place_error(course: MeasureCourse, group: SideGroup, best: Sample) -> tuple[float, bool]:
+    """Return how far the true place may be from a sample, and whether the slope there is too small to determine it."""
+    value_error = compute_value_error(group, best)
+    limit = max(abs((outer or end).x - best.x) for _, end, outer in iter_enclosure(course, group))
+    slope_estimate = estimate_slope(course, group, best, value_error)
+    if slope_estimate is None:
         return limit, True
-    if found.sure:
-        told = found.reach(size)
-        return (limit, True) if told is None else (min(limit, told), False)
-    return limit, limit * found.chord > ENCLOSED * size
+    if slope_estimate.is_reliable:
+        distance = slope_estimate.compute_distance(value_error)
+        return (limit, True) if distance is None else (min(limit, distance), False)
+    return limit, limit * slope_estimate.chord > FLAT_FACTOR * value_error
 
 
-def size_at(group: SideGroup, best: Sample) -> float:
-    """E: the error of the measure, and what is left of it."""
-    return max(sample.error for sample in group) + _size(best)
+def compute_value_error(group: SideGroup, best: Sample) -> float:
+    """Return E: the error of the measure plus its residual."""
+    return max(sample.error for sample in group) + _compute_distance(best)
 
 
-def enclosure(course: MeasureCourse, group: SideGroup) -> Iterator[tuple[int, Sample, Sample | None]]:
-    """Both ways the end of a group, and the next sample that lies on a side for certain, if there is one."""
-    for way, end in ((-1, group[0]), (1, group[-1])):
-        yield way, end, next(iter(neighbours(course, group, way, 0.0)), None)
+def iter_enclosure(course: MeasureCourse, group: SideGroup) -> Iterator[tuple[int, Sample, Sample | None]]:
+    """Yield for both directions the end of a group and the next sample that is certainly on one side, or None."""
+    for direction, end in ((-1, group[0]), (1, group[-1])):
+        yield direction, end, next(iter(find_neighbours(course, group, direction, 0.0)), None)
 
 
-def slope_at(course: MeasureCourse, group: SideGroup, best: Sample, size: float) -> KnownSlope | None:
-    """What is known of the slope at a sample; None where that is too little."""
-    left, right = (neighbours(course, group, way, CLEAR * size) for way in (-1, 1))
-    whole = [*reversed(left), best, *right]
-    if len(whole) < 3:
+def estimate_slope(course: MeasureCourse, group: SideGroup, best: Sample, value_error: float) -> SlopeEstimate | None:
+    """Estimate the slope at a sample; None if there are too few neighbours."""
+    left, right = (find_neighbours(course, group, direction, CLEAR_FACTOR * value_error) for direction in (-1, 1))
+    all_samples = [*reversed(left), best, *right]
+    if len(all_samples) < 3:
         return None
-    # the parabola through the nearest, and the cubics with one more: by what they differ the slope may be off
-    near = [*left[: 1 if right else 2], *right[: 1 if left else 2], best]
-    wider = [sorted({*near, more}) for more in whole if more not in near]
-    slopes = [slope(sorted(each), best.x) for each in (near, *wider)]
-    noise = max((sample.error + best.error) / abs(sample.x - best.x) for sample in near if sample is not best)
-    doubt = noise + max((abs(each - slopes[0]) for each in slopes[1:]), default=0.0)
-    a, b, c = sorted(near)
-    bend = ((_gap(c) - _gap(b)) / (c.x - b.x) - (_gap(b) - _gap(a)) / (b.x - a.x)) / (c.x - a.x)
-    chords = [abs((_gap(side[0]) - _gap(best)) / (side[0].x - best.x)) for side in (left, right) if side]
-    sure = bool(wider) and min(chords) >= BENT * max(*chords, abs(slopes[0])) and not sags(best, left, right)
+    # parabola through the nearest, and cubics with one more: their difference is the error of the slope
+    nearest = [*left[: 1 if right else 2], *right[: 1 if left else 2], best]
+    larger_sets = [sorted({*nearest, extra}) for extra in all_samples if extra not in nearest]
+    slopes = [interpolate_slope(sorted(points), best.x) for points in (nearest, *larger_sets)]
+    noise = max((sample.error + best.error) / abs(sample.x - best.x) for sample in nearest if sample is not best)
+    slope_error = noise + max((abs(points - slopes[0]) for points in slopes[1:]), default=0.0)
+    a, b, c = sorted(nearest)
+    bend = ((_get_gap(c) - _get_gap(b)) / (c.x - b.x) - (_get_gap(b) - _get_gap(a)) / (b.x - a.x)) / (c.x - a.x)
+    chords = [abs((_get_gap(side[0]) - _get_gap(best)) / (side[0].x - best.x)) for side in (left, right) if side]
+    is_reliable = (
+        bool(larger_sets)
+        and min(chords) >= MIN_CHORD_RATIO * max(*chords, abs(slopes[0]))
+        and not is_flattening(best, left, right)
+    )
     chord = min(chords) - noise
-    return KnownSlope(min(abs(slopes[0]) - doubt, chord), abs(bend), chord, sure)
+    return SlopeEstimate(min(abs(slopes[0]) - slope_error, chord), abs(bend), chord, is_reliable)
 
 
-def sags(best: Sample, *sides: list[Sample]) -> bool:
-    """Whether g grows on all sides faster than the distance: its slope falls towards the place."""
+def is_flattening(best: Sample, *sides: list[Sample]) -> bool:
+    """Return whether g grows faster than the distance on all sides, so that its slope falls towards the place."""
     powers = [
-        math.log(_size(far) / _size(near)) / math.log((far.x - best.x) / (near.x - best.x))
+        math.log(_compute_distance(far) / _compute_distance(near)) / math.log((far.x - best.x) / (near.x - best.x))
         for near, far in (side for side in sides if len(side) == 2)
     ]
-    return min(powers, default=0.0) > SAGS
+    return min(powers, default=0.0) > MAX_POWER
 
 
-def neighbours(course: MeasureCourse, group: SideGroup, way: int, clear: float) -> list[Sample]:
-    """Up to two samples beside a group, the nearest first, of its stretch: off the value by more than `clear`."""
+def find_neighbours(course: MeasureCourse, group: SideGroup, direction: int, min_size: float) -> list[Sample]:
+    """Return up to two samples next to a group, nearest first, in the same stretch and farther than `min_size` from the
+    value.
+    """
     samples = course.samples
-    k = samples.index(group[0] if way < 0 else group[-1])
+    k = samples.index(group[0] if direction < 0 else group[-1])
     found: list[Sample] = []
-    while len(found) < 2 and 0 <= k + way < len(samples) and not course.parted(k + min(way, 0)):
-        k += way
+    while len(found) < 2 and 0 <= k + direction < len(samples) and not course.is_interrupted(k + min(direction, 0)):
+        k += direction
         sample = samples[k]
-        apart = not found or abs(sample.x - found[0].x) >= APART * abs(found[0].x - group[0].x)
-        if sample.side and _size(sample) >= clear and apart:
+        is_separate = not found or abs(sample.x - found[0].x) >= MIN_DISTANCE * abs(found[0].x - group[0].x)
+        if sample.side and _compute_distance(sample) >= min_size and is_separate:
             found.append(sample)
     return found
 
 
-def doubtful(course: MeasureCourse) -> Iterator[float]:
-    """Where to ask beside crossings whose slope is not well known: by these a crossing is enclosed."""
-    found = groups(course)
+def iter_enclosing_places(course: MeasureCourse) -> Iterator[float]:
+    """Yield places to evaluate near crossings with an uncertain slope, to enclose them."""
+    found = group_by_side(course)
     for k, group in enumerate(found):
-        before, after = (found[i].side if 0 <= i < len(found) else None for i in (k - 1, k + 1))
-        if group.side != 0 or before == after or not (before or after):
+        previous_side, next_side = (found[i].side if 0 <= i < len(found) else None for i in (k - 1, k + 1))
+        if group.side != 0 or previous_side == next_side or not (previous_side or next_side):
             continue
-        best = min(group, key=_size)
-        size = size_at(group, best)
-        known = slope_at(course, group, best, size)
-        if known is not None and known.tells(size):
+        best = min(group, key=_compute_distance)
+        value_error = compute_value_error(group, best)
+        slope_estimate = estimate_slope(course, group, best, value_error)
+        if slope_estimate is not None and slope_estimate.is_sufficient(value_error):
             continue
-        near = ENCLOSE * size / known.chord if known is not None and known.chord > 0.0 else math.inf
-        for way, end, outer in enclosure(course, group):
-            if outer is None or abs(outer.x - best.x) * ENCLOSE <= near * ENCLOSED:
+        distance = (
+            ENCLOSURE_FACTOR * value_error / slope_estimate.chord
+            if slope_estimate is not None and slope_estimate.chord > 0.0
+            else math.inf
+        )
+        for direction, end, outer in iter_enclosure(course, group):
+            if outer is None or abs(outer.x - best.x) * ENCLOSURE_FACTOR <= distance * FLAT_FACTOR:
                 continue
             half = 0.5 * (end.x + outer.x)
-            there = best.x + way * near
-            yield there if way * end.x < way * there < way * half else half
+            place = best.x + direction * distance
+            yield place if direction * end.x < direction * place < direction * half else half
 
 
-def unsolved(course: MeasureCourse) -> Iterator[UnsolvedStretch]:
-    """Where there is no measure."""
+def iter_unsolved(course: MeasureCourse) -> Iterator[UnsolvedStretch]:
+    """Yield the stretches without a measure."""
     samples = course.samples
-    for known, members in groupby(range(len(samples)), key=lambda i: samples[i].gap is not None):
-        if known:
+    for is_solved, group in groupby(range(len(samples)), key=lambda i: samples[i].gap is not None):
+        if is_solved:
             continue
-        places = list(members)
-        low = samples[places[0] - 1].x if places[0] else course.low
-        high = samples[places[-1] + 1].x if places[-1] + 1 < len(samples) else course.high
-        reasons = [samples[i].why for i in places]
+        indices = list(group)
+        low = samples[indices[0] - 1].x if indices[0] else course.low
+        high = samples[indices[-1] + 1].x if indices[-1] + 1 < len(samples) else course.high
+        reasons = [samples[i].why for i in indices]
         code, reason = max(dict.fromkeys(reasons), key=lambda why: sum(each[0] == why[0] for each in reasons))
-        apart = tuple(samples[i] for i in places if samples[i].withheld is not None)
-        ends = samples[places[0]].x, samples[places[-1]].x
-        yield UnsolvedStretch(low, high, code, reason, len(places), *ends, apart)
+        withheld = tuple(samples[i] for i in indices if samples[i].withheld_gap is not None)
+        ends = samples[indices[0]].x, samples[indices[-1]].x
+        yield UnsolvedStretch(low, high, code, reason, len(indices), *ends, withheld)
 
 
-def met(course: MeasureCourse, wanted: int, *, equal: bool) -> Iterator[Met]:
-    """The stretches in which the course lies on a side; equal: the value itself meets the condition, too."""
-    found = groups(course)
-    open_: MetEdge | None = None
+def iter_met(course: MeasureCourse, side: int, *, includes_value: bool) -> Iterator[MetStretch]:
+    """Yield the stretches where the measure lies on a given side.
+
+    includes_value: whether the value itself meets the condition
+    """
+    found = group_by_side(course)
+    start_edge: MetEdge | None = None
     for k, group in enumerate(found):
-        if group.side != wanted:
+        if group.side != side:
             continue
-        before, after = (found[i] if 0 <= i < len(found) else None for i in (k - 1, k + 1))
-        low, high = edge(course, group[0], before), edge(course, group[-1], after)
-        start = open_ or low
-        beyond = found[k + 2].side if k + 2 < len(found) else None
-        open_ = start if equal and high.kind == "touch" and beyond == wanted else None
-        if open_ is None:
-            yield Met(start, high)
+        previous, following = (found[i] if 0 <= i < len(found) else None for i in (k - 1, k + 1))
+        low, high = make_edge(course, group[0], previous), make_edge(course, group[-1], following)
+        start = start_edge or low
+        far_side = found[k + 2].side if k + 2 < len(found) else None
+        start_edge = start if includes_value and high.kind == "touch" and far_side == side else None
+        if start_edge is None:
+            yield MetStretch(start, high)
 
 
-def edge(course: MeasureCourse, last: Sample, beside: SideGroup | None) -> MetEdge:
-    """Where a stretch ends whose last sample that is."""
-    if beside is None:
-        return MetEdge(last.x, 0.0, "end")
-    if beside.side is None:
-        failed = beside[0] if beside[0].x > last.x else beside[-1]
-        return MetEdge(last.x, abs(failed.x - last.x), "unsolved")
-    if beside.side:
-        pair = tuple(sorted((last.x, (beside[0] if beside[0].x > last.x else beside[-1]).x)))
+def make_edge(course: MeasureCourse, sample: Sample, neighbour_group: SideGroup | None) -> MetEdge:
+    """Return the end of a stretch whose last sample is given."""
+    if neighbour_group is None:
+        return MetEdge(sample.x, 0.0, "end")
+    if neighbour_group.side is None:
+        unsolved = neighbour_group[0] if neighbour_group[0].x > sample.x else neighbour_group[-1]
+        return MetEdge(sample.x, abs(unsolved.x - sample.x), "unsolved")
+    if neighbour_group.side:
+        pair = tuple(
+            sorted((sample.x, (neighbour_group[0] if neighbour_group[0].x > sample.x else neighbour_group[-1]).x))
+        )
         kind: EdgeKind = "crossing" if pair in course.steep else "jump" if pair in course.jumps else "bracket"
-        return MetEdge(last.x, pair[1] - pair[0], kind)
-    best = min(beside, key=_size)
-    if at_end(course, beside):
-        return MetEdge((beside[-1] if best.x > last.x else beside[0]).x, 0.0, "end")
-    found = next(each for each in meetings(course) if isinstance(each, Crossing | Touch) and each.sample is best)
-    if isinstance(found, Touch):
-        return MetEdge(best.x, found.high - found.low, "touch")
-    return MetEdge(best.x, found.error, "crossing")
+        return MetEdge(sample.x, pair[1] - pair[0], kind)
+    best = min(neighbour_group, key=_compute_distance)
+    if is_at_end(course, neighbour_group):
+        return MetEdge((neighbour_group[-1] if best.x > sample.x else neighbour_group[0]).x, 0.0, "end")
+    meeting = next(each for each in iter_meetings(course) if isinstance(each, Crossing | Touch) and each.sample is best)
+    if isinstance(meeting, Touch):
+        return MetEdge(best.x, meeting.high - meeting.low, "touch")
+    return MetEdge(best.x, meeting.error, "crossing")
 
 
-def at_end(course: MeasureCourse, group: SideGroup) -> bool:
-    """Whether what is not told from the value lies at an end of the interval, or of what is solved."""
+def is_at_end(course: MeasureCourse, group: SideGroup) -> bool:
+    """Return whether a group lies at an end of the interval, or of the solvable range."""
     samples = course.samples
-    first, last = samples.index(group[0]), samples.index(group[-1])
-    return first == 0 or last == len(samples) - 1 or samples[first - 1].gap is None or samples[last + 1].gap is None
+    first_index, last_index = samples.index(group[0]), samples.index(group[-1])
+    return (
+        first_index == 0
+        or last_index == len(samples) - 1
+        or samples[first_index - 1].gap is None
+        or samples[last_index + 1].gap is None
+    )
 
 
-def _size(sample: Sample) -> float:
-    return abs(_gap(sample))
+def _compute_distance(sample: Sample) -> float:
+    return abs(_get_gap(sample))
 
 
-def _gap(sample: Sample) -> float:
+def _get_gap(sample: Sample) -> float:
     return sample.gap or 0.0

@@ -1,4 +1,6 @@
-"""What is found of a measure over an interval: where it meets its value, jumps across it, comes near it, or is not."""
+"""Findings about a measure over an interval: where it meets its value, jumps across it, comes near it, or does not
+exist.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,11 @@ EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved", "bracket"]
 
 
 class FindCondition(NamedTuple):
-    """A condition in SI, with the SI unit of its measure (empty: none); own: the unit in which the value was given."""
+    """A condition in SI units.
+
+    unit: SI unit of the measure; empty if it has none
+    given_unit: unit in which the value was given
+    """
 
     text: str
     relation: Sign
@@ -22,10 +28,12 @@ class FindCondition(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """Where the measure passes its value, within an error; sample: the variant there.
+    """A place where the measure passes its value, with its error.
 
-    way: 1 it rises through it, -1 it falls; 0: at an end of what is known, where only one side is; flat: its slope is
-    below what its error makes of it there, and the error of the place is that of the neighbours that are told from it.
+    sample: the variant there
+    direction: 1 if it rises through the value, -1 if it falls; 0 at an end of the known range
+    flat: the slope there is within its own error; the error of the place then spans to the neighbours certainly off the
+    value
     """
 
     sample: Sample
@@ -35,10 +43,11 @@ class Crossing(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """Where the measure is not told from its value and lies on one side of it around: at its best, from low to high.
+    """A place where the measure cannot be distinguished from its value and lies on one side of it on both ends.
 
-    low, high: the next places on both sides at which it is told from the value again, or the ends of what is known;
-    side: on which it lies around; 0: it is not told from the value wherever it is known.
+    sample: the nearest one
+    low, high: next places that are distinguishable from the value, or the ends of the known range
+    side: the side around it; 0 if it is indistinguishable wherever it is known
     """
 
     sample: Sample
@@ -47,31 +56,32 @@ class Touch(NamedTuple):
     side: int
 
 
-class CourseJump(NamedTuple):
-    """Neighbours between which the measure jumps across its value."""
+class MeasureJump(NamedTuple):
+    """Adjacent samples between which the measure jumps across its value."""
 
     before: Sample
     after: Sample
 
 
-class OpenBracket(NamedTuple):
-    """Neighbours on different sides of the value between which the search did not go on: a crossing, or a jump."""
+class UnresolvedBracket(NamedTuple):
+    """Adjacent samples on different sides of the value where the search stopped: a crossing or a jump."""
 
     before: Sample
     after: Sample
 
 
-class NotExcluded(NamedTuple):
-    """Places on one side of the value between which samples and their errors do not exclude that it is met."""
+class PossibleMeeting(NamedTuple):
+    """Samples on one side of the value between which samples and errors do not exclude that it is met."""
 
     before: Sample
     after: Sample
 
 
 class UnsolvedStretch(NamedTuple):
-    """Where there is no measure, between the last places at which there is one: why, and how many variants tell it.
+    """A stretch without a measure, between the last places that have one: the reason, and how many variants failed.
 
-    first, last: of the variants that fail; withheld: the variants of singular poses among them.
+    first, last: the outermost variants that fail
+    withheld: variants at singular poses among them
     """
 
     low: float
@@ -85,34 +95,35 @@ class UnsolvedStretch(NamedTuple):
 
 
 class MetEdge(NamedTuple):
-    """An end of where a condition is met: its place, within an error, and what it is."""
+    """An end of a stretch where a condition is met: its place, the error of the place, and its kind."""
 
     x: float
     error: float
     kind: EdgeKind
 
 
-class Met(NamedTuple):
+class MetStretch(NamedTuple):
     """A stretch in which an inequality is met."""
 
     low: MetEdge
     high: MetEdge
 
 
-class CourseFindings(NamedTuple):
-    """All that was found, in the order of the interval.
+class IntervalFindings(NamedTuple):
+    """All findings, in the order of the interval.
 
-    least, greatest: of what is known, refined where nothing is met (refined); spacing: of the scan; complete: whether
-    all was asked that was wanted.
+    least, greatest: extremes of the known range, refined if the value is met nowhere (is_refined)
+    spacing: spacing of the scan
+    is_complete: whether the search ended before its limit of evaluations
     """
 
     crossings: tuple[Crossing, ...]
     touches: tuple[Touch, ...]
-    jumps: tuple[CourseJump, ...]
-    brackets: tuple[OpenBracket, ...]
-    not_excluded: tuple[NotExcluded, ...]
+    jumps: tuple[MeasureJump, ...]
+    brackets: tuple[UnresolvedBracket, ...]
+    not_excluded: tuple[PossibleMeeting, ...]
     unsolved: tuple[UnsolvedStretch, ...]
-    met: tuple[Met, ...]
+    met: tuple[MetStretch, ...]
     least: Sample | None
     greatest: Sample | None
     refined: bool
@@ -122,5 +133,5 @@ class CourseFindings(NamedTuple):
 
     @property
     def is_met_nowhere(self) -> bool:
-        """Whether the samples allow to say that the value is met nowhere."""
-        return self.complete and not (self.crossings or self.touches or self.brackets or self.not_excluded)
+        """Whether the samples show that the value is met nowhere."""
+        return self.is_complete and not (self.crossings or self.touches or self.brackets or self.not_excluded)

@@ -1,9 +1,9 @@
-"""Where a course may meet its value: a scan, and more places wherever what lies between two is not yet certain.
+"""Search where a measure may meet its value: a scan, and more places wherever the behaviour between two is uncertain.
 
-A place is asked where the neighbours lie on different sides (a crossing or a jump is closed in on), where the course
-between neighbours of one side may come back to the value (an extreme that touches it, two crossings near each other),
-and where what can be solved ends. That the course does not come back is certain if what is expected between the
-neighbours, less what that may be off by, stays on their side.
+A place is evaluated between neighbours on different sides (a crossing or a jump is enclosed), between neighbours on one
+side where the measure may return to the value (an extreme that touches it, two close crossings), and at the ends of the
+solvable range. The measure certainly does not return if the predicted values between the neighbours, reduced by their
+error, stay on that side.
 """
 
 from __future__ import annotations
@@ -14,320 +14,345 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.analyses.find.poles import is_far, place_of_hidden_pole
+from heuncli.analyses.find.poles import find_hidden_pole, is_far_off
 from heuncli.analyses.variants.course import (
     DISTRUST,
     GOLDEN,
-    MOST_DISTRUST,
+    MAX_DISTRUST,
     NOISE,
-    Between,
+    CoursePrediction,
     MeasureCourse,
     Sample,
-    polynomial,
+    interpolate,
 )
-from heuncli.analyses.variants.course_extremes import place_inside
+from heuncli.analyses.variants.course_extremes import clip_inside
 
-END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: nearer to where variants begin to fail edges.py looks
-NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: nearer to a jump or an edge the course is never certain
-LESS = 0.25  # of the gap that is left: an interpolation that gains less than that is followed by a halving
-STEEP = 10.0  # times what the slope outside leads to expect: more than that across the narrowest bracket is a jump
-WIDER = 1000.0  # times the narrowest bracket: another one, across which a jump is as large
-PROVES = 10.0  # times the narrowest bracket: what is no wider proves no jump
-KEPT = 0.8  # of what the course changes by across that: less across the narrowest one is no jump
-CHECKED_OFF = 0.1  # of an interval of the scan: so far off its middle it is tried, so that no wave hides in their beat
-GROWTH = 2.0  # times what a peak is expected to rise by: as far it may
+END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: closer to failing variants edges.py takes over
+NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: closer to a jump or an edge predictions are never certain
+MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
+MAX_STEEPNESS = 10.0  # times the change predicted by the slope outside: more across the narrowest bracket is a jump
+WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
+MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
+MIN_JUMP_RATIO = 0.8  # of the change across the wide bracket: less across the narrowest one is no jump
+CHECK_OFFSET = 0.1  # of a scan interval: offset from its middle, so that no wave is hidden by aliasing
+PEAK_GROWTH = 2.0  # times the predicted rise of a peak: its possible rise
 
 
 def search(course: MeasureCourse) -> None:
-    """Ask until it is certain where the value is met. Raises SpentError."""
+    """Evaluate places until it is certain where the value is met. Raises SpentError."""
     while True:
-        close_all(course)
-        i = widest(course)
+        narrow_all(course)
+        i = find_widest_uncertain(course)
         if i is None:
             break
-        one, other = course.samples[i], course.samples[i + 1]
-        course.given_up.add((one.x, other.x))
-        if one.gap is None or other.gap is None:
-            course.at(0.5 * (one.x + other.x))
-        elif (x := place_of_peak(course, i)) is not None:
-            course.look(x)
+        left, right = course.samples[i], course.samples[i + 1]
+        course.given_up.add((left.x, right.x))
+        if left.gap is None or right.gap is None:
+            course.sample_at(0.5 * (left.x + right.x))
+        elif (x := find_possible_peak(course, i)) is not None:
+            course.sample_and_learn(x)
         else:
-            course.look(place_between(one, other, course.between(i)))
+            course.sample_and_learn(choose_place(left, right, course.predict(i)))
 
 
-def close_all(course: MeasureCourse) -> None:
-    """Close in on all crossings and jumps that neighbours on different sides tell of. Raises SpentError."""
-    while (i := next(crossed(course), None)) is not None:
-        close_in(course, i)
+def narrow_all(course: MeasureCourse) -> None:
+    """Enclose all crossings and jumps between neighbours on different sides. Raises SpentError."""
+    while (i := next(iter_unresolved_pairs(course), None)) is not None:
+        narrow_pair(course, i)
 
 
-def crossed(course: MeasureCourse) -> Iterator[int]:
-    """Neighbours on different sides, between which neither a crossing nor a jump is known."""
-    for i, one, other in course.pairs():
-        known = (one.x, other.x) in course.steep or course.parted(i)
-        if not known and one.side and other.side and one.side != other.side:
+def iter_unresolved_pairs(course: MeasureCourse) -> Iterator[int]:
+    """Yield neighbours on different sides between which neither a crossing nor a jump is known yet."""
+    for i, left, right in course.iter_pairs():
+        is_known = (left.x, right.x) in course.steep or course.is_interrupted(i)
+        if not is_known and left.side and right.side and left.side != right.side:
             yield i
 
 
-def widest(course: MeasureCourse) -> int | None:
-    """The widest two neighbours between which it is not certain what happens; None: there are none."""
-    ends = ends_of_course(course)
-    pairs = [(other.x - one.x, -i) for i, one, other in course.pairs() if (one.x, other.x) not in course.given_up]
+def find_widest_uncertain(course: MeasureCourse) -> int | None:
+    """Return the widest pair of neighbours with uncertain behaviour between them; None if there is none."""
+    ends = find_range_ends(course)
+    pairs = [
+        (right.x - left.x, -i) for i, left, right in course.iter_pairs() if (left.x, right.x) not in course.given_up
+    ]
     for _, i in sorted(pairs, reverse=True):
-        around = (*(sample.x for sample in course.samples[max(-i - 2, 0) : 4 - i]), course.distrust, len(ends))
-        if around in course.certain:
+        surroundings = (*(sample.x for sample in course.samples[max(-i - 2, 0) : 4 - i]), course.distrust, len(ends))
+        if surroundings in course.certain:
             continue
-        if unsure(course, -i, ends):
+        if is_uncertain(course, -i, ends):
             return -i
-        course.certain.add(around)
+        course.certain.add(surroundings)
     return None
 
 
-def unsure(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
-    """Whether a place between two neighbours is to be asked; ends: ends_of_course."""
-    one, other = course.samples[i], course.samples[i + 1]
-    width = other.x - one.x
-    if one.gap is None or other.gap is None:
-        return (one.gap is None) != (other.gap is None) and width > END_OF_SOLVED * course.spacing
-    if course.parted(i) or width <= 2.0 * course.finest:
+def is_uncertain(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
+    """Return whether a place between two neighbours must be evaluated.
+
+    ends: result of `find_range_ends`
+    """
+    left, right = course.samples[i], course.samples[i + 1]
+    width = right.x - left.x
+    if left.gap is None or right.gap is None:
+        return (left.gap is None) != (right.gap is None) and width > END_OF_SOLVED * course.spacing
+    if course.is_interrupted(i) or width <= 2.0 * course.finest:
         return False
-    if place_of_peak(course, i) is not None:
+    if find_possible_peak(course, i) is not None:
         return True
-    if near_jump(course, one, other, ends) or is_far(course, one, other):
+    if is_near_jump(course, left, right, ends) or is_far_off(course, left, right):
         return False
-    expected = course.between(i)
-    side, error = one.side or other.side, max(one.error, other.error)
-    if not side:  # both meet it: does all between them?
-        return bool((np.abs(expected.gaps) + expected.off > NOISE * error).any())
-    nearest = side * expected.gaps - expected.off
-    return bool((nearest <= (error if one.side == other.side else -NOISE * error)).any())
+    prediction = course.predict(i)
+    side, error = left.side or right.side, max(left.error, right.error)
+    if not side:  # both meet the value: do all places between?
+        return bool((np.abs(prediction.gaps) + prediction.uncertainty > NOISE * error).any())
+    nearest = side * prediction.gaps - prediction.uncertainty
+    return bool((nearest <= (error if left.side == right.side else -NOISE * error)).any())
 
 
 def check_scan(course: MeasureCourse) -> None:
-    """Ask once more in each interval of the scan that is worth a try.
+    """Evaluate one more place in each interval of the scan that may hide a wave.
 
-    What differs from what was expected raises the distrust, with which the whole course is looked at again; and both
-    parts of that interval are tried in turn. Raises SpentError.
+    A deviation from the prediction raises the distrust, with which the whole range is examined again; both parts of the
+    interval are then tried in turn. Raises SpentError.
     """
-    known = [sample.x for sample in course.samples]
-    intervals = [pair for pair in pairwise(course.scanned) if bisect(known, pair[0]) == bisect_left(known, pair[1])]
+    places = [sample.x for sample in course.samples]
+    intervals = [pair for pair in pairwise(course.scanned) if bisect(places, pair[0]) == bisect_left(places, pair[1])]
     while intervals:
         low, high = intervals.pop()
-        i = next(i for i, one, _ in course.pairs() if one.x == low)
-        if course.samples[i + 1].x != high or high - low <= NEAR_JUMP * course.spacing or not is_worth_a_try(course, i):
+        i = next(i for i, one, _ in course.iter_pairs() if one.x == low)
+        if course.samples[i + 1].x != high or high - low <= NEAR_JUMP * course.spacing or not may_hide_wave(course, i):
             continue
-        x = low + (high - low) * (0.5 + CHECKED_OFF * (2.0 * (len(known) * GOLDEN % 1.0) - 1.0))
-        expected = course.between(i, np.array([x]))
-        found = course.look(x)
-        known.append(x)
-        off = float(expected.off[0]) * DISTRUST / course.distrust
-        if found.gap is not None and abs(found.gap - float(expected.gaps[0])) > off + expected.noise + found.error:
+        x = low + (high - low) * (0.5 + CHECK_OFFSET * (2.0 * (len(places) * GOLDEN % 1.0) - 1.0))
+        prediction = course.predict(i, np.array([x]))
+        evaluated = course.sample_and_learn(x)
+        places.append(x)
+        prediction_error = float(prediction.uncertainty[0]) * DISTRUST / course.distrust
+        if (
+            evaluated.gap is not None
+            and abs(evaluated.gap - float(prediction.gaps[0])) > prediction_error + prediction.noise + evaluated.error
+        ):
             intervals += [(low, x), (x, high)]
 
 
-def is_worth_a_try(course: MeasureCourse, i: int) -> bool:
-    """Whether two neighbours may hide a wave that meets the value, were it off by MOST_DISTRUST times as much."""
-    one, other = course.samples[i], course.samples[i + 1]
-    if course.parted(i) or not one.side or one.side != other.side:
-        return False
-    if not bends_both_ways(course, i):
-        return False
-    expected = course.between(i)
-    nearest = one.side * expected.gaps - MOST_DISTRUST / course.distrust * expected.off
-    return bool((nearest <= max(one.error, other.error)).any())
-
-
-def bends_both_ways(course: MeasureCourse, i: int) -> bool:
-    """Whether the four samples about two neighbours bend to one side and then to the other: a wave hides there, or not.
-
-    What bends one way throughout is followed by its polynomials, or by its logarithm.
+def may_hide_wave(course: MeasureCourse, i: int) -> bool:
+    """Return whether two neighbours may hide a wave that meets the value, if the prediction's error were MOST_DISTRUST
+    times as large.
     """
-    left, right = course.beside(i, -1), course.beside(i, 1)
-    four = [
+    left, right = course.samples[i], course.samples[i + 1]
+    if course.is_interrupted(i) or not left.side or left.side != right.side:
+        return False
+    if not changes_curvature(course, i):
+        return False
+    prediction = course.predict(i)
+    nearest = left.side * prediction.gaps - MAX_DISTRUST / course.distrust * prediction.uncertainty
+    return bool((nearest <= max(left.error, right.error)).any())
+
+
+def changes_curvature(course: MeasureCourse, i: int) -> bool:
+    """Return whether the four samples around two neighbours change the sign of their curvature.
+
+    Curvature of one sign is followed by the polynomials, or by the logarithm.
+    """
+    left, right = course.find_neighbours(i, -1), course.find_neighbours(i, 1)
+    samples = [
         *reversed(left[: 1 if right else 2]), course.samples[i], course.samples[i + 1], *right[: 1 if left else 2],
     ]  # fmt: skip
-    slopes = [((b.gap or 0.0) - (a.gap or 0.0)) / (b.x - a.x) for a, b in pairwise(four)]
-    bends = [after - before for before, after in pairwise(slopes)]
-    return len(bends) < 2 or bends[0] * bends[-1] < 0.0
+    slopes = [((b.gap or 0.0) - (a.gap or 0.0)) / (b.x - a.x) for a, b in pairwise(samples)]
+    curvatures = [after - before for before, after in pairwise(slopes)]
+    return len(curvatures) < 2 or curvatures[0] * curvatures[-1] < 0.0
 
 
-def not_excluded(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
-    """Stretches of one side in which the samples and their errors leave it open whether the value is met.
+def iter_possible_meetings(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
+    """Yield stretches on one side where samples and their errors do not exclude that the value is met.
 
-    Unlike in `unsure`, what polynomials differ by within the noise counts: the search gains nothing by asking there,
-    and yet the course may come to the value. Ends that lead to a crossing or a touch that is told are left out.
+    Unlike in `is_uncertain`, differences between polynomials within the noise count: more evaluations would not help,
+    and yet the measure may reach the value. Ends that lead to a reported crossing or touch are left out.
     """
-    ends = ends_of_course(course)
-    open_: tuple[Sample, Sample] | None = None
-    for i, one, other in course.pairs():
-        if not (one.side and one.side == other.side and not course.parted(i) and is_open(course, i, ends)):
-            if open_ is not None:
-                yield open_
-            open_ = None
+    ends = find_range_ends(course)
+    stretch: tuple[Sample, Sample] | None = None
+    for i, left, right in course.iter_pairs():
+        if not (
+            left.side and left.side == right.side and not course.is_interrupted(i) and may_meet_value(course, i, ends)
+        ):
+            if stretch is not None:
+                yield stretch
+            stretch = None
         else:
-            open_ = (open_[0] if open_ is not None else one, other)
-    if open_ is not None:
-        yield open_
+            stretch = (stretch[0] if stretch is not None else left, right)
+    if stretch is not None:
+        yield stretch
 
 
-def is_open(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
-    """Whether the course may meet the value between two neighbours of one side; ends: ends_of_course."""
-    one, other = course.samples[i], course.samples[i + 1]
-    if is_far(course, one, other) or near_jump(course, one, other, ends) or leads_to_a_meeting(course, i):
+def may_meet_value(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
+    """Return whether the measure may meet its value between two neighbours on one side.
+
+    ends: result of `find_range_ends`
+    """
+    left, right = course.samples[i], course.samples[i + 1]
+    if is_far_off(course, left, right) or is_near_jump(course, left, right, ends) or leads_to_meeting(course, i):
         return False
-    expected = course.between(i)
-    nearest = (one.side or 0) * expected.gaps - expected.most_off
-    return bool((nearest <= 0.0).any()) or place_of_peak(course, i) is not None
+    prediction = course.predict(i)
+    nearest = (left.side or 0) * prediction.gaps - prediction.total_uncertainty
+    return bool((nearest <= 0.0).any()) or find_possible_peak(course, i) is not None
 
 
-def leads_to_a_meeting(course: MeasureCourse, i: int) -> bool:
-    """Whether the course falls between two neighbours towards one beside them that is not told from the value."""
+def leads_to_meeting(course: MeasureCourse, i: int) -> bool:
+    """Return whether the measure falls between two neighbours towards an outer one that meets the value."""
     samples = course.samples
-    for near, far, beside in ((i, i + 1, i - 1), (i + 1, i, i + 2)):
-        is_met = 0 <= beside < len(samples) and samples[beside].side != samples[near].side
+    for near, far, outer in ((i, i + 1, i - 1), (i + 1, i, i + 2)):
+        is_met = 0 <= outer < len(samples) and samples[outer].side != samples[near].side
         if is_met and abs(samples[near].gap or 0.0) < abs(samples[far].gap or 0.0):
             return True
     return False
 
 
-def ends_of_course(course: MeasureCourse) -> list[tuple[float, float]]:
-    """The neighbours between which the course jumps, is upright, or ends."""
-    ends = [(a.x, b.x) for _, a, b in course.pairs() if (a.gap is None) != (b.gap is None)]
+def find_range_ends(course: MeasureCourse) -> list[tuple[float, float]]:
+    """Return the pairs of neighbours between which the measure jumps, is vertical, or ends."""
+    ends = [(a.x, b.x) for _, a, b in course.iter_pairs() if (a.gap is None) != (b.gap is None)]
     return [*course.jumps, *course.steep, *ends]
 
 
-def near_jump(course: MeasureCourse, one: Sample, other: Sample, ends: list[tuple[float, float]]) -> bool:
-    """Whether the course jumps or ends right beside two neighbours: towards a pole it is never certain."""
+def is_near_jump(course: MeasureCourse, left: Sample, right: Sample, ends: list[tuple[float, float]]) -> bool:
+    """Return whether the measure jumps or ends close to two neighbours; predictions towards a pole are never
+    certain.
+    """
     margin = NEAR_JUMP * course.spacing
-    return any(low - margin <= one.x and other.x <= high + margin for low, high in ends)
+    return any(low - margin <= left.x and right.x <= high + margin for low, high in ends)
 
 
-def place_of_peak(course: MeasureCourse, i: int) -> float | None:
-    """Where a peak or a pole between two neighbours may reach the value; None: nothing tells of one that does."""
-    one, other = course.samples[i], course.samples[i + 1]
-    if (pole := place_of_hidden_pole(course, i)) is not None:
-        return place_inside(one, other, pole)
-    peak = course.peak(i)
-    if peak is None or not one.side or one.side != other.side:
+def find_possible_peak(course: MeasureCourse, i: int) -> float | None:
+    """Return where a peak or a pole between two neighbours may reach the value; None if nothing indicates one."""
+    left, right = course.samples[i], course.samples[i + 1]
+    if (pole := find_hidden_pole(course, i)) is not None:
+        return clip_inside(left, right, pole)
+    peak = course.find_peak(i)
+    if peak is None or not left.side or left.side != right.side:
         return None
-    if np.isinf(peak.size) and (one.gap + course.value) * (other.gap + course.value) < 0.0:  # type: ignore[operator]
-        return place_inside(one, other, peak.place)
+    if np.isinf(peak.size) and (left.gap + course.value) * (right.gap + course.value) < 0.0:  # type: ignore[operator]
+        return clip_inside(left, right, peak.place)
     largest = (
-        max((sample.gap or 0.0) + course.value for sample in (one, other))
+        max((sample.gap or 0.0) + course.value for sample in (left, right))
         if course.value > 0.0
-        else min((sample.gap or 0.0) + course.value for sample in (one, other))
+        else min((sample.gap or 0.0) + course.value for sample in (left, right))
     )
     if largest * course.value <= 0.0 or abs(largest) >= abs(course.value):
         return None
-    reached = abs(largest) + GROWTH * (peak.size - abs(largest))
-    return place_inside(one, other, peak.place) if reached >= abs(course.value) else None
+    peak_height = abs(largest) + PEAK_GROWTH * (peak.size - abs(largest))
+    return clip_inside(left, right, peak.place) if peak_height >= abs(course.value) else None
 
 
-def place_between(one: Sample, other: Sample, expected: Between) -> float:
-    """Where to ask between two neighbours: where the course may come nearest to the value, else in the middle."""
-    if not one.side or one.side != other.side:
-        return 0.5 * (one.x + other.x)
-    return place_inside(one, other, float(expected.places[np.argmin(one.side * expected.gaps - expected.off)]))
-
-
-def close_in(course: MeasureCourse, i: int) -> None:
-    """Narrow two neighbours of different sides down to a crossing, or to a jump.
-
-    By Brent's rule: the root of the course as it is expected, and the middle wherever that has gained too little.
+def choose_place(left: Sample, right: Sample, prediction: CoursePrediction) -> float:
+    """Choose where to evaluate between two neighbours: where the measure may come nearest to the value, else in the
+    middle.
     """
-    one, other = course.samples[i], course.samples[i + 1]
-    failed = 0
-    while other.x - one.x > course.finest:
+    if not left.side or left.side != right.side:
+        return 0.5 * (left.x + right.x)
+    return clip_inside(
+        left, right, float(prediction.places[np.argmin(left.side * prediction.gaps - prediction.uncertainty)])
+    )
+
+
+def narrow_pair(course: MeasureCourse, i: int) -> None:
+    """Narrow two neighbours on different sides down to a crossing or a jump.
+
+    By Brent's rule: the root of the predicted measure, and the middle whenever that gained too little.
+    """
+    left, right = course.samples[i], course.samples[i + 1]
+    failures = 0
+    while right.x - left.x > course.finest:
         x = (
-            0.5 * (one.x + other.x)
-            if failed > 1
-            else beyond(course, one, other)
-            if failed
-            else root(course, one, other)
+            0.5 * (left.x + right.x)
+            if failures > 1
+            else step_past_root(course, left, right)
+            if failures
+            else predict_root(course, left, right)
         )
-        best = min(abs(one.gap or 0.0), abs(other.gap or 0.0))
-        found = course.look(x)
-        if found.gap is None or found.side == 0:
+        best = min(abs(left.gap or 0.0), abs(right.gap or 0.0))
+        sample = course.sample_and_learn(x)
+        if sample.gap is None or sample.side == 0:
             return
-        failed = 0 if abs(found.gap) < LESS * best else failed + 1
-        one, other = (found, other) if found.side == one.side else (one, found)
-    is_jump = not is_steep(course, one, other) and keeps_its_size(course, one, other)
-    (course.jumps if is_jump else course.steep).add((one.x, other.x))
+        failures = 0 if abs(sample.gap) < MAX_REMAINING_GAP * best else failures + 1
+        left, right = (sample, right) if sample.side == left.side else (left, sample)
+    is_jump = not is_steep(course, left, right) and is_jump_size(course, left, right)
+    (course.jumps if is_jump else course.steep).add((left.x, right.x))
 
 
-def beyond(course: MeasureCourse, one: Sample, other: Sample) -> float:
-    """Just beyond the root, where g is hardly more than its error on this side of it; else the middle."""
-    near, far = sorted((one, other), key=lambda sample: abs(sample.gap or 0.0))
-    size, noise = abs(near.gap or 0.0), NOISE * max(near.error, far.error)
-    share = (size + noise) / abs((far.gap or 0.0) - (near.gap or 0.0)) if size <= noise else 0.5
-    way = max(min(share, 0.5) * abs(far.x - near.x), course.finest)
-    return near.x + way if far is other else near.x - way
+def step_past_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
+    """Return a place just past the root, where g slightly exceeds its error; else the middle."""
+    nearer, farther = sorted((left, right), key=lambda sample: abs(sample.gap or 0.0))
+    gap, noise = abs(nearer.gap or 0.0), NOISE * max(nearer.error, farther.error)
+    fraction = (gap + noise) / abs((farther.gap or 0.0) - (nearer.gap or 0.0)) if gap <= noise else 0.5
+    distance = max(min(fraction, 0.5) * abs(farther.x - nearer.x), course.finest)
+    return nearer.x + distance if farther is right else nearer.x - distance
 
 
-def is_steep(course: MeasureCourse, one: Sample, other: Sample) -> bool:
-    """Whether the course outside is so steep that it goes from one side to the other in the narrowest bracket.
+def is_steep(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether the slope outside suffices to pass from one side to the other within the narrowest bracket.
 
-    Towards a jump it is level, towards a pole it grows. Across the bracket counts what is beyond the errors of both.
+    Near a jump the slope outside is small, near a pole it grows. Only the change that exceeds both errors counts.
     """
-    i = next(i for i, sample, _ in course.pairs() if sample is one)
-    outside = [(one, each) for each in course.beside(i, -1)[:1]] + [(other, each) for each in course.beside(i, 1)[:1]]
-    errors = 2.0 * (one.error + other.error)
-    through = max(abs((other.gap or 0.0) - (one.gap or 0.0)) - errors, 0.0) / (other.x - one.x)
-    slopes = [((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (other.side or 0) for near, far in outside]
-    return through == 0.0 or (bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes))
+    i = next(i for i, sample, _ in course.iter_pairs() if sample is left)
+    outer_pairs = [(left, each) for each in course.find_neighbours(i, -1)[:1]] + [
+        (right, each) for each in course.find_neighbours(i, 1)[:1]
+    ]
+    errors = 2.0 * (left.error + right.error)
+    slope_inside = max(abs((right.gap or 0.0) - (left.gap or 0.0)) - errors, 0.0) / (right.x - left.x)
+    slopes = [
+        ((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (right.side or 0) for near, far in outer_pairs
+    ]
+    return slope_inside == 0.0 or (bool(slopes) and min(slopes) > 0.0 and slope_inside <= MAX_STEEPNESS * max(slopes))
 
 
-def keeps_its_size(course: MeasureCourse, one: Sample, other: Sample) -> bool:
-    """Whether the course changes as much across the narrowest bracket as across one a thousand times wider.
+def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether the measure changes as much across the narrowest bracket as across one a thousand times wider.
 
-    A jump does, and a pole changes by more; what is only upright there, as a root of x - c, changes by less.
+    A jump does, and a pole changes by more; a vertical tangent, as of a root of x - c, changes by less.
     """
-    reach = 0.5 * WIDER * (other.x - one.x)
-    before, behind = outside(course, one, -1, reach), outside(course, other, 1, reach)
-    if behind.x - before.x < PROVES * (other.x - one.x):
+    distance = 0.5 * WIDE_BRACKET * (right.x - left.x)
+    outer_left, outer_right = sample_outside(course, left, -1, distance), sample_outside(course, right, 1, distance)
+    if outer_right.x - outer_left.x < MIN_BRACKET * (right.x - left.x):
         return False
-    across = abs((other.gap or 0.0) - (one.gap or 0.0)) + one.error + other.error
-    return across >= KEPT * abs((behind.gap or 0.0) - (before.gap or 0.0))
+    inner_change = abs((right.gap or 0.0) - (left.gap or 0.0)) + left.error + right.error
+    return inner_change >= MIN_JUMP_RATIO * abs((outer_right.gap or 0.0) - (outer_left.gap or 0.0))
 
 
-def outside(course: MeasureCourse, end: Sample, way: int, reach: float) -> Sample:
-    """A sample about so far outside of another one, as far as the course goes on there. Raises SpentError."""
+def sample_outside(course: MeasureCourse, end: Sample, direction: int, distance: float) -> Sample:
+    """Return a sample about this distance outside of another one, as far as the range extends. Raises SpentError."""
     k, best = course.samples.index(end), end
-    while 0 <= k + way < len(course.samples) and not course.parted(k + min(way, 0)):
-        k += way
-        if abs(course.samples[k].x - end.x) > reach:
-            found = course.at(end.x + way * reach)
-            return found if found.gap is not None else best
+    while 0 <= k + direction < len(course.samples) and not course.is_interrupted(k + min(direction, 0)):
+        k += direction
+        if abs(course.samples[k].x - end.x) > distance:
+            sample = course.sample_at(end.x + direction * distance)
+            return sample if sample.gap is not None else best
         best = course.samples[k]
-        if abs(best.x - end.x) >= 0.5 * reach:
+        if abs(best.x - end.x) >= 0.5 * distance:
             return best
     return best
 
 
-def root(course: MeasureCourse, one: Sample, other: Sample) -> float:
-    """Where the course is expected to cross between two neighbours of different sides."""
-    near = min((one, other), key=lambda sample: abs(sample.gap or 0.0))
-    stretch = stretch_of(course, one)
-    others = sorted((each for each in stretch if each not in (one, other)), key=lambda each: abs(each.x - near.x))
-    samples = [one, other, *others[:2]]
-    low, high = one.x, other.x
-    for _ in range(60):  # halvings, which cost nothing here
+def predict_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
+    """Return where the measure is predicted to cross its value between two neighbours on different sides."""
+    near = min((left, right), key=lambda sample: abs(sample.gap or 0.0))
+    stretch = find_stretch(course, left)
+    others = sorted((each for each in stretch if each not in (left, right)), key=lambda each: abs(each.x - near.x))
+    samples = [left, right, *others[:2]]
+    low, high = left.x, right.x
+    for _ in range(60):  # halvings of a polynomial, which cost nothing
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        above = float(polynomial(samples, np.array([middle]))[0]) * (one.side or 0) > 0.0
-        low, high = (middle, high) if above else (low, middle)
+        is_before_root = float(interpolate(samples, np.array([middle]))[0]) * (left.side or 0) > 0.0
+        low, high = (middle, high) if is_before_root else (low, middle)
     margin = 0.25 * course.finest
-    return min(max(0.5 * (low + high), one.x + margin), other.x - margin)
+    return min(max(0.5 * (low + high), left.x + margin), right.x - margin)
 
 
-def stretch_of(course: MeasureCourse, one: Sample) -> list[Sample]:
-    """The samples of the stretch in which one stands."""
-    found: list[Sample] = []
+def find_stretch(course: MeasureCourse, one: Sample) -> list[Sample]:
+    """Return the samples of the stretch that contains a sample."""
+    stretch: list[Sample] = []
     for i, sample in enumerate(course.samples):
-        if found and course.parted(i - 1):
-            if one in found:
-                return found
-            found = []
-        found.append(sample)
-    return found
+        if stretch and course.is_interrupted(i - 1):
+            if one in stretch:
+                return stretch
+            stretch = []
+        stretch.append(sample)
+    return stretch

@@ -1,129 +1,153 @@
-"""Where a function of one number meets a value: all crossings of an interval that its course gives away."""
+"""Find where a function of one number meets a value: all crossings in an interval that its samples reveal."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from heuncli.analyses.find.edges import close_edges
-from heuncli.analyses.find.places import SideGroup, doubtful, groups, meetings, met, unsolved
-from heuncli.analyses.find.results import CourseFindings, CourseJump, Crossing, NotExcluded, OpenBracket, Touch
-from heuncli.analyses.find.search import check_scan, close_all, not_excluded, search
-from heuncli.analyses.find.touches import find_touches, size
+from heuncli.analyses.find.places import (
+    SideGroup,
+    group_by_side,
+    iter_enclosing_places,
+    iter_meetings,
+    iter_met,
+    iter_unsolved,
+)
+from heuncli.analyses.find.results import (
+    Crossing,
+    IntervalFindings,
+    MeasureJump,
+    PossibleMeeting,
+    Touch,
+    UnresolvedBracket,
+)
+from heuncli.analyses.find.search import check_scan, iter_possible_meetings, narrow_all, search
+from heuncli.analyses.find.touches import compute_distance, find_touches
 from heuncli.analyses.variants.conditions import Sign
 from heuncli.analyses.variants.course import MeasureCourse, Sample, SpentError
-from heuncli.analyses.variants.course_extremes import extreme, refine_extreme
+from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 
-HALVINGS = 8  # towards a crossing whose slope is not well known: a 250th of the neighbour's distance
-HALVINGS_OF_TOUCH = (
-    12  # towards each end of a touch: flat ones come to an end a 4,000th of the neighbour's distance off
-)
-CLOSE_TO_VALUE = 4.0  # times the error: |g| at the end of a touch, which tells where it is
+CROSSING_HALVINGS = 8  # towards a crossing with an uncertain slope: down to a 250th of the neighbour's distance
+TOUCH_HALVINGS = 12  # towards each end of a touch: flat ones end at a 4,000th of the neighbour's distance
+CLOSE_TO_VALUE = 4.0  # times the error: |g| at the ends that enclose a touch
 
 SIDES: dict[Sign, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
 
 
-def look(
-    ask: Callable[[float], Sample],
+def find_meetings(
+    evaluate: Callable[[float], Sample],
     low: float,
     high: float,
     relation: Sign,
     *,
-    count: int,
-    most: int,
+    scan_count: int,
+    max_evaluations: int,
     value: float = 0.0,
-) -> CourseFindings:
-    """What is found between low and high.
+) -> IntervalFindings:
+    """Return the findings between low and high.
 
-    count: places of the scan, most: that may be asked in all; value: what the measure is less its gap.
+    scan_count: places of the scan
+    max_evaluations: limit of all evaluations
+    value: the measure minus its gap
     """
-    course = MeasureCourse(ask, low, high, count, most, value)
-    complete, refined = True, False
+    course = MeasureCourse(evaluate, low, high, scan_count, max_evaluations, value)
+    is_complete, is_refined = True, False
     try:
         course.scan()
-        looked_at, enclosed = 0, -1
-        refined_at: dict[int, Sample | None] = {}  # the extremes as their refinement left them
-        while len(course.samples) > looked_at:  # whatever was found is looked at like the scan
-            looked_at = len(course.samples)
+        sample_count, enclosed_count = 0, -1
+        refined_at: dict[int, Sample | None] = {}  # the extremes after their refinement
+        while len(course.samples) > sample_count:  # new samples are examined like those of the scan
+            sample_count = len(course.samples)
             course.withhold_isolated()
             search(course)
             check_scan(course)
-            if (met_at := sum(1 for _ in meetings(course))) != enclosed:  # where more is met than was enclosed before
-                enclose(course)
-                enclosed = met_at
+            if (
+                meeting_count := sum(1 for _ in iter_meetings(course))
+            ) != enclosed_count:  # more meetings than enclosed before
+                enclose_crossings(course)
+                enclosed_count = meeting_count
             find_touches(course)
             enclose_touches(course)
-            if not any(meetings(course)) and extreme(course, 1) is not None:
-                refined = True
-                for way in (-1, 1):
-                    if way not in refined_at or extreme(course, way) != refined_at[way]:  # another one by now
-                        refine_extreme(course, way)
-                        refined_at[way] = extreme(course, way)
-            if len(course.samples) == looked_at:
+            if not any(iter_meetings(course)) and find_extreme(course, 1) is not None:
+                is_refined = True
+                for sign in (-1, 1):
+                    if sign not in refined_at or find_extreme(course, sign) != refined_at[sign]:  # new or changed
+                        refine_extreme(course, sign)
+                        refined_at[sign] = find_extreme(course, sign)
+            if len(course.samples) == sample_count:
                 close_edges(course)
     except SpentError:
-        complete = False
+        is_complete = False
     course.withhold_isolated()
-    return collect_findings(course, relation, refined=refined, complete=complete)
+    return collect_findings(course, relation, is_refined=is_refined, is_complete=is_complete)
 
 
-def collect_findings(course: MeasureCourse, relation: Sign, *, refined: bool, complete: bool) -> CourseFindings:
-    """What the samples of a course tell; complete: the search has ended before its places were spent."""
-    found = list(meetings(course))
-    return CourseFindings(
-        crossings=tuple(each for each in found if isinstance(each, Crossing)),
-        touches=tuple(each for each in found if isinstance(each, Touch)),
-        jumps=tuple(each for each in found if isinstance(each, CourseJump)),
-        brackets=tuple(each for each in found if isinstance(each, OpenBracket)),
+def collect_findings(course: MeasureCourse, relation: Sign, *, is_refined: bool, is_complete: bool) -> IntervalFindings:
+    """Collect the findings from the samples.
+
+    is_complete: whether the search ended before its limit of evaluations
+    """
+    found_meetings = list(iter_meetings(course))
+    return IntervalFindings(
+        crossings=tuple(meeting for meeting in found_meetings if isinstance(meeting, Crossing)),
+        touches=tuple(meeting for meeting in found_meetings if isinstance(meeting, Touch)),
+        jumps=tuple(meeting for meeting in found_meetings if isinstance(meeting, MeasureJump)),
+        brackets=tuple(meeting for meeting in found_meetings if isinstance(meeting, UnresolvedBracket)),
         not_excluded=tuple(
-            NotExcluded(*pair)
-            for pair in not_excluded(course)
-            if not any(isinstance(one, Touch) and one.low <= pair[0].x and pair[1].x <= one.high for one in found)
+            PossibleMeeting(*pair)
+            for pair in iter_possible_meetings(course)
+            if not any(
+                isinstance(touch, Touch) and touch.low <= pair[0].x and pair[1].x <= touch.high
+                for touch in found_meetings
+            )
         ),
-        unsolved=tuple(unsolved(course)),
-        met=tuple(met(course, SIDES[relation], equal="=" in relation)) if SIDES[relation] else (),
-        least=extreme(course, -1),
-        greatest=extreme(course, 1),
-        refined=refined,
+        unsolved_stretches=tuple(iter_unsolved(course)),
+        met_stretches=tuple(iter_met(course, SIDES[relation], includes_value="=" in relation))
+        if SIDES[relation]
+        else (),
+        least=find_extreme(course, -1),
+        greatest=find_extreme(course, 1),
+        is_refined=is_refined,
         samples=tuple(course.samples),
         spacing=course.spacing,
-        complete=complete,
+        is_complete=is_complete,
     )
 
 
-def enclose(course: MeasureCourse) -> None:
-    """Enclose crossings whose slope is not well known. Raises SpentError."""
-    for _ in range(HALVINGS):
-        for place in list(doubtful(course)):
-            course.at(place)
-        close_all(course)  # a group that was one may have come apart
+def enclose_crossings(course: MeasureCourse) -> None:
+    """Enclose crossings whose slope is uncertain. Raises SpentError."""
+    for _ in range(CROSSING_HALVINGS):
+        for place in list(iter_enclosing_places(course)):
+            course.sample_at(place)
+        narrow_all(course)  # a group may have split
 
 
 def enclose_touches(course: MeasureCourse) -> None:
-    """Close in from both sides on what is not told from the value, so that its ends tell where the touch is.
+    """Enclose touches from both sides.
 
-    Each end is halved towards it until |g| is a few errors only. Raises SpentError.
+    Each end is halved towards the touch until |g| is only a few errors. Raises SpentError.
     """
-    for group in touching_groups(course):
-        for end, way in ((group[0], -1), (group[-1], 1)):
-            for _ in range(HALVINGS_OF_TOUCH):
+    for group in find_touching_groups(course):
+        for end, direction in ((group[0], -1), (group[-1], 1)):
+            for _ in range(TOUCH_HALVINGS):
                 k = course.samples.index(end)
-                if not 0 <= k + way < len(course.samples) or course.parted(min(k, k + way)):
+                if not 0 <= k + direction < len(course.samples) or course.is_interrupted(min(k, k + direction)):
                     break
-                outer = course.samples[k + way]
-                if size(outer) <= CLOSE_TO_VALUE * end.error or abs(outer.x - end.x) <= course.finest:
+                outer = course.samples[k + direction]
+                if compute_distance(outer) <= CLOSE_TO_VALUE * end.error or abs(outer.x - end.x) <= course.finest:
                     break
-                found = course.at(0.5 * (end.x + outer.x))
-                if found.gap is None:
+                sample = course.sample_at(0.5 * (end.x + outer.x))
+                if sample.gap is None:
                     break
-                if found.side == 0:
-                    end = found
+                if sample.side == 0:
+                    end = sample
 
 
-def touching_groups(course: MeasureCourse) -> list[SideGroup]:
-    """Neighbours that are not told from the value and have the same side before and behind."""
-    found = groups(course)
+def find_touching_groups(course: MeasureCourse) -> list[SideGroup]:
+    """Return the groups that meet the value and have the same side on both ends."""
+    side_groups = group_by_side(course)
     return [
         group
-        for before, group, after in zip(found, found[1:], found[2:], strict=False)
-        if group.side == 0 and before.side and before.side == after.side
+        for previous, group, following in zip(side_groups, side_groups[1:], side_groups[2:], strict=False)
+        if group.side == 0 and previous.side and previous.side == following.side
     ]

@@ -1,9 +1,8 @@
-"""Lagrange's coordinates: which are chosen, and what their rates make of the rates of the tree's freedoms.
-
+"""Choose Lagrange's coordinates, and relate their rates to the rates of the tree's freedoms.
     q' = C u,   u = T z what the closed chains admit,   u = S q',   S = T (C T)^-1
-C: the rows of the chosen coordinates on the n rates u of the tree. Turns of balls, and the six rates of a body that no
-joint carries, are quasi-velocities: components of angular velocities and of velocities along the world's axes, which
-are the rates of no coordinates.
+C: rows of the chosen coordinates on the n rates u of the tree. Rotations of balls, and the six rates of a free body,
+are quasi-velocities: components of angular velocity and of velocity along the world's axes, which are not rates of any
+coordinates.
 """
 
 from __future__ import annotations
@@ -16,27 +15,32 @@ from heuncli.analyses.lagrange import rodrigues
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, is_length
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.motion.linearisation.linearise import Linearised
-from heuncli.motion.linearisation.reduced_equations import complement, idle_spins
-from heuncli.motion.linearisation.shapes import coordinates as rows_of_scene
-from heuncli.motion.linearisation.shapes import twist
+from heuncli.motion.linearisation.linearise import LinearisedEquations
+from heuncli.motion.linearisation.reduced_equations import find_massless_spins, orthogonal_complement
+from heuncli.motion.linearisation.shapes import coordinate_rows as rows_of_scene
+from heuncli.motion.linearisation.shapes import point_twist
 from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows
 
-CODE = "no-coordinate"
-IN_FILE_ORDER = 0.1  # of the largest pivot left: the first in the file that has as much is taken
-TRUE = ("angle", "travel", "length", *rodrigues.NAMES)  # coordinates; all others are quasi-velocities
+PROBLEM_CODE = "no-coordinate"
+PIVOT_RATIO = 0.1  # of the largest remaining pivot: the first in the file that reaches this is taken
+TRUE_COORDINATES = ("angle", "travel", "length", *rodrigues.NAMES)  # coordinates; all others are quasi-velocities
 
 
 @record
-class Chosen:
-    """The chosen coordinates; names: joint.quantity; driven: of each; rows C (f, n), partials S (n, f)."""
+class CoordinateChoice:
+    """The chosen coordinates.
+
+    names: joint.quantity of each; is_driven: whether a drive moves it
+    rows: C (f, n); S (n, f): partials
+    left_out: bodies whose spin has no inertia and is left out of the motion
+    """
 
     names: tuple[str, ...]
     driven: tuple[bool, ...]
@@ -46,193 +50,224 @@ class Chosen:
     bodies: tuple[str, ...]
 
     @property
-    def quasi(self) -> tuple[bool, ...]:
-        """Which are quasi-velocities: without a coordinate."""
+    def is_quasi_velocity(self) -> tuple[bool, ...]:
+        """Whether each is a quasi-velocity, that is, has no coordinate."""
         return tuple(
-            quantity_of(name) not in TRUE and not (name.rpartition(".")[0] in self.bodies and name[-2] == "d")
+            split_quantity(name) not in TRUE_COORDINATES
+            and not (name.rpartition(".")[0] in self.bodies and name[-2] == "d")
             for name in self.names
         )
 
 
-def quantity_of(name: str) -> str:
-    """Of joint.quantity."""
+def split_quantity(name: str) -> str:
+    """Return the quantity of joint.quantity."""
     return name.rpartition(".")[2]
 
 
-def chosen(scene: PreparedScene, found: Linearised, driven: Mapping[str, str], asked: Sequence[str] = ()) -> Chosen:
-    """As many coordinates as motions are free: those asked for; else driven ones, those that expressions name, others.
+def choose_coordinates(
+    scene: PreparedScene,
+    linear_equations: LinearisedEquations,
+    driven: Mapping[str, str],
+    requested: Sequence[str] = (),
+) -> CoordinateChoice:
+    """Choose as many coordinates as there are free motions: the requested ones; else driven ones, those that
+    expressions use, then others.
 
-    driven: coordinates that drives had, of the freed scene. Raises SolveError [no-coordinate].
+    driven: coordinates that drives moved before the scene was freed
+
+    Raises SolveError [no-coordinate].
     """
     layout = scene.layout
-    by_rodrigues = tuple(asked) == (rodrigues.WORD,)
-    asked = () if by_rodrigues else asked
-    rows = (rodrigues.rows(layout, found) if by_rodrigues else {}) | candidates(layout, found)
-    T, left_out = admitted(scene, found)
+    by_rodrigues = tuple(requested) == (rodrigues.OPTION_WORD,)
+    requested = () if by_rodrigues else requested
+    rows = (rodrigues.make_rows(layout, linear_equations) if by_rodrigues else {}) | make_candidate_rows(
+        layout, linear_equations
+    )
+    T, left_out = compute_admitted_motions(scene, linear_equations)
     if not T.shape[1]:
-        raise SolveError(Problem(CODE, "nothing is free to move: no coordinate tells anything", hint=NOTHING))
-    require_known(asked, rows)
-    weigh = {name: 1.0 / layout.size if is_length(name) else 1.0 for name in rows}
-    scaled = {name: weigh[name] * row @ T for name, row in rows.items()}
-    names = list(asked) or picked(scaled, order_of(layout, rows, driven), T.shape[1])
+        raise SolveError(
+            Problem(PROBLEM_CODE, "nothing is free to move: no coordinate tells anything", hint=NOTHING_FREE_HINT)
+        )
+    require_known(requested, rows)
+    factors = {name: 1.0 / layout.size if is_length(name) else 1.0 for name in rows}
+    scaled = {name: factors[name] * row @ T for name, row in rows.items()}
+    names = list(requested) or select_independent(scaled, group_coordinates(layout, rows, driven), T.shape[1])
     bodies = tuple(body.name for body in layout.mechanism.bodies)
     C = np.array([rows[name] for name in names]).reshape(len(names), -1)
-    require_telling(names, np.array([scaled[name] for name in names]), T.shape[1], scaled)
-    return Chosen(tuple(names), tuple(name in driven for name in names), C, T @ np.linalg.inv(C @ T), left_out, bodies)
+    require_independent(names, np.array([scaled[name] for name in names]), T.shape[1], scaled)
+    return CoordinateChoice(
+        tuple(names), tuple(name in driven for name in names), C, T @ np.linalg.inv(C @ T), left_out, bodies
+    )
 
 
-NOTHING = "leave a joint free, or drive one: drives are freed here"
+NOTHING_FREE_HINT = "leave a joint free, or drive one: drives are freed here"
 
 
-def admitted(scene: PreparedScene, found: Linearised) -> tuple[Array, tuple[str, ...]]:
-    """What the closed chains admit, (n, f), without spins that have no inertia; and the bodies of these.
+def compute_admitted_motions(
+    scene: PreparedScene, linear_equations: LinearisedEquations
+) -> tuple[Array, tuple[str, ...]]:
+    """Return the motions that the closed chains admit, (n, f), without massless spins, and the bodies that have these.
 
     Such a spin w . n stays as it is, whatever else moves.
     """
-    idle = idle_spins(scene, found)
-    T = found.tangent @ complement(np.array([spin.along for spin in idle]), found.tangent.shape[1])
-    for spin in idle:
-        T = T - np.outer(found.tangent @ spin.along, spin.axis @ found.twists[spin.body, :3] @ T)
-    order = [hang.body for hang in scene.layout.spanning.hangs]
-    names = dict.fromkeys(scene.mechanism.bodies[order[spin.body]].name for spin in idle)
+    massless_spins = find_massless_spins(scene, linear_equations)
+    T = linear_equations.tangent @ orthogonal_complement(
+        np.array([spin.tangent for spin in massless_spins]), linear_equations.tangent.shape[1]
+    )
+    for spin in massless_spins:
+        T = T - np.outer(
+            linear_equations.tangent @ spin.tangent, spin.axis @ linear_equations.twists[spin.body, :3] @ T
+        )
+    order = [hang.body for hang in scene.layout.spanning.links]
+    names = dict.fromkeys(scene.mechanism.bodies[order[spin.body]].name for spin in massless_spins)
     return T, tuple(names)
 
 
-def candidates(layout: Layout, found: Linearised) -> dict[str, Array]:
-    """The rows of all coordinates on the rates of the tree, (n,) each; of rods whose length is let go that as well."""
-    rows = rows_of_scene(layout, found)
+def make_candidate_rows(layout: Layout, linear_equations: LinearisedEquations) -> dict[str, Array]:
+    """Return the rows of all coordinates on the rates of the tree, (n,) each; for released rods also that of their
+    length.
+    """
+    rows = rows_of_scene(layout, linear_equations)
     for joint in layout.mechanism.joints:
         if JOINTS[joint.kind].keeps_distance and joint.tension_only:
-            rows[f"{joint.name}.length"] = length_row(layout, found, joint)
+            rows[f"{joint.name}.length"] = make_length_row(layout, linear_equations, joint)
     return rows
 
 
-def length_row(layout: Layout, found: Linearised, joint: Joint) -> Array:
-    """What the distance of two points changes by: along the line between them."""
-    to, b = twist(layout, found, joint.b, joint.q, None)
-    carrier, a = twist(layout, found, joint.a, joint.p, None)
-    return np.asarray((b - a) / np.sqrt((b - a) @ (b - a)) @ (to[3:] - carrier[3:]))
+def make_length_row(layout: Layout, linear_equations: LinearisedEquations, joint: Joint) -> Array:
+    """Return the row of the distance of two points: their relative velocity along the line between them."""
+    target_twist, b = point_twist(layout, linear_equations, joint.b, joint.q, None)
+    carrier_twist, a = point_twist(layout, linear_equations, joint.a, joint.p, None)
+    return np.asarray((b - a) / np.sqrt((b - a) @ (b - a)) @ (target_twist[3:] - carrier_twist[3:]))
 
 
-def order_of(layout: Layout, rows: Mapping[str, Array], driven: Mapping[str, str]) -> list[list[str]]:
-    """The coordinates in groups, those that an engineer would take first: driven, named in expressions, in the file."""
-    uses = [use for use in layout.pack.variables if not isinstance(use, str)]
+def group_coordinates(layout: Layout, rows: Mapping[str, Array], driven: Mapping[str, str]) -> list[list[str]]:
+    """Return the coordinates in groups by preference: driven ones, those named in expressions, then in file order."""
+    variables = [use for use in layout.pack.variables if not isinstance(use, str)]
     base = {"rate": "angle", "speed": "travel"}
-    named = [f"{name}.{base.get(quantity, quantity)}" for name, quantity in uses]
+    named = [f"{name}.{base.get(quantity, quantity)}" for name, quantity in variables]
     return [
         [name for name in rows if name in driven],
         [name for name in rows if name in named],
-        [name for name in rows if quantity_of(name) in rodrigues.NAMES],
-        [name for name in rows if quantity_of(name) in TRUE],
+        [name for name in rows if split_quantity(name) in rodrigues.NAMES],
+        [name for name in rows if split_quantity(name) in TRUE_COORDINATES],
         list(rows),
     ]
 
 
-def picked(scaled: Mapping[str, Array], groups: Sequence[Sequence[str]], count: int) -> list[str]:
-    """Coordinates that tell all motions, group by group.
+def select_independent(scaled_rows: Mapping[str, Array], groups: Sequence[Sequence[str]], count: int) -> list[str]:
+    """Select coordinates that describe all motions, group by group.
 
-    Of a group the first in the file is taken whose part beside what is told already is no small share of the largest.
+    From a group, the first in the file is taken whose part independent of those already taken is not small relative to
+    the largest.
     """
     taken: list[str] = []
     basis = np.zeros((0, count))
-    largest = max(float(np.sqrt(row @ row)) for row in scaled.values())
+    largest = max(float(np.sqrt(row @ row)) for row in scaled_rows.values())
     for group in groups:
         while len(taken) < count:
-            left = {name: scaled[name] - basis.T @ (basis @ scaled[name]) for name in group if name not in taken}
-            size = {name: float(np.sqrt(row @ row)) for name, row in left.items()}
-            most = max(size.values(), default=0.0)
-            if most <= tolerances.RANK * largest:
+            remainders = {
+                name: scaled_rows[name] - basis.T @ (basis @ scaled_rows[name]) for name in group if name not in taken
+            }
+            size = {name: float(np.sqrt(row @ row)) for name, row in remainders.items()}
+            largest_remainder = max(size.values(), default=0.0)
+            if largest_remainder <= tolerances.RANK * largest:
                 break
-            name = next(name for name in size if size[name] >= IN_FILE_ORDER * most)
+            name = next(name for name in size if size[name] >= PIVOT_RATIO * largest_remainder)
             taken.append(name)
-            row = left[name] / size[name]
+            row = remainders[name] / size[name]
             basis = np.vstack([basis, row - basis.T @ (basis @ row)])
-    return [name for name in scaled if name in taken]
+    return [name for name in scaled_rows if name in taken]
 
 
-def require_known(asked: Sequence[str], rows: Mapping[str, Array]) -> None:
-    """Raise SolveError for names that no coordinate has."""
-    wrong = [name for name in asked if name not in rows]
+def require_known(requested: Sequence[str], rows: Mapping[str, Array]) -> None:
+    """Raise SolveError [no-coordinate] for names that no coordinate has."""
+    wrong = [name for name in requested if name not in rows]
     if wrong:
         raise SolveError(*(
-            Problem(CODE, f"no coordinate is called {name}", hint=did_you_mean(name, list(rows), "coordinates") or "")
+            Problem(PROBLEM_CODE, f"no coordinate is called {name}", hint=suggest(name, list(rows), "coordinates") or "")
             for name in wrong
         ))  # fmt: skip
 
 
-def require_telling(names: Sequence[str], by: Array, count: int, scaled: Mapping[str, Array]) -> None:
-    """Raise SolveError where the coordinates are too many, too few, or stand while the scene moves.
+def require_independent(names: Sequence[str], rates: Array, count: int, scaled_rows: Mapping[str, Array]) -> None:
+    """Raise SolveError [no-coordinate] if there are too many or too few coordinates, or if one is stationary while the
+    scene moves.
 
-    by (names, count): their rates for the motions that are free.
+    rates (names, count): their rates for the free motions
     """
     if len(names) != count or len(set(names)) != len(names):
-        few = "motion is" if count == 1 else "motions are"
-        message = f"{count} {few} free, and {len(names)} coordinate{'s are' if len(names) != 1 else ' is'} named"
-        raise SolveError(Problem(CODE, message, hint=f"name {count} of {', '.join(list(scaled)[:8])}"))
-    U, s, V = np.linalg.svd(by)
-    if s[-1] * tolerances.TELLING < max(s[0], largest_of(scaled)):
-        along = {name: abs(float(row @ V[-1])) for name, row in scaled.items()}
-        moves = max(along, key=lambda name: along[name])
-        still = names[int(np.argmax(np.abs(U[:, -1])))]
-        message = f"{still} cannot tell the motion here: it stands while {moves} moves (dead centre)"
-        raise SolveError(Problem(CODE, message, hint=f"take another coordinate: --coordinates {moves}"))
+        phrase = "motion is" if count == 1 else "motions are"
+        message = f"{count} {phrase} free, and {len(names)} coordinate{'s are' if len(names) != 1 else ' is'} named"
+        raise SolveError(Problem(PROBLEM_CODE, message, hint=f"name {count} of {', '.join(list(scaled_rows)[:8])}"))
+    U, s, V = np.linalg.svd(rates)
+    if s[-1] * tolerances.TELLING < max(s[0], find_largest_rate(scaled_rows)):
+        along = {name: abs(float(row @ V[-1])) for name, row in scaled_rows.items()}
+        moving = max(along, key=lambda name: along[name])
+        stationary = names[int(np.argmax(np.abs(U[:, -1])))]
+        message = f"{stationary} cannot tell the motion here: it stands while {moving} moves (dead centre)"
+        raise SolveError(Problem(PROBLEM_CODE, message, hint=f"take another coordinate: --coordinates {moving}"))
 
 
-def largest_of(scaled: Mapping[str, Array]) -> float:
-    """The largest rate of any coordinate for the motions that are free."""
-    return max(float(np.sqrt(row @ row)) for row in scaled.values())
+def find_largest_rate(scaled_rows: Mapping[str, Array]) -> float:
+    """Return the largest rate of any coordinate for the free motions."""
+    return max(float(np.sqrt(row @ row)) for row in scaled_rows.values())
 
 
-def rates(layout: Layout, names: Sequence[str], states: BodyStates) -> Array:
-    """q' of the coordinates, (n_t, f), from the motion of the bodies."""
-    return np.stack([_moved(layout, name, states)[0] for name in names], axis=1)
+def compute_rates(layout: Layout, names: Sequence[str], states: BodyStates) -> Array:
+    """Return the rates q' of the coordinates, (n_t, f), from the motion of the bodies."""
+    return np.stack([_compute_rate(layout, name, states)[0] for name in names], axis=1)
 
 
-def accelerations(layout: Layout, names: Sequence[str], states: BodyStates) -> Array:
-    """q'' of the coordinates, (n_t, f), from the accelerations of the bodies; of quasi-velocities their derivatives."""
-    return np.stack([_moved(layout, name, states)[1] for name in names], axis=1)
+def compute_accelerations(layout: Layout, names: Sequence[str], states: BodyStates) -> Array:
+    """Return q'' of the coordinates, (n_t, f), from the accelerations of the bodies; for quasi-velocities their
+    derivatives.
+    """
+    return np.stack([_compute_rate(layout, name, states)[1] for name in names], axis=1)
 
 
-def _moved(layout: Layout, name: str, states: BodyStates) -> tuple[Array, Array]:
-    """Rate and its derivative of one coordinate, (n_t,) each."""
+def _compute_rate(layout: Layout, name: str, states: BodyStates) -> tuple[Array, Array]:
+    """Return the rate of one coordinate and its derivative, (n_t,) each."""
     owner, _, quantity = name.rpartition(".")
     mechanism = layout.mechanism
     joint = next((joint for joint in mechanism.joints if joint.name == owner), None)
     if quantity in rodrigues.NAMES:
         body = next(i for i, own in enumerate(mechanism.bodies) if own.name == owner)
         k = rodrigues.NAMES.index(quantity)
-        rate, acceleration = rodrigues.moved(states.R[:, body], states.omega[:, body], states.alpha[:, body], owner)
+        rate, acceleration = rodrigues.compute_rates(
+            states.R[:, body], states.omega[:, body], states.alpha[:, body], owner
+        )
         return rate[:, k], acceleration[:, k]
     if joint is None:
-        return of_body(mechanism, owner, quantity, states)
+        return get_body_rate(mechanism, owner, quantity, states)
     if quantity == "length":
-        return of_length(joint, states)
-    wa, ua = turning(states, joint.a)
-    wb, ub = turning(states, joint.b)
-    n = states.direction(joint.a, joint.axis)
+        return compute_length_rate(joint, states)
+    wa, ua = get_rotation(states, joint.a)
+    wb, ub = get_rotation(states, joint.b)
+    n = states.world_direction(joint.a, joint.axis)
     if quantity == "angle":
-        return dot(n, wb - wa), dot(n, ub - ua)
+        return dot_rows(n, wb - wa), dot_rows(n, ub - ua)
     if quantity in "xyz":
         k = "xyz".index(quantity)
         return (wb - wa)[:, k], (ub - ua)[:, k]
     Q = states.point_position(joint.b, joint.q)
-    v = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
-    a = states.acceleration(joint.b, Q) - states.acceleration(joint.a, Q)
+    v = states.point_velocity(joint.b, Q) - states.point_velocity(joint.a, Q)
+    a = states.point_acceleration(joint.b, Q) - states.point_acceleration(joint.a, Q)
     if quantity == "travel":
-        return dot(n, v), dot(n, a - 2.0 * cross_rows(wa, v))
+        return dot_rows(n, v), dot_rows(n, a - 2.0 * cross_rows(wa, v))
     k = "xyz".index(quantity[1])
-    return v[:, k], (a - cross_rows(wa, v))[:, k]  # the place is that of `to`, whose speed past `from` is v
+    return v[:, k], (a - cross_rows(wa, v))[:, k]  # the position is that of `to`, which moves past `from` with v
 
 
-def turning(states: BodyStates, body: int) -> tuple[Array, Array]:
-    """Angular velocity and acceleration of a body, or of the ground, (n_t, 3) each."""
+def get_rotation(states: BodyStates, body: int) -> tuple[Array, Array]:
+    """Return angular velocity and acceleration of a body, or of the ground, (n_t, 3) each."""
     if body == GROUND:
         return np.zeros((len(states.x), 3)), np.zeros((len(states.x), 3))
     return states.omega[:, body], states.alpha[:, body]
 
 
-def of_body(mechanism: Mechanism, name: str, quantity: str, states: BodyStates) -> tuple[Array, Array]:
-    """Of a body that no joint carries: its angular velocity, and the velocity of its centre of mass."""
+def get_body_rate(mechanism: Mechanism, name: str, quantity: str, states: BodyStates) -> tuple[Array, Array]:
+    """Return a component of the angular velocity, or of the centre's velocity, of a free body, and its derivative."""
     body = next(i for i, own in enumerate(mechanism.bodies) if own.name == name)
     k = "xyz".index(quantity[-1])
     if quantity.startswith("d"):
@@ -240,24 +275,24 @@ def of_body(mechanism: Mechanism, name: str, quantity: str, states: BodyStates) 
     return states.omega[:, body, k], states.alpha[:, body, k]
 
 
-def length_of(layout: Layout, states: BodyStates, name: str) -> float:
-    """The distance of a rod's two points at the first of some instants [m]."""
+def compute_length(layout: Layout, states: BodyStates, name: str) -> float:
+    """Return the distance of a rod's two points at the first instant [m]."""
     joint = next(joint for joint in layout.mechanism.joints if joint.name == name)
     D = states.point_position(joint.b, joint.q)[0] - states.point_position(joint.a, joint.p)[0]
     return float(np.sqrt(D @ D))
 
 
-def of_length(joint: Joint, states: BodyStates) -> tuple[Array, Array]:
-    """Of the distance of two points D: e . v, and e . a + (v^2 - (e . v)^2) / |D|."""
+def compute_length_rate(joint: Joint, states: BodyStates) -> tuple[Array, Array]:
+    """Return the derivatives of the distance D of two points: e . v, and e . a + (v^2 - (e . v)^2) / |D|."""
     A, B = states.point_position(joint.a, joint.p), states.point_position(joint.b, joint.q)
-    v = states.velocity(joint.b, B) - states.velocity(joint.a, A)
-    a = states.acceleration(joint.b, B) - states.acceleration(joint.a, A)
+    v = states.point_velocity(joint.b, B) - states.point_velocity(joint.a, A)
+    a = states.point_acceleration(joint.b, B) - states.point_acceleration(joint.a, A)
     D = B - A
-    length = np.sqrt(dot(D, D))
+    length = np.sqrt(dot_rows(D, D))
     e = D / length[:, None]
-    return dot(e, v), dot(e, a) + (dot(v, v) - dot(e, v) ** 2) / length
+    return dot_rows(e, v), dot_rows(e, a) + (dot_rows(v, v) - dot_rows(e, v) ** 2) / length
 
 
-def dot(a: Array, b: Array) -> Array:
-    """Of vectors (n_t, 3)."""
+def dot_rows(a: Array, b: Array) -> Array:
+    """Return the scalar products of vectors (n_t, 3)."""
     return np.asarray(np.sum(a * b, axis=1))

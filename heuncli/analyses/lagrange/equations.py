@@ -1,11 +1,10 @@
-"""Lagrange's equations at an instant: e q'' + C = k + Q, with what makes each term (no. 18, 19; (29) to (39)).
-
+"""Lagrange's equations at an instant: e q'' + C = k + Q, and the origin of each term (no. 18, 19; (29) to (39)).
     x = sum x_i q_i', w = sum w_i q_i'            partials of the velocities, (29), (30)
     e_ij = sum m x_i . x_j + w_i . I w_j          E = q' e q' / 2,   p = e q' (35),   n = e^-1,   F = p n p / 2
     C_i = sum m x_i . x.. + w_i . (I w. + w x I w)    of the accelerations at q'' = 0, e q'' taken off: (37)
     k_i = sum k . x_P,i + M . w_i                 (34), by cause
-C is quadratic in the rates: C(q') = G q' with 2 G e_k = C(q' + e_k) - C(q') - C(e_k), and
-gamma^(i)_lk = (C_i(e_l + e_k) - C_i(e_l) - C_i(e_k)) / 2, by the same answers of the kernel at other rates.
+C is quadratic in the rates: C(q') = G q' with 2 G e_k = C(q' + e_k) - C(q') - C(e_k), and gamma^(i)_lk = (C_i(e_l +
+e_k) - C_i(e_l) - C_i(e_k)) / 2, from the kernel's solutions at other rates.
 """
 
 from __future__ import annotations
@@ -14,60 +13,63 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import Chosen, accelerations
+from heuncli.analyses.lagrange.coordinates import CoordinateChoice, compute_accelerations
 from heuncli.analyses.lagrange.freed import FreedScene
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.actions import Action
-from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.kinetostatics.shares import GRAVITY, MOTION
-from heuncli.motion.integration.evaluator import CAUSES, Recovered
-from heuncli.motion.linearisation.linearise import Linearised
+from heuncli.motion.integration.evaluator import CAUSES, Evaluation
+from heuncli.motion.linearisation.linearise import LinearisedEquations
 from heuncli.multibody.mechanism.model import GROUND
-from heuncli.multibody.tree.layout import Layout, places_of_rates
+from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.results.results import Array
 
 
 @record
 class Partials:
-    """What the rates of the coordinates make of the bodies' velocities, order of the spec, world axes.
+    """Partial derivatives of the bodies' velocities by the rates of the coordinates; bodies in the order of the spec,
+    world axes.
 
-    turn (n, 3, f): of the angular velocities; shift (n, 3, f): of the centres of mass; centres (n, 3) [m].
+    turn (n, 3, f): of the angular velocities
+    shift (n, 3, f): of the velocities of the centres of mass
+    centres (n, 3) [m]: centres of mass
     """
 
     turn: Array
     shift: Array
     centres: Array
 
-    def at(self, body: int, position: Array) -> Array:
-        """Of the point of a body that is at a world position, (3, f); of the ground 0."""
+    def point_partials(self, body: int, position: Array) -> Array:
+        """Return the partials (3, f) of the velocity of a body's point at a world position; 0 for the ground."""
         if body == GROUND:
             return np.zeros(self.shift.shape[1:])
         arm = position - self.centres[body]
         return np.asarray(self.shift[body] + np.cross(self.turn[body], arm, axis=0))
 
-    def turning(self, body: int) -> Array:
-        """Of a body's angular velocity, (3, f); of the ground 0."""
+    def turn_partials(self, body: int) -> Array:
+        """Return the partials (3, f) of a body's angular velocity; 0 for the ground."""
         return np.zeros(self.turn.shape[1:]) if body == GROUND else self.turn[body]
 
-    def work(self, action: Action) -> Array:
-        """The generalised force (f,) of an action at the first of its instants."""
+    def generalised_force(self, action: Action) -> Array:
+        """Return the generalised force (f,) of an action at its first instant."""
         k = np.zeros(self.turn.shape[2])
-        for end, force, moment in action.on_bodies():
-            k = k + force[0] @ self.at(end.body, end.position[0]) + moment[0] @ self.turning(end.body)
+        for end, force, moment in action.iter_ends():
+            k = k + force[0] @ self.point_partials(end.body, end.position[0]) + moment[0] @ self.turn_partials(end.body)
         return k
 
 
-def partials_of(layout: Layout, found: Linearised, S: Array) -> Partials:
-    """The partials of all bodies by the coordinates."""
+def make_partials(layout: Layout, linear_equations: LinearisedEquations, S: Array) -> Partials:
+    """Return the partials of all bodies by the coordinates."""
     order = [layout.place[i] for i in range(len(layout.mechanism.bodies))]
-    twists = found.twists[order] @ S
-    return Partials(twists[:, :3], twists[:, 3:], found.centres[order])
+    twists = linear_equations.twists[order] @ S
+    return Partials(twists[:, :3], twists[:, 3:], linear_equations.centres[order])
 
 
-def reciprocal(names: Sequence[str], epsilon: Array) -> Array:
-    """n = e^-1. Raises SolveError [no-inertia] where a motion has no inertia."""
+def invert_inertia(names: Sequence[str], epsilon: Array) -> Array:
+    """Return n = e^-1. Raises SolveError [no-inertia] if a motion has no inertia."""
     try:
         L = np.linalg.cholesky(epsilon)
     except np.linalg.LinAlgError:
@@ -81,86 +83,88 @@ def reciprocal(names: Sequence[str], epsilon: Array) -> Array:
 
 @record
 class VelocityTerms:
-    """C at given rates, and what answers it: the freed scene with only its velocity terms at work."""
+    """Computes the velocity terms C at given rates, from the freed scene with only its velocity terms at work."""
 
     freed: FreedScene
-    chosen: Chosen
+    chosen: CoordinateChoice
     partials: Partials
     epsilon: Array
     t: float
     state: Array
     holding: Array
 
-    def at(self, rates: Array) -> Array:
-        """C (m, f) at rates of the coordinates (m, f), at the state's place."""
-        layout = self.freed.layout
-        place = places_of_rates(layout)
+    def compute_terms(self, rates: Array) -> Array:
+        """Return C (m, f) at rates of the coordinates (m, f), in the pose of the state."""
+        layout = self.freed_scene.layout
+        rate_places = rate_indices(layout)
         states = np.repeat(self.state[None, :], len(rates), axis=0)
-        states[:, place[place >= 0]] = rates @ self.chosen.S.T
+        states[:, rate_places[rate_places >= 0]] = rates @ self.choice.S.T
         times = np.full(len(rates), self.t)
-        answered = self.freed.runner.recovered(times, states, causes=True, holding=self.holding)
-        moved = motion_alone(layout, answered)
-        force, moment = inertia_loads(layout.mechanism, moved)
-        along = np.einsum("tni,nif->tf", force, self.partials.shift) + np.einsum(
+        recovered = self.freed_scene.runner.evaluate(times, states, causes=True, holding=self.holding)
+        velocity_motion = get_velocity_motion(layout, recovered)
+        force, moment = inertia_loads(layout.mechanism, velocity_motion)
+        forces = np.einsum("tni,nif->tf", force, self.partials.shift) + np.einsum(
             "tni,nif->tf", moment, self.partials.turn
         )
-        return np.asarray(along - accelerations(layout, self.chosen.names, moved) @ self.epsilon)
+        return np.asarray(forces - compute_accelerations(layout, self.choice.names, velocity_motion) @ self.epsilon)
 
     def coriolis_matrix(self, rates: Array) -> Array:
-        """G (f, f) with C = G q', and the rate of e less 2 G antisymmetric; rates (f,)."""
+        """Return G (f, f) with C = G q', such that the rate of e minus 2 G is antisymmetric; rates (f,)."""
         f = len(rates)
         unit = np.eye(f) * max(float(np.abs(rates).max(initial=0.0)), 1.0)
-        C = self.at(np.vstack([rates, rates + unit, unit]))
+        C = self.compute_terms(np.vstack([rates, rates + unit, unit]))
         return np.asarray(0.5 * (C[1 : f + 1] - C[0] - C[f + 1 :]).T / unit[0, 0])
 
     def christoffel(self) -> Array:
-        """gamma[i, l, k], the symbols of the first kind."""
+        """Return gamma[i, l, k], the Christoffel symbols of the first kind."""
         f = len(self.epsilon)
         pairs = [(l, k) for l in range(f) for k in range(l, f)]
         unit = np.eye(f)
-        C = self.at(np.array([unit[l] + unit[k] for l, k in pairs]))
+        C = self.compute_terms(np.array([unit[l] + unit[k] for l, k in pairs]))
         twice = {pair: C[n] for n, pair in enumerate(pairs)}  # C(2 e_l) = 4 C(e_l)
         gamma = np.zeros((f, f, f))
         for (l, k), value in twice.items():
-            both = 0.25 * (twice[l, l] + twice[k, k])
-            gamma[:, l, k] = gamma[:, k, l] = 0.25 * value if l == k else 0.5 * (value - both)
+            diagonal_part = 0.25 * (twice[l, l] + twice[k, k])
+            gamma[:, l, k] = gamma[:, k, l] = 0.25 * value if l == k else 0.5 * (value - diagonal_part)
         return gamma
 
 
-def motion_alone(layout: Layout, answered: Recovered) -> BodyStates:
-    """The bodies' motion with the accelerations that the velocities alone ask for, without loads or drives."""
-    assert answered.causes is not None, "recovered without causes"
+def get_velocity_motion(layout: Layout, recovered: Evaluation) -> BodyStates:
+    """Return the bodies' motion with the accelerations due to the velocities alone, without loads or drives."""
+    assert recovered.causes is not None, "recovered without causes"
     column = len(layout.tables["loads"]) + CAUSES.index(MOTION)
-    bodies = answered.bodies.copy()
-    own = answered.causes.bodies[:, column]
-    bodies["alpha"] = own["alpha"]
-    bodies["a"] = own["a"] - layout.mechanism.gravity  # told less g
-    return body_states(layout, replace(answered, bodies=bodies))
+    bodies = recovered.bodies.copy()
+    caused = recovered.causes.bodies[:, column]
+    bodies["alpha"] = caused["alpha"]
+    bodies["a"] = caused["a"] - layout.mechanism.gravity  # the kernel's accelerations are relative to free fall
+    return make_body_states(layout, replace(recovered, bodies=bodies))
 
 
-def forces_by_cause(layout: Layout, partials: Partials, actions: Sequence[Action]) -> dict[str, Array]:
-    """k (f,) of each cause: of weight, and of the applied loads by their names."""
+def compute_forces_by_cause(layout: Layout, partials: Partials, actions: Sequence[Action]) -> dict[str, Array]:
+    """Return k (f,) of each cause: of weight, and of the applied loads by name."""
     mechanism = layout.mechanism
     weight = np.array([body.mass for body in mechanism.bodies])[:, None] * mechanism.gravity
     k = {GRAVITY: np.einsum("ni,nif->f", weight, partials.shift)} if mechanism.gravity.any() else {}
     for action in actions:
-        k[action.name] = k.get(action.name, 0.0) + partials.work(action)
+        k[action.name] = k.get(action.name, 0.0) + partials.generalised_force(action)
     return k
 
 
-def size_of_terms(layout: Layout, partials: Partials, actions: Sequence[Action], states: BodyStates) -> Array:
-    """Of what size the parts are whose sums the terms of the equations are, (f,): |F| |x_P,i| + |M| |w_i| of each."""
+def estimate_term_sizes(layout: Layout, partials: Partials, actions: Sequence[Action], states: BodyStates) -> Array:
+    """Return the size of the terms in the equations, (f,): the sum of |F| |x_P,i| + |M| |w_i| over all loads."""
     mechanism = layout.mechanism
     weight = np.array([body.mass for body in mechanism.bodies])[:, None] * mechanism.gravity
-    force, moment = (norms(part[0], 1) for part in inertia_loads(mechanism, states))
-    size = (norms(weight, 1) + force) @ norms(partials.shift, 1) + moment @ norms(partials.turn, 1)
+    force, moment = (compute_norms(part[0], 1) for part in inertia_loads(mechanism, states))
+    size = (compute_norms(weight, 1) + force) @ compute_norms(partials.shift, 1) + moment @ compute_norms(
+        partials.turn, 1
+    )
     for action in actions:
-        for end, F, M in action.on_bodies():
-            size = size + norms(F[0], 0) * norms(partials.at(end.body, end.position[0]), 0)
-            size = size + norms(M[0], 0) * norms(partials.turning(end.body), 0)
+        for end, F, M in action.iter_ends():
+            size = size + compute_norms(F[0], 0) * compute_norms(partials.point_partials(end.body, end.position[0]), 0)
+            size = size + compute_norms(M[0], 0) * compute_norms(partials.turn_partials(end.body), 0)
     return np.asarray(size)
 
 
-def norms(vectors: Array, axis: int) -> Array:
-    """Magnitudes of vectors along an axis."""
+def compute_norms(vectors: Array, axis: int) -> Array:
+    """Return the magnitudes of vectors along an axis."""
     return np.asarray(np.sqrt(np.sum(vectors**2, axis=axis)))

@@ -1,7 +1,7 @@
-"""The scene in which drives hold nothing: a driven coordinate is one of Lagrange's coordinates like any other.
+"""The scene without its drives: a driven coordinate becomes one of Lagrange's coordinates like any other.
 
-It keeps the tree, the reference attitudes and the inertias of the scene that it is made of, so that a state of the one
-is a state of the other: what is driven there is a number of the state here.
+It keeps the tree, the reference attitudes and the inertias of the original scene, so that states can be converted: a
+driven coordinate of the original is a state variable here.
 """
 
 from __future__ import annotations
@@ -13,20 +13,23 @@ import numpy as np
 
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.motion.integration.run.runner import Runner, ready
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.prepare import PreparedScene, arranged
+from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 
-NONE: Mapping[str, float] = MappingProxyType({})
+NO_EFFORTS: Mapping[str, float] = MappingProxyType({})
 
 
 @record
 class FreedScene:
-    """A scene without drives; of: the one that it is made of, whose drives act."""
+    """A scene without drives.
+
+    original: the scene it was made of, with its drives
+    """
 
     scene: PreparedScene
     runner: Runner
@@ -34,49 +37,62 @@ class FreedScene:
 
     @property
     def layout(self) -> Layout:
-        """How it is laid out."""
+        """The layout of the scene."""
         return self.scene.layout
 
     @property
-    def driven(self) -> dict[str, str]:
-        """The driven coordinates, and the joint of each."""
-        joints = (joint for joint in self.of.mechanism.joints if joint.drive is not None)
+    def driven_coordinates(self) -> dict[str, str]:
+        """The coordinates that the original drives, with the joint of each."""
+        joints = (joint for joint in self.original.mechanism.joints if joint.drive is not None)
         return {f"{joint.name}.{joint.drive.quantity}": joint.name for joint in joints if joint.drive is not None}
 
-    def holding(self, holding: Array) -> Array:
-        """Which contacts are closed here, (contacts,), of those there; rods whose driven length is let go are open."""
-        given = {key: float(value) for key, value in zip(contacts_of(self.of.layout), holding, strict=True)}
-        return np.array([given.get(key, 0.0) for key in contacts_of(self.layout)])
+    def convert_holding(self, holding: Array) -> Array:
+        """Convert the original's closed contacts to those of this scene, (contacts,); rods released from a driven
+        length are open.
+        """
+        values_by_contact = {
+            key: float(value) for key, value in zip(list_contact_keys(self.original.layout), holding, strict=True)
+        }
+        return np.array([values_by_contact.get(key, 0.0) for key in list_contact_keys(self.layout)])
 
-    def states(self, there: Recovered) -> Array:
-        """The states here, (n_t, n), at instants at which the other scene was answered."""
-        own, given = self.layout, self.of.layout
-        states = np.zeros((len(there.times), own.n_state))
-        free = own.tables["freedoms"]
-        states[:, free["q_at"]] = there.freedoms["q"]
-        states[:, free["u_at"]] = there.freedoms["u"]
-        for here, other in zip(own.bodies, given.bodies, strict=True):
-            if here["ball"]:
+    def convert_states(self, recovered: Evaluation) -> Array:
+        """Convert the states at the recovered instants of the original to states of this scene, (n_t, n)."""
+        layout, original_layout = self.layout, self.original.layout
+        states = np.zeros((len(recovered.times), layout.n_state))
+        free = layout.tables["freedoms"]
+        states[:, free["q_at"]] = recovered.freedoms["q"]
+        states[:, free["u_at"]] = recovered.freedoms["u"]
+        for ball, original_ball in zip(layout.bodies, original_layout.bodies, strict=True):
+            if ball["ball"]:
                 for name, count in (("attitude_at", 4), ("rate_at", 3)):
-                    a, b = int(here[name]), int(other[name])
-                    states[:, a : a + count] = there.states[:, b : b + count]
-        for joint, at in own.counters.items():
-            states[:, at] = there.states[:, given.counters[joint]]
+                    a, b = int(ball[name]), int(original_ball[name])
+                    states[:, a : a + count] = recovered.states[:, b : b + count]
+        for joint, at in layout.counters.items():
+            states[:, at] = recovered.states[:, original_layout.counters[joint]]
         return states
 
 
-def freed(of: PreparedScene, efforts: Mapping[str, float] = NONE) -> FreedScene:
-    """A scene with its drives let go; efforts: what is put on in their place, by the driven coordinates' names."""
-    mechanism = replace(of.mechanism, joints=tuple(map(let_go, of.mechanism.joints)))
-    loads = (load for name, value in efforts.items() if value for load in effort(mechanism, name, value))
+def free_drives(original: PreparedScene, efforts: Mapping[str, float] = NO_EFFORTS) -> FreedScene:
+    """Return a scene without its drives.
+
+    efforts: loads applied instead, by the names of the driven coordinates
+    """
+    mechanism = replace(original.mechanism, joints=tuple(map(release_drive, original.mechanism.joints)))
+    loads = (load for name, value in efforts.items() if value for load in make_effort_loads(mechanism, name, value))
     mechanism = replace(mechanism, loads=(*mechanism.loads, *loads))
-    scene = arranged(mechanism, of.start, spanning=of.layout.spanning, size=of.layout.size, starts=of.layout.starts)
-    scene, runner = ready(scene)
-    return FreedScene(scene, runner, of)
+    scene = lay_out_scene(
+        mechanism,
+        original.start,
+        spanning=original.layout.spanning,
+        size=original.layout.size,
+        starts=original.layout.starts,
+    )
+    scene, runner = make_runner(scene)
+    return FreedScene(scene, runner, original)
 
 
-def let_go(joint: Joint) -> Joint:
-    """A joint without its drive: a rod whose length was driven is a rope that hangs slack."""
+def release_drive(joint: Joint) -> Joint:
+    """Return a joint without its drive; a rod whose length was driven becomes a slack rope."""
     if joint.drive is None:
         return joint
     if JOINTS[joint.kind].keeps_distance:
@@ -84,26 +100,28 @@ def let_go(joint: Joint) -> Joint:
     return replace(joint, drive=None)
 
 
-def effort(mechanism: Mechanism, coordinate: str, value: float) -> tuple[Load, ...]:
-    """The constant torque [N m] or thrust [N] of a drive along its coordinate, on `to`, and opposite on `from`."""
+def make_effort_loads(mechanism: Mechanism, coordinate: str, value: float) -> tuple[Load, ...]:
+    """Return the constant torque [N m] or thrust [N] of a drive along its coordinate, on `to`, and the opposite on
+    `from`.
+    """
     joint_name, _, quantity = coordinate.rpartition(".")
     k = next(i for i, joint in enumerate(mechanism.joints) if joint.name == joint_name)
     joint, name = mechanism.joints[k], f"drive of {coordinate}"
     if quantity == "length":
-        return (PairLoad(name, joint.a, joint.p, joint.b, joint.q, Expression.of(value), 0.0, 0.0, 0.0),)
+        return (PairLoad(name, joint.a, joint.p, joint.b, joint.q, Expression.from_number(value), 0.0, 0.0, 0.0),)
     if JOINTS[joint.kind].coordinates == (quantity,):
-        return (JointLoad(name, "torque", k, Expression.of(value)),)
+        return (JointLoad(name, "torque", k, Expression.from_number(value)),)
     # a cylinder slides along the axis that both bodies have
     ends = ((joint.b, joint.q, joint.to_axis, value), (joint.a, joint.p, joint.axis, -value))
     return tuple(
         PointLoad(name, "force", body, point, (x, y, z), True)
-        for body, point, axis, along in ends
+        for body, point, axis, signed_value in ends
         if body != GROUND
-        for x, y, z in [[Expression.of(float(component)) for component in along * axis]]
+        for x, y, z in [[Expression.from_number(float(component)) for component in signed_value * axis]]
     )
 
 
-def contacts_of(layout: Layout) -> list[tuple[str, bool, int | None]]:
-    """What tells the contacts apart, then the places at which latches hold."""
+def list_contact_keys(layout: Layout) -> list[tuple[str, bool, int | None]]:
+    """Return keys that identify the contacts, then those of the latches."""
     contacts = [(contact.name, contact.is_rope, contact.sense) for contact in layout.contacts]
     return [*contacts, *((layout.contacts[i].name, False, None) for i in layout.latches)]

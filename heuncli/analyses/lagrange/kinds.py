@@ -1,4 +1,4 @@
-"""What is measured along an angle and along a length: the SI units of Lagrange's quantities, a row each."""
+"""SI units of Lagrange's quantities along an angle and along a length."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class CoordinateUnits(NamedTuple):
-    """The units of a coordinate q, its rate and acceleration, and of what belongs to it.
+    """The units of a coordinate q, its rate and acceleration, and of quantities along it.
 
-    force: of k, C and drives; momentum: of p and h; inertia: of its entry on the diagonal of the mass matrix.
+    force: of k, C and drives
+    momentum: of p and h
+    inertia: of its diagonal entry in the mass matrix
     """
 
     value: str
@@ -21,15 +23,15 @@ class CoordinateUnits(NamedTuple):
 
     @property
     def slope(self) -> str:
-        """Of the inertia's slope over the coordinate."""
+        """Unit of the derivative of the inertia by the coordinate."""
         return f"{self.inertia}/{self.value}"
 
 
 ANGLE = CoordinateUnits("rad", "rad/s", "rad/s²", "N·m", "N·m·s", "kg·m²")
 LENGTH = CoordinateUnits("m", "m/s", "m/s²", "N", "N·s", "kg")
-MIXED = "kg·m"  # of an angle and a length
+MIXED_INERTIA_UNIT = "kg·m"  # of an angle and a length
 
 
-def units_of(coordinate: str) -> CoordinateUnits:
-    """The units along a coordinate, owner.quantity."""
+def get_units(coordinate: str) -> CoordinateUnits:
+    """Return the units along a coordinate owner.quantity."""
     return LENGTH if is_length(coordinate) else ANGLE

@@ -1,4 +1,4 @@
-"""What `heun lagrange` tells of an instant."""
+"""Results of `heun lagrange` at an instant."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from heuncli.results.results import Array
 
 
 @record
-class Seen:
-    """The inertia that is seen along a coordinate, or at a point along a direction.
+class ApparentInertia:
+    """The apparent inertia along a coordinate, or at a point along a direction.
 
-    locked: with the other coordinates held; None at a point, which others may hold in many ways. free: with them free.
+    others_locked: with the other coordinates held; None at a point, where this is not unique
+    others_free: with the other coordinates free
     """
 
     name: str
@@ -26,9 +27,10 @@ class Seen:
 
 @record
 class SectionForces:
-    """What a section's piece exerts along the coordinates, s (cuts, f), nan where the section is open.
+    """Generalised forces that the piece beyond a section exerts, s (cuts, f); nan if the section is indeterminate.
 
-    reach (f,): of what size such loads are along what the coordinates move most; is_run: of several cuts.
+    scale (f,): size of such loads at the largest partials of the body, for comparison
+    is_run: whether there are several cuts
     """
 
     s: Array
@@ -37,8 +39,10 @@ class SectionForces:
 
 
 @record
-class BlowResults:
-    """A blow along the coordinates, (f,): h of what is given, of drives, jumps of the rates; F of h; r' of sections."""
+class ImpulseResults:
+    """An impulse along the coordinates, (f,): h of the given impulse, of drives, jumps of the rates; F of h; r' of
+    sections.
+    """
 
     t: float
     h: Array
@@ -50,14 +54,15 @@ class BlowResults:
 
 @record
 class LagrangeResults:
-    """The Lagrange side of a scene at an instant; f coordinates.
+    """Lagrange's equations of a scene at an instant; f coordinates.
 
-    values: of the coordinates, not a number of quasi-velocities; rates q'; accelerations q'' of the scene as it is,
-    with its drives; forces k by cause; drives Q: what drives do beside them, 0 where nothing drives; C: coriolis, with
-    its matrix; gamma[i, l, k], alpha[i, l, k]: None where they were not asked for, or of rates without coordinates.
-    energy: E; energies: of what is free, mixed, driven, nan where driven coordinates are not among these.
-    scale: of what size the parts are whose sums the forces are; residual: of e q'' + C = k + Q where Q is known
-    otherwise, of these.
+    values: of the coordinates, nan for quasi-velocities; rates q'; accelerations q'' of the scene with its drives
+    forces: k by cause; drives: Q of the drives, 0 where nothing drives
+    coriolis, coriolis_matrix: C and its matrix
+    gamma, alpha: symbols [i, l, k]; None if not requested, or for rates without coordinates
+    energy: E; energies: its free, mixed and driven parts, nan if driven coordinates are not among the chosen ones
+    scale: size of the terms in the equations
+    residual: of e q'' + C = k + Q relative to these, where Q is known otherwise
     """
 
     title: str
@@ -82,23 +87,26 @@ class LagrangeResults:
     reciprocal_energy: float
     scale: Array
     residual: float
-    seen: tuple[Seen, ...]
+    seen: tuple[ApparentInertia, ...]
     sections: Mapping[str, SectionForces]
     partials: Mapping[str, Any]
     left_out: tuple[str, ...]
     notes: tuple[str, ...] = ()
     state_space: StateSpace | None = None
-    blows: tuple[BlowResults, ...] = ()
+    blows: tuple[ImpulseResults, ...] = ()
 
     @property
-    def total(self) -> Array:
+    def total_force(self) -> Array:
         """k: the sum of all causes."""
         return sum(self.forces.values(), np.zeros(len(self.names)))
 
 
 @record
 class StateSpace:
-    """x. = A x + B u, y = C x + D u beside a state; offset: x. there, 0 of a rest. Names and units of x, u and y."""
+    """x. = A x + B u, y = C x + D u for small motions about a state, with the names and units of x, u and y.
+
+    offset: x. at the state, 0 at rest
+    """
 
     A: Array
     B: Array
@@ -112,11 +120,12 @@ class StateSpace:
 
 
 @record
-class InertiaCourse:
+class InertiaCurve:
     """The inertia and the forces over a range of the one free coordinate, (n,) each.
 
-    epsilon, half: e and de/dq / 2; forces k by cause, at a rate of the coordinate; reach: of what size the
-    products are that they are sums of; mean: of e, over the range, nan where it does not settle.
+    epsilon, half: e and de/dq / 2
+    forces: k by cause, at a rate of the coordinate; force_scale: size of their terms
+    mean: of e over the range, nan if it does not converge
     """
 
     title: str
@@ -131,13 +140,13 @@ class InertiaCourse:
     reach: float
 
     @property
-    def total(self) -> Array:
-        """k."""
+    def total_force(self) -> Array:
+        """k: the sum of all causes."""
         return sum(self.forces.values(), np.zeros(len(self.values)))
 
     @property
-    def reversed(self) -> InertiaCourse:
-        """The other way round."""
+    def reversed_curve(self) -> InertiaCurve:
+        """The same curve in the opposite direction."""
         forces = {name: k[::-1] for name, k in self.forces.items()}
-        own = {name: getattr(self, name)[::-1] for name in ("values", "epsilon", "half")}
-        return replace(self, forces=forces, **own)
+        reversed_values = {name: getattr(self, name)[::-1] for name in ("values", "epsilon", "half")}
+        return replace(self, forces=forces, **reversed_values)

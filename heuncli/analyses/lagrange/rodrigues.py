@@ -1,9 +1,8 @@
 """Rodrigues-Cayley vectors as coordinates of bodies that turn freely (no. 20, and the end of no. 22).
-
     k = tan(angle / 2) n, of the turn from where the body's axes are those of the world
     w = W k',   W = 2/(1 + k^2) (1 + k^),   W^-1 = (1 + k k' - k^) / 2              (42), (43)
     w. = W (k'' - 2 k . k' / (1 + k^2) k'),   so   k'' = W^-1 w. + 2 k . k' / (1 + k^2) k'
-They are coordinates proper: with them the quasi-velocities of a ball have Lagrange's equations, too.
+They are true coordinates: with them Lagrange's equations hold for the rotation of a ball, too.
 """
 
 from __future__ import annotations
@@ -11,33 +10,36 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.motion.linearisation.linearise import Linearised
+from heuncli.motion.linearisation.linearise import LinearisedEquations
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import hat, to_quaternion
+from heuncli.scene.shapes.rotations import cross_matrix, quaternion_from_matrix
 
-WORD = "rodrigues"  # what asks for them
+OPTION_WORD = "rodrigues"  # value of --coordinates that selects them
 NAMES = ("kappa_x", "kappa_y", "kappa_z")
-HALF_TURN = 1e-3  # [rad] of a half turn: k is above 2000, and six digits of its equations are lost
+HALF_TURN = 1e-3  # [rad] to a half turn: there k exceeds 2000, and its equations lose six digits
 
 
-def rows(layout: Layout, found: Linearised) -> dict[str, Array]:
-    """The rows of k' on the rates of the tree, of the bodies that hang on balls or on nothing.
+def make_rows(layout: Layout, linear_equations: LinearisedEquations) -> dict[str, Array]:
+    """Return the rows of k' on the rates of the tree, for bodies on balls and free bodies.
 
-    Raises SolveError beside a half turn.
+    Raises SolveError [half-turn] close to half a turn.
     """
-    made: dict[str, Array] = {}
-    for place, hang in enumerate(layout.spanning.hangs):
+    rows_by_name: dict[str, Array] = {}
+    for place, hang in enumerate(layout.spanning.links):
         if layout.bodies["ball"][place] and not layout.mechanism.planar:
             name = layout.mechanism.bodies[hang.body].name
-            back = inverse(vector(found.attitudes[place], name))
-            made |= {f"{name}.{axis}": row for axis, row in zip(NAMES, back @ found.twists[place, :3], strict=True)}
-    return made
+            W_inverse = compute_inverse(compute_vector(linear_equations.attitudes[place], name))
+            rows_by_name |= {
+                f"{name}.{axis}": row
+                for axis, row in zip(NAMES, W_inverse @ linear_equations.twists[place, :3], strict=True)
+            }
+    return rows_by_name
 
 
-def vector(R: Array, body: str) -> Array:
-    """k (3,) of an attitude, body to world. Raises SolveError [half-turn] where it has no bound."""
-    q = to_quaternion(R)
+def compute_vector(R: Array, body: str) -> Array:
+    """Return k (3,) of an attitude, body to world. Raises SolveError [half-turn] where it is unbounded."""
+    q = quaternion_from_matrix(R)
     if abs(q[0]) < np.sin(0.5 * HALF_TURN):
         message = (
             f"{body} is within {HALF_TURN:g} rad of half a turn from its own axes: its Rodrigues vector has no bound"
@@ -47,17 +49,17 @@ def vector(R: Array, body: str) -> Array:
     return np.asarray(q[1:] / q[0])
 
 
-def inverse(k: Array) -> Array:
-    """W^-1 (3, 3)."""
-    return np.asarray(0.5 * (np.eye(3) + np.outer(k, k) - hat(k)))
+def compute_inverse(k: Array) -> Array:
+    """Return W^-1 (3, 3)."""
+    return np.asarray(0.5 * (np.eye(3) + np.outer(k, k) - cross_matrix(k)))
 
 
-def moved(R: Array, omega: Array, alpha: Array, body: str) -> tuple[Array, Array]:
-    """k' and k'' of attitudes (n_t, 3, 3) with these angular velocities and accelerations, (n_t, 3) each."""
+def compute_rates(R: Array, omega: Array, alpha: Array, body: str) -> tuple[Array, Array]:
+    """Return k' and k'' of attitudes (n_t, 3, 3) with these angular velocities and accelerations, (n_t, 3) each."""
     rates, accelerations = np.zeros_like(omega), np.zeros_like(omega)
     for i, attitude in enumerate(R):
-        k = vector(attitude, body)
-        back = inverse(k)
-        rates[i] = back @ omega[i]
-        accelerations[i] = back @ alpha[i] + 2.0 * float(k @ rates[i]) / (1.0 + float(k @ k)) * rates[i]
+        k = compute_vector(attitude, body)
+        W_inverse = compute_inverse(k)
+        rates[i] = W_inverse @ omega[i]
+        accelerations[i] = W_inverse @ alpha[i] + 2.0 * float(k @ rates[i]) / (1.0 + float(k @ k)) * rates[i]
     return rates, accelerations

@@ -1,4 +1,4 @@
-"""The Lagrange side of a spec's scene at an instant (no. 18 to 24 of the paper)."""
+"""Lagrange's equations of a spec's scene at an instant (no. 18 to 24 of the paper)."""
 
 from __future__ import annotations
 
@@ -7,43 +7,49 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.lagrange import rodrigues
-from heuncli.analyses.lagrange.blows import blows
-from heuncli.analyses.lagrange.coordinates import Chosen, accelerations, chosen, length_of, rates
-from heuncli.analyses.lagrange.drives import drive_rows, left_by_reactions
+from heuncli.analyses.lagrange.blows import compute_impulses
+from heuncli.analyses.lagrange.coordinates import (
+    CoordinateChoice,
+    choose_coordinates,
+    compute_accelerations,
+    compute_length,
+    compute_rates,
+)
+from heuncli.analyses.lagrange.drives import make_drive_rows, subtract_drive_efforts
 from heuncli.analyses.lagrange.equations import (
     Partials,
     VelocityTerms,
-    forces_by_cause,
-    partials_of,
-    reciprocal,
-    size_of_terms,
+    compute_forces_by_cause,
+    estimate_term_sizes,
+    invert_inertia,
+    make_partials,
 )
-from heuncli.analyses.lagrange.instant import Instant, instant_of
+from heuncli.analyses.lagrange.instant import Instant, make_instant
 from heuncli.analyses.lagrange.results import LagrangeResults, SectionForces
-from heuncli.analyses.lagrange.section_forces import section_forces
-from heuncli.analyses.lagrange.seen import seen
-from heuncli.analyses.lagrange.state_space import state_space
+from heuncli.analyses.lagrange.section_forces import compute_section_forces
+from heuncli.analyses.lagrange.seen import compute_apparent_inertias
+from heuncli.analyses.lagrange.state_space import compute_state_space
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.records import record
-from heuncli.loads.kinetostatics.actions import Action, applied_loads, whole_joint_actions
-from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
-from heuncli.loads.kinetostatics.coordinates import coordinates
-from heuncli.loads.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
+from heuncli.loads.kinetostatics.actions import Action, collect_applied_loads, list_whole_joint_actions
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
+from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_coupling_actions, list_rope_actions
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.compose.blocks import blocks as blocks_of
-from heuncli.study.model.error_places import placed
+from heuncli.study.compose.blocks import make_blocks as blocks_of
+from heuncli.study.model.error_places import attach_locations
 
-QUASI = (
+QUASI_VELOCITY_NOTE = (
     "{names}: rates without coordinates, components of angular velocity and of velocity along the world's axes: "
     "Christoffel symbols and alpha are not defined for them"
 )
 
 
 @record
-class LagrangeQuestion:
-    """What is asked for beside the equations: coordinates, places at which inertia is seen, Christoffel symbols."""
+class LagrangeOptions:
+    """Options of a Lagrange analysis: coordinates, places of apparent inertias, Christoffel symbols, a state space."""
 
     at: float | None = None
     coordinates: tuple[str, ...] = ()
@@ -55,43 +61,45 @@ class LagrangeQuestion:
     time_limit: float | None = None
 
 
-def lagrange(spec: Spec, asked: LagrangeQuestion) -> LagrangeResults:
-    """Lagrange's equations of a spec's scene, in numbers. Raises SolveError."""
-    with placed(spec):
-        at = instant_of(spec, asked.at, asked.time_limit)
-        return told(spec, at, asked)
+def solve_lagrange(spec: Spec, options: LagrangeOptions) -> LagrangeResults:
+    """Return Lagrange's equations of a spec's scene, in numbers. Raises SolveError."""
+    with attach_locations(spec):
+        instant = make_instant(spec, options.at, options.time_limit)
+        return to_results(spec, instant, options)
 
 
-def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
-    """The results at an instant."""
-    layout = at.freed.layout
-    by = chosen(at.freed.scene, at.found, at.freed.driven, asked.coordinates)
-    epsilon = symmetric(by.S.T @ at.found.mass @ by.S)
-    eta = reciprocal(by.names, epsilon)
-    partials = partials_of(layout, at.found, by.S)
-    states = body_states(at.setup.scene.layout, at.there, at.setup.steady)
-    q1, q2 = (move(layout, by.names, states)[0] for move in (rates, accelerations))
-    terms = VelocityTerms(at.freed, by, partials, epsilon, at.t, at.state, at.holding)
-    C = terms.at(q1[None, :])[0]
-    here = body_states(layout, at.here)
-    applied = applied_in(layout, at, states)
-    k = forces_by_cause(layout, partials, applied)
-    scale = size_of_terms(layout, partials, [*applied, *holding(at)], states)
+def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> LagrangeResults:
+    """Return the results at an instant."""
+    layout = instant.freed_scene.layout
+    choice = choose_coordinates(
+        instant.freed_scene.scene, instant.linear_equations, instant.freed_scene.driven_coordinates, options.coordinates
+    )
+    epsilon = symmetrise(choice.S.T @ instant.linear_equations.mass @ choice.S)
+    eta = invert_inertia(choice.names, epsilon)
+    partials = make_partials(layout, instant.linear_equations, choice.S)
+    states = make_body_states(instant.setup.scene.layout, instant.driven_recovered, instant.setup.steady_spin_axes)
+    q1, q2 = (move(layout, choice.names, states)[0] for move in (compute_rates, compute_accelerations))
+    terms = VelocityTerms(instant.freed_scene, choice, partials, epsilon, instant.t, instant.state, instant.holding)
+    C = terms.compute_terms(q1[None, :])[0]
+    freed_states = make_body_states(layout, instant.freed_recovered)
+    applied_actions = list_applied_actions(layout, instant, states)
+    k = compute_forces_by_cause(layout, partials, applied_actions)
+    scale = estimate_term_sizes(layout, partials, [*applied_actions, *list_constraint_actions(instant)], states)
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
     total = sum(k.values(), np.zeros(len(q1)))
-    drives = drive_rows(at, by)
-    left = epsilon @ q2 + C - total
-    Q = drives.along(left)
-    linear = state_space(at, by, Q, asked.inputs, asked.outputs) if asked.state_space else None
-    gamma = terms.christoffel() if asked.christoffel and not any(by.quasi) else None
+    drives = make_drive_rows(instant, choice)
+    remainder = epsilon @ q2 + C - total
+    Q = drives.project_on_drives(remainder)
+    linear = compute_state_space(instant, choice, Q, options.inputs, options.outputs) if options.state_space else None
+    gamma = terms.christoffel() if options.christoffel and not any(choice.is_quasi_velocity) else None
     return LagrangeResults(
         energy=float(0.5 * q1 @ epsilon @ q1),
         title=spec.title,
-        t=at.t,
-        at=at.words,
-        names=by.names,
-        driven=by.driven,
-        values=values_of(at, by, here),
+        t=instant.t,
+        instant_text=instant.heading,
+        names=choice.names,
+        is_driven=choice.is_driven,
+        values=compute_values(instant, choice, freed_states),
         rates=q1,
         accelerations=q2,
         epsilon=epsilon,
@@ -103,106 +111,114 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
         coriolis_matrix=terms.coriolis_matrix(q1),
         gamma=gamma,
         alpha=None if gamma is None else -np.einsum("ij,jlk->ilk", eta, gamma),
-        energies=energies(epsilon, q1, np.array(by.driven), all(name in by.names for name in drives.names)),
+        energies=split_energy(
+            epsilon, q1, np.array(choice.is_driven), all(name in choice.names for name in drives.names)
+        ),
         reciprocal_energy=float(0.5 * (epsilon @ q1) @ eta @ (epsilon @ q1)),
         scale=scale,
-        residual=residual(by, *left_by_reactions(at, drives, left), scale),
-        seen=seen(at, by, partials, epsilon, eta, asked.seen),
-        sections=sections(at, partials),
-        partials=partials_block(at, by, partials),
-        left_out=by.left_out,
-        notes=tuple(notes(by)),
+        residual=compute_residual(choice, *subtract_drive_efforts(instant, drives, remainder), scale),
+        apparent_inertias=compute_apparent_inertias(instant, choice, partials, epsilon, eta, options.seen),
+        sections=list_section_forces(instant, partials),
+        partials=make_partials_block(instant, choice, partials),
+        left_out=choice.left_out,
+        notes=tuple(make_notes(choice)),
         state_space=linear,
-        blows=blows(spec, at, drives, by, partials, epsilon, eta),
+        impulses=compute_impulses(spec, instant, drives, choice, partials, epsilon, eta),
     )
 
 
-def applied_in(layout: Layout, at: Instant, states: BodyStates) -> list[Action]:
-    """What acts by laws, as it does with the drives: friction hangs on what the joint carries then."""
-    applied = [load.action for load in applied_loads(layout.mechanism, states, at.there)]
-    return applied + rope_actions(coupling_loads(layout, at.there, states))
+def list_applied_actions(layout: Layout, instant: Instant, states: BodyStates) -> list[Action]:
+    """Return the applied loads as they act with the drives: friction depends on the reactions of that scene."""
+    applied = [load.action for load in collect_applied_loads(layout.mechanism, states, instant.driven_recovered)]
+    return applied + list_rope_actions(find_coupling_loads(layout, instant.driven_recovered, states))
 
 
-def holding(at: Instant) -> list[Action]:
-    """What joints and couplings exert by what they hold."""
-    held = [own for own in at.recovery.couplings if own.coupling.stretched is None]
-    return [*whole_joint_actions(at.recovery.unsplit), *coupling_actions(held)]
+def list_constraint_actions(instant: Instant) -> list[Action]:
+    """Return the constraint forces of joints and couplings."""
+    constraint_couplings = [own for own in instant.recovery.couplings if own.coupling.stretched_row is None]
+    return [*list_whole_joint_actions(instant.recovery.unsplit), *list_coupling_actions(constraint_couplings)]
 
 
-def symmetric(M: Array) -> Array:
-    """Of a matrix that is, to rounding."""
+def symmetrise(M: Array) -> Array:
+    """Return the symmetric part of a matrix that is symmetric except for rounding."""
     return np.asarray(0.5 * (M + M.T))
 
 
-def values_of(at: Instant, by: Chosen, here: BodyStates) -> Array:
-    """The coordinates themselves, (f,); not a number of quasi-velocities."""
-    block = coordinates(at.freed.layout, at.here, here)
-    found = []
-    for name in by.names:
+def compute_values(instant: Instant, choice: CoordinateChoice, states: BodyStates) -> Array:
+    """Return the values of the coordinates, (f,); nan for quasi-velocities."""
+    block = evaluate_joint_coordinates(instant.freed_scene.layout, instant.freed_recovered, states)
+    values = []
+    for name in choice.names:
         owner, _, quantity = name.rpartition(".")
         if quantity == "length":
-            found.append(length_of(at.freed.layout, here, owner))
+            values.append(compute_length(instant.freed_scene.layout, states, owner))
         else:
-            found.append(
-                float(block[owner][quantity][0]) if quantity in block.get(owner, {}) else of_body(at, here, name)
+            values.append(
+                float(block[owner][quantity][0])
+                if quantity in block.get(owner, {})
+                else compute_body_value(instant, states, name)
             )
-    return np.array(found)
+    return np.array(values)
 
 
-def of_body(at: Instant, here: BodyStates, name: str) -> float:
-    """A component of a body's Rodrigues vector, or of the place of its centre; not a number of a quasi-velocity."""
+def compute_body_value(instant: Instant, states: BodyStates, name: str) -> float:
+    """Return a component of a body's Rodrigues vector, or of its centre's position; nan for a quasi-velocity."""
     owner, _, quantity = name.rpartition(".")
-    bodies = [body.name for body in at.freed.layout.mechanism.bodies]
+    bodies = [body.name for body in instant.freed_scene.layout.mechanism.bodies]
     if owner not in bodies:
         return np.nan
     body, axis = bodies.index(owner), "xyz".index(quantity[-1])
     if quantity in rodrigues.NAMES:
-        return float(rodrigues.vector(here.R[0, body], owner)[axis])
-    return float(here.centre[0, body, axis]) if quantity.startswith("d") else np.nan
+        return float(rodrigues.compute_vector(states.R[0, body], owner)[axis])
+    return float(states.centre[0, body, axis]) if quantity.startswith("d") else np.nan
 
 
-def energies(epsilon: Array, q1: Array, driven: Array, is_split: bool) -> tuple[float, float, float]:
-    """The parts of E: of the free rates, of both, of the driven ones; nan where these are no coordinates."""
+def split_energy(epsilon: Array, q1: Array, is_driven: Array, is_split: bool) -> tuple[float, float, float]:
+    """Return the free, mixed and driven parts of E; nan if the driven rates are not among the coordinates."""
     if not is_split:
         return np.nan, np.nan, np.nan
-    a, b = np.where(driven, 0.0, q1), np.where(driven, q1, 0.0)
+    a, b = np.where(is_driven, 0.0, q1), np.where(is_driven, q1, 0.0)
     return float(0.5 * a @ epsilon @ a), float(a @ epsilon @ b), float(0.5 * b @ epsilon @ b)
 
 
-def residual(by: Chosen, left: Array, known: Array, scale: Array) -> float:
-    """What the equations leave where it is known, of the largest of the parts that they are sums of."""
-    lengths = np.array([is_length(name) for name in by.names])
-    most = np.where(lengths, scale[lengths].max(initial=0.0), scale[~lengths].max(initial=0.0))
-    off = np.abs(left[known]) / np.maximum(most[known], np.finfo(float).tiny)
-    return float(off.max(initial=0.0))
+def compute_residual(choice: CoordinateChoice, remainder: Array, is_known: Array, scale: Array) -> float:
+    """Return the remainder of the equations where it is known, relative to the largest terms."""
+    is_length_coordinate = np.array([is_length(name) for name in choice.names])
+    largest_terms = np.where(
+        is_length_coordinate,
+        scale[is_length_coordinate].max(initial=0.0),
+        scale[~is_length_coordinate].max(initial=0.0),
+    )
+    relative_remainder = np.abs(remainder[is_known]) / np.maximum(largest_terms[is_known], np.finfo(float).tiny)
+    return float(relative_remainder.max(initial=0.0))
 
 
-def sections(at: Instant, partials: Partials) -> dict[str, SectionForces]:
-    """s'_i of each section: what the piece beyond the cut exerts on the rest."""
-    if not at.setup.cuts:
+def list_section_forces(instant: Instant, partials: Partials) -> dict[str, SectionForces]:
+    """Return s'_i of each section: what the piece beyond the cut exerts on the rest."""
+    if not instant.setup.cuts:
         return {}
-    block = blocks_of(at.recovery, {"sections"})["sections"]
-    return {cuts.name: section_forces(block[cuts.name], 0, partials, cuts.body) for cuts in at.setup.cuts}
+    block = blocks_of(instant.recovery, {"sections"})["sections"]
+    return {cuts.name: compute_section_forces(block[cuts.name], 0, partials, cuts.body) for cuts in instant.setup.cuts}
 
 
-def partials_block(at: Instant, by: Chosen, partials: Partials) -> dict[str, Any]:
-    """What the rates make of the velocities of named points, and of the bodies, (29) and (30)."""
-    mechanism = at.freed.layout.mechanism
-    states = body_states(at.freed.layout, at.here)
-    found: dict[str, Any] = {"points": {}, "bodies": {}}
+def make_partials_block(instant: Instant, choice: CoordinateChoice, partials: Partials) -> dict[str, Any]:
+    """Return the partials of the velocities of named points, and of the bodies, (29) and (30)."""
+    mechanism = instant.freed_scene.layout.mechanism
+    states = make_body_states(instant.freed_scene.layout, instant.freed_recovered)
+    block: dict[str, Any] = {"points": {}, "bodies": {}}
     for i, body in enumerate(mechanism.bodies):
-        found["bodies"][body.name] = {"turn": partials.turn[i].tolist(), "shift": partials.shift[i].tolist()}
+        block["bodies"][body.name] = {"turn": partials.turn[i].tolist(), "shift": partials.shift[i].tolist()}
         for name, place in body.points.items():
             position = states.point_position(i, place)[0]
-            found["points"][f"{body.name}.{name}"] = partials.at(i, position).tolist()
-    return found
+            block["points"][f"{body.name}.{name}"] = partials.point_partials(i, position).tolist()
+    return block
 
 
-def notes(by: Chosen) -> list[str]:
-    """Sentences below the tables."""
-    found = []
-    quasi = [name for name, is_quasi in zip(by.names, by.quasi, strict=True) if is_quasi]
+def make_notes(choice: CoordinateChoice) -> list[str]:
+    """Return the sentences below the tables."""
+    notes = []
+    quasi = [name for name, is_quasi in zip(choice.names, choice.is_quasi_velocity, strict=True) if is_quasi]
     if quasi:
-        found.append(QUASI.format(names=", ".join(quasi)))
-    found += [f"{name}: a spin without inertia is no part of the motion" for name in by.left_out]
-    return found
+        notes.append(QUASI_VELOCITY_NOTE.format(names=", ".join(quasi)))
+    notes += [f"{name}: a spin without inertia is no part of the motion" for name in choice.left_out]
+    return notes

@@ -1,8 +1,8 @@
-"""What acts on one body at some instants, each action with its name, its point and who exerts it, in the body's axes.
+"""Actions on one body at given instants: name, point, source and load of each, in the body's axes.
 
-A distributed load, linear along a line, stands as forces at the ends of equal pieces of it. Each piece, q_0 at one end
-and q_1 at the other, is statically equal to h (2 q_0 + q_1)/6 and h (q_0 + 2 q_1)/6 there: so the section loads are
-exact at the ends of all pieces, and between them off by q h^2/8 at most.
+A distributed load, linear along a line, is replaced by forces at the ends of equal pieces of the line. Each piece, q_0
+at one end and q_1 at the other, is statically equal to h (2 q_0 + q_1)/6 and h (q_0 + 2 q_1)/6 there: so the section
+loads are exact at the ends of all pieces, and between them off by q h^2/8 at most.
 """
 
 from __future__ import annotations
@@ -15,21 +15,26 @@ from heuncli.analyses.load_cases.model import AccelerationField, PointAction
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import Action
-from heuncli.loads.kinetostatics.sections import Attachment, attachments, in_body_axes
+from heuncli.loads.kinetostatics.sections import Attachment, find_attachments, to_body_axes
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.shapes.inertia import pseudo_inertia
 from heuncli.study.compose.recovery import Recovery
 
-ROUNDING = 1e-14  # of the largest component of its kind: what is less stands for nothing, and is written as 0
-PIECES = 10  # of the line of a distributed load
+ROUNDING = 1e-14  # of the largest component of its kind: smaller ones are rounding, written as 0
+PIECE_COUNT = 10  # of the line of a distributed load
 OUTSIDE = "outside"
-CENTER = "center of mass"
+CENTER_NAME = "center of mass"
 
 
-class OneAction(NamedTuple):
-    """An action's attachment to the body, over the instants, and its words."""
+class BodyAction(NamedTuple):
+    """An action on the body over all instants.
+
+    kind, name, source: its type, its name, and who exerts it
+    attachment: where and how it acts
+    is_line: whether it is distributed along a line
+    """
 
     kind: str
     name: str
@@ -38,139 +43,160 @@ class OneAction(NamedTuple):
     is_line: bool
 
 
-def actions_on(recovery: Recovery, spec: Spec, body: int) -> list[tuple[PointAction, ...]]:
-    """All that acts on a body at each of the recovered instants."""
-    attached = list(_attached(recovery, spec, body))
+def collect_actions(recovery: Recovery, spec: Spec, body: int) -> list[tuple[PointAction, ...]]:
+    """Return all actions on a body at each of the recovered instants."""
+    body_actions = list(_iter_body_actions(recovery, spec, body))
     points = spec.bodies[recovery.setup.scene.mechanism.bodies[body].name].points
-    named = {name: np.array(point) for name, point in points.items()}
+    points_by_name = {name: np.array(point) for name, point in points.items()}
     center = recovery.setup.scene.mechanism.bodies[body].center
-    count = len(recovery.recovered.times)
-    return [_tidy([one for own in attached for one in _at(own, k, named, center)]) for k in range(count)]
+    count = len(recovery.solutions.times)
+    return [
+        _merge_actions([one for own in body_actions for one in _iter_point_actions(own, k, points_by_name, center)])
+        for k in range(count)
+    ]
 
 
-def fields_of(recovery: Recovery, body: int) -> list[AccelerationField]:
-    """How the body's points are accelerated at each of the recovered instants, and what gravity does."""
+def compute_fields(recovery: Recovery, body: int) -> list[AccelerationField]:
+    """Return the accelerations of the body's points, and gravity, at each of the recovered instants."""
     states, gravity = recovery.states, recovery.setup.scene.mechanism.gravity
     R = states.R[:, body]
     vectors = [states.a[:, body], np.broadcast_to(gravity, (len(R), 3)), states.omega[:, body], states.alpha[:, body]]
-    a, g, w, u = in_body_axes(R, np.array(vectors))
-    own = recovery.setup.scene.mechanism.bodies[body]
-    P = pseudo_inertia(own.mass, own.center, own.inertia)
-    r = float(np.sqrt(np.trace(P[:3, :3]) / own.mass))
-    return [_tidy_field(AccelerationField(a[k], g[k], w[k], u[k]), r) for k in range(len(R))]
+    a, g, w, u = to_body_axes(R, np.array(vectors))
+    mechanism_body = recovery.setup.scene.mechanism.bodies[body]
+    P = pseudo_inertia(mechanism_body.mass, mechanism_body.center, mechanism_body.inertia)
+    r = float(np.sqrt(np.trace(P[:3, :3]) / mechanism_body.mass))
+    return [_drop_field_rounding(AccelerationField(a[k], g[k], w[k], u[k]), r) for k in range(len(R))]
 
 
-def _tidy_field(field: AccelerationField, r: float) -> AccelerationField:
-    """The field without what rounding makes of a body that does not turn, or not so; r: how far its masses lie."""
+def _drop_field_rounding(field: AccelerationField, r: float) -> AccelerationField:
+    """Set rounding in the field of a body that does not rotate, or moves uniformly, to 0.
+
+    r: radius of gyration of the body
+    """
     a, g, w, u = field.origin, field.gravity, field.angular_velocity, field.angular_acceleration
-    least = ROUNDING * max(float(np.abs(x).max()) for x in (a, g, r * u, r * w * w))
+    threshold = ROUNDING * max(float(np.abs(x).max()) for x in (a, g, r * u, r * w * w))
     return AccelerationField(
-        _cut(a, least), _cut(g, least), _cut(w, ROUNDING * float(np.abs(w).max())),
-        np.where(r * np.abs(u) <= least, 0.0, u),
+        _drop_rounding(a, threshold), _drop_rounding(g, threshold), _drop_rounding(w, ROUNDING * float(np.abs(w).max())),
+        np.where(r * np.abs(u) <= threshold, 0.0, u),
     )  # fmt: skip
 
 
-def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:
-    """The body's share of every action; a joint's drive and stops beside what its constraint carries."""
+def _iter_body_actions(recovery: Recovery, spec: Spec, body: int) -> Iterator[BodyAction]:
+    """Yield the body's share of every action; a joint's drive and stops are separate from its constraint load."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    for action in sorted(recovery.standing, key=lambda own: own.kind == "load"):  # what holds it comes first
-        on = attachments(body, states, [action])
-        by = [OUTSIDE] * len(on) if action.spread else _exerted_by(mechanism, action, body)
-        for own, other in zip(on, by, strict=True):
-            yield OneAction(_kind(action, spec, bool(recovery.given)), action.name, other, own, bool(action.spread))
+    for action in sorted(recovery.separate_actions, key=lambda own: own.kind == "load"):  # constraint forces come first
+        attached_ends = find_attachments(body, states, [action])
+        sources = [OUTSIDE] * len(attached_ends) if action.spread else _find_sources(mechanism, action, body)
+        for own, source in zip(attached_ends, sources, strict=True):
+            yield BodyAction(
+                _get_kind(action, spec, bool(recovery.given_actions)), action.name, source, own, bool(action.spread)
+            )
 
 
-def _exerted_by(mechanism: Mechanism, action: Action, body: int) -> list[str]:
-    """Who exerts an action on a body, for each of its ends there."""
-    if action.from_ is None:
-        return [OUTSIDE] * (action.to.body == body)
-    ends = (action.to.body, action.from_.body)
-    return [_name(mechanism, other) for own, other in (ends, ends[::-1]) if own == body]
+def _find_sources(mechanism: Mechanism, action: Action, body: int) -> list[str]:
+    """Return who exerts an action on a body, for each of its ends there."""
+    if action.from_end is None:
+        return [OUTSIDE] * (action.to_end.body == body)
+    ends = (action.to_end.body, action.from_end.body)
+    return [_get_name(mechanism, other_body) for end_body, other_body in (ends, ends[::-1]) if end_body == body]
 
 
-def _name(mechanism: Mechanism, body: int) -> str:
+def _get_name(mechanism: Mechanism, body: int) -> str:
     return "ground" if body == GROUND else mechanism.bodies[body].name
 
 
-def _kind(action: Action, spec: Spec, struck: bool) -> str:
-    """The word for an action: that of its type in the spec, of what is no load its own."""
+def _get_kind(action: Action, spec: Spec, is_impulse: bool) -> str:
+    """Return the type of an action: a load's type in the spec, otherwise the action's own kind."""
     if action.kind != "load":
         return action.kind
-    if struck:  # a force may have the name of a blow
+    if is_impulse:  # a force may have the name of an impulse
         return "impulse"
     return spec.forces[action.name].type if action.name in spec.forces else "coupling"  # a belt's pretension
 
 
-def _at(own: OneAction, k: int, named: Mapping[str, Array], center: Array) -> Iterator[PointAction]:
-    """What it does at an instant; of a distributed load at the ends of the pieces of its line."""
-    at, to = (None if x is None else (x[k] if x.ndim == 2 else x) for x in (own.on.at, own.on.to))
-    assert at is not None
-    force, moment = own.on.force[k], own.on.moment[k]
-    words = own.kind, own.name, own.by
-    if to is None:
-        yield PointAction(*words, _point_at(at, named, center), at, force, moment)
+def _iter_point_actions(
+    body_action: BodyAction, k: int, points_by_name: Mapping[str, Array], center: Array
+) -> Iterator[PointAction]:
+    """Yield the point actions at instant k; a distributed load acts at the ends of the pieces of its line."""
+    start_point, end_point = (
+        None if x is None else (x[k] if x.ndim == 2 else x)
+        for x in (body_action.attachment.point, body_action.attachment.line_end)
+    )
+    assert start_point is not None
+    force, moment = body_action.attachment.force[k], body_action.attachment.moment[k]
+    labels = body_action.kind, body_action.name, body_action.source
+    if end_point is None:
+        yield PointAction(*labels, _find_point_name(start_point, points_by_name, center), start_point, force, moment)
         return
-    run = to - at
-    densest = force / (0.5 * float(np.sqrt(run @ run)))
-    for end, share, density in zip(_ends_of_pieces(at, to), *_falling(), strict=True):
-        yield PointAction(*words, _point_at(end, named, center), end, share * force, moment, density * densest)
+    line = end_point - start_point
+    densest = force / (0.5 * float(np.sqrt(line @ line)))
+    for end, force_share, density in zip(_divide_line(start_point, end_point), *_triangle_shares(), strict=True):
+        yield PointAction(
+            *labels, _find_point_name(end, points_by_name, center), end, force_share * force, moment, density * densest
+        )
 
 
-def _ends_of_pieces(at: Array, to: Array) -> list[Array]:
-    """Points from `at` to `to`, to the last bit those from `to` to `at`: loads from either end are summed up there."""
-    forth = at.tolist() <= to.tolist()
-    low, high = (at, to) if forth else (to, at)
-    points = [low, *(low + (i / PIECES) * (high - low) for i in range(1, PIECES)), high]
-    return points if forth else points[::-1]
-
-
-def _falling() -> tuple[Array, Array]:
-    """Of a force that falls evenly along its line to nothing: its shares at the ends of the pieces, and its density.
-
-    Of the density at the beginning, which is 2 F/l.
+def _divide_line(start: Array, end: Array) -> list[Array]:
+    """Return points from start to end, equal to the last bit to those in the opposite direction, so that loads from
+    either end add up there.
     """
-    q = np.linspace(1.0, 0.0, PIECES + 1)
-    shares = np.zeros(PIECES + 1)
-    shares[:-1] += (2.0 * q[:-1] + q[1:]) / (3.0 * PIECES)
-    shares[1:] += (q[:-1] + 2.0 * q[1:]) / (3.0 * PIECES)
+    is_ascending = start.tolist() <= end.tolist()
+    low, high = (start, end) if is_ascending else (end, start)
+    points = [low, *(low + (i / PIECE_COUNT) * (high - low) for i in range(1, PIECE_COUNT)), high]
+    return points if is_ascending else points[::-1]
+
+
+def _triangle_shares() -> tuple[Array, Array]:
+    """Return shares of the force, at the ends of the pieces, of a load that decreases linearly to zero, and its density
+    relative to the density 2 F/l at the start.
+    """
+    q = np.linspace(1.0, 0.0, PIECE_COUNT + 1)
+    shares = np.zeros(PIECE_COUNT + 1)
+    shares[:-1] += (2.0 * q[:-1] + q[1:]) / (3.0 * PIECE_COUNT)
+    shares[1:] += (q[:-1] + 2.0 * q[1:]) / (3.0 * PIECE_COUNT)
     return shares, q
 
 
-def _point_at(at: Array, named: Mapping[str, Array], center: Array) -> str:
-    """The name of the body's point that is there, or nothing."""
-    found = next((name for name, point in named.items() if np.array_equal(point, at)), "")
-    return found or (CENTER if np.array_equal(center, at) else "")
+def _find_point_name(position: Array, points_by_name: Mapping[str, Array], center: Array) -> str:
+    """Return the name of the body's point at a position, or an empty string."""
+    point_name = next((name for name, point in points_by_name.items() if np.array_equal(point, position)), "")
+    return point_name or (CENTER_NAME if np.array_equal(center, position) else "")
 
 
-def _tidy(actions: Sequence[PointAction]) -> tuple[PointAction, ...]:
-    """The actions without those that do nothing; of a distributed load what acts at one place together."""
-    together: dict[tuple[str, ...], PointAction] = {}
-    for one in actions:
-        key = (one.kind, one.name, one.by, *map(repr, one.at.tolist()))
-        if one.per_length is None or key not in together:
-            key = (*key, str(len(together))) if one.per_length is None else key
-            together[key] = one
+def _merge_actions(actions: Sequence[PointAction]) -> tuple[PointAction, ...]:
+    """Drop actions without effect, and merge what a distributed load does at one place."""
+    merged: dict[tuple[str, ...], PointAction] = {}
+    for action in actions:
+        key = (action.kind, action.name, action.source, *map(repr, action.at.tolist()))
+        if action.per_length is None or key not in merged:
+            key = (*key, str(len(merged))) if action.per_length is None else key
+            merged[key] = action
             continue
-        other = together[key]
-        assert other.per_length is not None
-        together[key] = replace(
-            one, force=one.force + other.force, moment=one.moment + other.moment,
-            per_length=one.per_length + other.per_length,
+        earlier = merged[key]
+        assert earlier.per_length is not None
+        merged[key] = replace(
+            action, force=action.force + earlier.force, moment=action.moment + earlier.moment,
+            per_length=action.per_length + earlier.per_length,
         )  # fmt: skip
-    found = list(together.values())
-    force, moment, reach = (_largest(found, of) for of in ("force", "moment", "at"))
-    least = ROUNDING * force, ROUNDING * max(moment, force * reach)
-    # none of it the scene's own arrays: whoever is given a case may change it
-    kept = [
-        replace(one, at=one.at.copy(), force=_cut(one.force, least[0]), moment=_cut(one.moment, least[1]))
-        for one in found
+    all_actions = list(merged.values())
+    force, moment, reach = (_find_largest(all_actions, of) for of in ("force", "moment", "at"))
+    thresholds = ROUNDING * force, ROUNDING * max(moment, force * reach)
+    # copies, as the caller may change the arrays of a case
+    cleaned = [
+        replace(
+            action,
+            at=action.at.copy(),
+            force=_drop_rounding(action.force, thresholds[0]),
+            moment=_drop_rounding(action.moment, thresholds[1]),
+        )
+        for action in all_actions
     ]
-    return tuple(one for one in kept if one.force.any() or one.moment.any() or one.kind == "joint")
+    return tuple(action for action in cleaned if action.force.any() or action.moment.any() or action.kind == "joint")
 
 
-def _largest(actions: Sequence[PointAction], of: str) -> float:
-    return max((float(np.abs(getattr(one, of)).max()) for one in actions), default=0.0)
+def _find_largest(actions: Sequence[PointAction], field_name: str) -> float:
+    return max((float(np.abs(getattr(action, field_name)).max()) for action in actions), default=0.0)
 
 
-def _cut(vector: Array, least: float) -> Array:
-    return np.where(np.abs(vector) <= least, 0.0, vector)
+def _drop_rounding(vector: Array, threshold: float) -> Array:
+    return np.where(np.abs(vector) <= threshold, 0.0, vector)

@@ -1,10 +1,9 @@
-"""A mesh of solids, as Abaqus and CalculiX have it: read, and what masses spread evenly in it feel of a field.
+"""Read a mesh of solids in Abaqus or CalculiX format, and compute the loads of a uniform mass in it.
 
-Of a tetrahedron with corners x_i, mass m, in a field a(x) linear in x, the forces
-
+For a tetrahedron with corners x_i, mass m, in a field a(x) linear in x, the forces
     F_i = -int rho N_i a dV = -m/20 (a_i + sum_j a_j)
-at its corners have the force and the moment of the field exactly; other solids are tetrahedra side by side. So the
-nodal forces of a whole mesh do, and balance as the body does if the mesh weighs as much, at the same places.
+at its corners have exactly the force and the moment of the field; other solids are divided into tetrahedra. So the
+nodal forces of a whole mesh balance as the body does, if the mesh has the same mass distribution.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.results.results import Array
-from heuncli.scene.shapes.inertia import assembled, properties
+from heuncli.scene.shapes.inertia import assemble_pseudo_inertia, split_pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_rows
 
 TETRAHEDRON = ((0, 1, 2, 3),)
@@ -27,7 +26,9 @@ HEXAHEDRON = tuple((0, 6, *edge) for edge in ((1, 2), (2, 3), (3, 7), (7, 4), (4
 
 
 class SolidKind(NamedTuple):
-    """A kind of element: its nodes, the corners first, and the tetrahedra of corners that it is made of."""
+    """A kind of element: its number of nodes, the corners first, and the tetrahedra of corners that it is divided
+    into.
+    """
 
     nodes: int
     parts: tuple[tuple[int, ...], ...]
@@ -37,104 +38,104 @@ KINDS = {
     "C3D4": SolidKind(4, TETRAHEDRON), "C3D10": SolidKind(10, TETRAHEDRON), "C3D6": SolidKind(6, WEDGE),
     "C3D15": SolidKind(15, WEDGE), "C3D8": SolidKind(8, HEXAHEDRON), "C3D20": SolidKind(20, HEXAHEDRON),
 }  # fmt: skip
-VARIANTS = "RIHMT"  # letters behind a kind: of its integration
-ONLY_SOLIDS = "a mesh of solids alone: C3D4, C3D10, C3D6, C3D15, C3D8, C3D20"
+INTEGRATION_SUFFIXES = "RIHMT"  # suffixes of an element type: its integration
+SOLIDS_HINT = "a mesh of solids alone: C3D4, C3D10, C3D6, C3D15, C3D8, C3D20"
 
 
 @record
 class SolidMesh:
-    """Nodes, their numbers (n,) and places (n, 3), and tetrahedra (k, 4) by the rows of their corners."""
+    """Nodes, their numbers (n,) and positions (n, 3), and tetrahedra (k, 4) by the rows of their corners."""
 
     numbers: NDArray[np.intp]
     places: Array
     tetrahedra: NDArray[np.intp]
 
-    def volumes(self) -> Array:
-        """Of the tetrahedra, (k,)."""
+    def compute_volumes(self) -> Array:
+        """Return the volumes of the tetrahedra, (k,)."""
         a, b, c, d = (self.places[self.tetrahedra[:, i]] for i in range(4))
         return np.asarray(np.abs(np.sum((b - a) * cross_rows(c - a, d - a), axis=1)) / 6.0)
 
     def nodal_forces(self, mass: float, u: Array) -> Array:
-        """What a mass spread evenly feels of the angular acceleration u about the origin, (n, 3)."""
-        V = self.volumes()
+        """Return the nodal forces (n, 3) of a uniform mass under the angular acceleration u about the origin."""
+        V = self.compute_volumes()
         a = np.cross(u, self.places)[self.tetrahedra]
         parts = -(mass / V.sum() * V / 20.0)[:, None, None] * (a + a.sum(axis=1, keepdims=True))
-        found = np.zeros_like(self.places)
+        forces = np.zeros_like(self.places)
         for i in range(4):
-            np.add.at(found, self.tetrahedra[:, i], parts[:, i])
-        return found
+            np.add.at(forces, self.tetrahedra[:, i], parts[:, i])
+        return forces
 
     def pseudo_inertia(self, mass: float) -> Array:
-        """P about the origin of a mass spread evenly, (4, 4)."""
-        V = self.volumes()
+        """Return P about the origin of a uniform mass, (4, 4)."""
+        V = self.compute_volumes()
         m = mass / V.sum() * V
         x = self.places[self.tetrahedra]
         S = x.sum(axis=1)
         second = np.einsum("k,kia,kib->ab", m, x, x) + np.einsum("k,ka,kb->ab", m, S, S)
-        return assembled(np.array(mass), m @ S / 4.0, second / 20.0)
+        return assemble_pseudo_inertia(np.array(mass), m @ S / 4.0, second / 20.0)
 
     def center_and_inertia(self, mass: float) -> tuple[Array, Array]:
-        """Centre of mass (3,) and inertia about it (3, 3) of a mass spread evenly."""
-        return properties(self.pseudo_inertia(mass))[1:]
+        """Return centre of mass (3,) and inertia about it (3, 3) of a uniform mass."""
+        return split_pseudo_inertia(self.pseudo_inertia(mass))[1:]
 
 
 def read_mesh(text: str, name: str) -> SolidMesh:
-    """The mesh in a deck's text; name: of the file. Raises Finding."""
+    """Read the mesh from a deck's text; name: of the file. Raises Finding [bad-mesh]."""
     nodes: dict[int, tuple[float, ...]] = {}
     corners: list[tuple[int, ...]] = []
-    for keyword, kind, number, words in _data_lines(text, name):
+    for keyword, kind, number, words in _iter_records(text, name):
         where = f"{name}:{number}"
         try:
             if keyword == "*NODE":
                 x = [float(word) for word in words[1:4]]
                 nodes[int(words[0])] = (*x, *[0.0] * (3 - len(x)))
                 continue
-            own = [int(word) for word in words]
+            node_numbers = [int(word) for word in words]
         except ValueError:
-            raise Finding("bad-mesh", f"{where}: '{', '.join(words)[:60]}' are no numbers", ONLY_SOLIDS) from None
+            raise Finding("bad-mesh", f"{where}: '{', '.join(words)[:60]}' are no numbers", SOLIDS_HINT) from None
         assert kind is not None
-        if len(own) != kind.nodes + 1:
-            message = f"{where}: an element of {kind.nodes} nodes has {len(own) - 1}"
+        if len(node_numbers) != kind.nodes + 1:
+            message = f"{where}: an element of {kind.nodes} nodes has {len(node_numbers) - 1}"
             raise Finding("bad-mesh", message, "its number, then its nodes; a line that ends with a comma goes on")
-        corners += [tuple(own[1 + i] for i in part) for part in kind.parts]
-    return _gathered(nodes, corners, name)
+        corners += [tuple(node_numbers[1 + i] for i in part) for part in kind.parts]
+    return _make_mesh(nodes, corners, name)
 
 
-def _data_lines(text: str, name: str) -> Iterator[tuple[str, SolidKind | None, int, list[str]]]:
-    """The lines below *NODE and *ELEMENT, elements in one however many lines they take: keyword, kind, line, words."""
-    keyword, kind, begun, gathered = "", None, 0, list[str]()
+def _iter_records(text: str, name: str) -> Iterator[tuple[str, SolidKind | None, int, list[str]]]:
+    """Yield the data of *NODE and *ELEMENT, with elements joined across lines: keyword, kind, line, words."""
+    keyword, kind, first_line, collected = "", None, 0, list[str]()
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("**") or not line.strip():
             continue
         if line.startswith("*"):
             words = [word.strip().upper() for word in line.split(",")]
-            keyword, kind, gathered = words[0], None, []
+            keyword, kind, collected = words[0], None, []
             if keyword == "*INCLUDE":
                 raise Finding("bad-mesh", f"{name}:{number}: another file is included", "name that file")
             if keyword == "*ELEMENT":
-                kind = _kind(words, f"{name}:{number}")
+                kind = _parse_kind(words, f"{name}:{number}")
             continue
         if keyword not in ("*NODE", "*ELEMENT"):
             continue
-        begun = begun if gathered else number
-        gathered += [word.strip() for word in line.split(",") if word.strip()]
+        first_line = first_line if collected else number
+        collected += [word.strip() for word in line.split(",") if word.strip()]
         if keyword == "*NODE" or not line.rstrip().endswith(","):
-            yield keyword, kind, begun, gathered
-            gathered = []
+            yield keyword, kind, first_line, collected
+            collected = []
 
 
-def _kind(words: Sequence[str], where: str) -> SolidKind:
-    """The kind of the elements below a line. Raises Finding."""
-    given = next((word.partition("=")[2].strip() for word in words if word.partition("=")[0].strip() == "TYPE"), "")
-    kind = KINDS.get(given.rstrip(VARIANTS) if given not in KINDS else given)
+def _parse_kind(words: Sequence[str], where: str) -> SolidKind:
+    """Return the kind of the elements below a line. Raises Finding [bad-mesh]."""
+    type_name = next((word.partition("=")[2].strip() for word in words if word.partition("=")[0].strip() == "TYPE"), "")
+    kind = KINDS.get(type_name.rstrip(INTEGRATION_SUFFIXES) if type_name not in KINDS else type_name)
     if kind is None:
         raise Finding(
-            "bad-mesh", f"{where}: elements of type {given or 'none'} have a mass that is not known", ONLY_SOLIDS
+            "bad-mesh", f"{where}: elements of type {type_name or 'none'} have a mass that is not known", SOLIDS_HINT
         )
     return kind
 
 
-def _gathered(nodes: dict[int, tuple[float, ...]], corners: Sequence[tuple[int, ...]], name: str) -> SolidMesh:
+def _make_mesh(nodes: dict[int, tuple[float, ...]], corners: Sequence[tuple[int, ...]], name: str) -> SolidMesh:
     if not corners:
         raise Finding("bad-mesh", f"{name}: there are no elements", "*NODE and *ELEMENT, as in the mesh of the deck")
     used = sorted({number for one in corners for number in one})
@@ -143,7 +144,7 @@ def _gathered(nodes: dict[int, tuple[float, ...]], corners: Sequence[tuple[int, 
         raise Finding("bad-mesh", f"{name}: node {missing} of an element is not there", "*NODE before or behind it")
     row = {number: i for i, number in enumerate(used)}
     tetrahedra = np.array([[row[number] for number in one] for one in corners], dtype=np.intp)
-    found = SolidMesh(np.array(used, dtype=np.intp), np.array([nodes[number] for number in used]), tetrahedra)
-    if not (np.isfinite(found.places).all() and found.volumes().sum() > 0.0):
+    mesh = SolidMesh(np.array(used, dtype=np.intp), np.array([nodes[number] for number in used]), tetrahedra)
+    if not (np.isfinite(mesh.places).all() and mesh.compute_volumes().sum() > 0.0):
         raise Finding("bad-mesh", f"{name}: the elements have no volume", "are the numbers of the nodes right?")
-    return found
+    return mesh

@@ -1,7 +1,7 @@
-"""Units of load cases: those of force, length, mass and time go together, for a solver knows none.
+"""Units of load cases: force, length, mass and time must be consistent, because FE solvers know no units.
 
-A force of 1 has to give a mass of 1 an acceleration of 1: N, mm, t, s do, N, mm, kg, s do not, and the stresses that
-follow would be wrong by a thousand without a word.
+A force of 1 must give a mass of 1 an acceleration of 1: N, mm, t, s do, N, mm, kg, s do not, and the resulting stresses
+would silently be wrong by a factor of a thousand.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from heuncli.results.results import Array
 POUND_FORCE = units.UNITS["lbf"][0]
 # Masses that specs do not know, for there `t` is the time: what a force of 1 gives an acceleration of 1.
 MASSES = {"t": 1e3, "slinch": POUND_FORCE / 0.0254, "slug": POUND_FORCE / 0.3048, "Gg": 1e6}
-SUCH = "such as --units N,mm,t or N,m,kg or lbf,in,slinch; a fourth is the time, s or ms"
-SAME = 1e-9  # of a unit: definitions agree to the last digit, what is no system is off by a factor
+UNITS_HINT = "such as --units N,mm,t or N,m,kg or lbf,in,slinch; a fourth is the time, s or ms"
+CONSISTENCY_TOLERANCE = 1e-9  # relative: definitions agree to the last digit, inconsistent units differ by a factor
 
 
 class UnitSystem(NamedTuple):
-    """Units that go together: their words, and how much of SI each is."""
+    """Consistent units: their names, and the size of each in SI."""
 
     words: tuple[str, str, str, str]
     force: float = 1.0
@@ -33,7 +33,7 @@ class UnitSystem(NamedTuple):
 
     @property
     def acceleration(self) -> float:
-        """One unit of it [m/s2]."""
+        """The unit of acceleration [m/s2]."""
         return self.length / self.time**2
 
 
@@ -41,67 +41,75 @@ SI = UnitSystem(("N", "m", "kg", "s"))
 KINDS = (units.FORCE, units.LENGTH, units.MASS, units.TIME)
 
 
-def asked(words: str) -> UnitSystem:
-    """The units that `--units N,mm,t` asks for, in any order. Raises Finding."""
-    own: dict[units.Dimension, tuple[str, float]] = {}
-    for word in (part.strip() for part in words.split(",")):
+def parse_units(text: str) -> UnitSystem:
+    """Return the units that `--units N,mm,t` requests, in any order. Raises Finding [bad-option]."""
+    units_by_kind: dict[units.Dimension, tuple[str, float]] = {}
+    for word in (part.strip() for part in text.split(",")):
         size, kind = (MASSES[word], units.MASS) if word in MASSES else units.parse_unit(word)
         if kind not in KINDS:
-            raise Finding("bad-option", f"{word} is {units.describe(kind)}: what follows from the others", SUCH)
-        if kind in own:
-            raise Finding("bad-option", f"{own[kind][0]} and {word} are of the same kind", SUCH)
-        own[kind] = word, size
-    own.setdefault(units.TIME, ("s", 1.0))
-    missing = [kind for kind in KINDS if kind not in own]
+            raise Finding("bad-option", f"{word} is {units.describe(kind)}: what follows from the others", UNITS_HINT)
+        if kind in units_by_kind:
+            raise Finding("bad-option", f"{units_by_kind[kind][0]} and {word} are of the same kind", UNITS_HINT)
+        units_by_kind[kind] = word, size
+    units_by_kind.setdefault(units.TIME, ("s", 1.0))
+    missing = [kind for kind in KINDS if kind not in units_by_kind]
     if missing:
-        raise Finding("bad-option", f"without {' and '.join(units.describe(kind) for kind in missing)}", _hint(own))
-    force, length, mass, time = (own[kind] for kind in KINDS)
-    found = UnitSystem((force[0], length[0], mass[0], time[0]), force[1], length[1], mass[1], time[1])
-    made = found.mass * found.acceleration / found.force
-    if abs(made - 1.0) > SAME:
-        message = f"1 {mass[0]} at 1 {length[0]}/{time[0]}² takes {made:.6g} {force[0]}, not 1: no system of units"
-        raise Finding("bad-option", message, _hint(own))
-    return found
+        raise Finding(
+            "bad-option",
+            f"without {' and '.join(units.describe(kind) for kind in missing)}",
+            _suggest_units(units_by_kind),
+        )
+    force, length, mass, time = (units_by_kind[kind] for kind in KINDS)
+    system = UnitSystem((force[0], length[0], mass[0], time[0]), force[1], length[1], mass[1], time[1])
+    unit_force = system.mass * system.acceleration / system.force
+    if abs(unit_force - 1.0) > CONSISTENCY_TOLERANCE:
+        message = (
+            f"1 {mass[0]} at 1 {length[0]}/{time[0]}² takes {unit_force:.6g} {force[0]}, not 1: no system of units"
+        )
+        raise Finding("bad-option", message, _suggest_units(units_by_kind))
+    return system
 
 
-def _hint(own: dict[units.Dimension, tuple[str, float]]) -> str:
-    """The mass that goes with a force and a length, where it has a name."""
-    if units.FORCE not in own or units.LENGTH not in own:
-        return SUCH
-    (force, F), (length, l), (time, t) = (own[kind] for kind in (units.FORCE, units.LENGTH, units.TIME))
+def _suggest_units(units_by_kind: dict[units.Dimension, tuple[str, float]]) -> str:
+    """Suggest the mass unit that is consistent with a force and a length, if it has a name."""
+    if units.FORCE not in units_by_kind or units.LENGTH not in units_by_kind:
+        return UNITS_HINT
+    (force, F), (length, l), (time, t) = (units_by_kind[kind] for kind in (units.FORCE, units.LENGTH, units.TIME))
     masses = MASSES | {name: size for name, (size, kind) in units.UNITS.items() if kind == units.MASS}
-    named = [name for name, size in masses.items() if abs(size * l / (t * t * F) - 1.0) <= SAME]
-    if not named:
-        return SUCH
-    return f"--units {force},{length},{named[0]}" + (f",{time}" if time != "s" else "")
+    matching = [name for name, size in masses.items() if abs(size * l / (t * t * F) - 1.0) <= CONSISTENCY_TOLERANCE]
+    if not matching:
+        return UNITS_HINT
+    return f"--units {force},{length},{matching[0]}" + (f",{time}" if time != "s" else "")
 
 
-def in_units(cases: LoadCases, system: UnitSystem) -> LoadCases:
-    """The same numbers in other units than SI."""
-    if system.words == SI.words:
+def convert_load_cases(cases: LoadCases, system: UnitSystem) -> LoadCases:
+    """Convert load cases from SI to other units."""
+    if system.names == SI.names:
         return cases
     body = cases.body
     inertia = system.mass * system.length**2
-    own = LoadedBody(body.name, body.mass / system.mass, body.center / system.length, body.inertia / inertia,
+    body_in_units = LoadedBody(body.name, body.mass / system.mass, body.center / system.length, body.inertia / inertia,
                      body.planar)  # fmt: skip
-    return replace(cases, body=own, cases=tuple(_case(case, system) for case in cases.cases), units=system.words)
+    return replace(
+        cases, body=body_in_units, cases=tuple(_convert_case(case, system) for case in cases.cases), units=system.names
+    )
 
 
-def _case(case: LoadCase, system: UnitSystem) -> LoadCase:
-    # of a blow there is a time more in all of them
-    pulse = system.time if case.struck else 1.0
-    force, acceleration = system.force * pulse, system.acceleration * pulse
-    rate, turn = 1.0 / system.time, pulse / system.time**2
+def _convert_case(case: LoadCase, system: UnitSystem) -> LoadCase:
+    # impulses have one more factor of time
+    impulse_time = system.time if case.is_impulse else 1.0
+    force, acceleration = system.force * impulse_time, system.acceleration * impulse_time
+    rate, turn = 1.0 / system.time, impulse_time / system.time**2
     f = case.field
     field = AccelerationField(
         f.origin / acceleration, f.gravity / acceleration, f.angular_velocity / rate, f.angular_acceleration / turn
     )
-    actions = tuple(_action(action, force, system) for action in case.actions)
+    actions = tuple(_convert_action(action, force, system) for action in case.actions)
     return replace(case, actions=actions, field=field)
 
 
-def _action(action: PointAction, force: float, system: UnitSystem) -> PointAction:
-    def over(vector: Array | None, size: float) -> Array | None:
+def _convert_action(action: PointAction, force: float, system: UnitSystem) -> PointAction:
+    def divide(vector: Array | None, size: float) -> Array | None:
         return None if vector is None else np.asarray(vector / size)
 
     return replace(
@@ -109,5 +117,5 @@ def _action(action: PointAction, force: float, system: UnitSystem) -> PointActio
         at=action.at / system.length,
         force=action.force / force,
         moment=action.moment / (force * system.length),
-        per_length=over(action.per_length, force / system.length),
+        per_length=divide(action.per_length, force / system.length),
     )

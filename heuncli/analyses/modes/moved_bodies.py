@@ -1,7 +1,6 @@
-"""The modes of a spec as motions of its bodies: of each the turn and the shift of its centre of mass.
-
-dx = shift + turn × (x − x_c)      of a point x of a body, to the first order; complex where points do not pass the
-                                   pose at rest together, as on turning shafts
+"""Modes of a spec as motions of its bodies: rotation and displacement of the centre of mass of each. dx = shift + turn
+× (x − x_c)      of a point x of a body, to first order; complex if points do not pass the
+pose at rest together, as on rotating shafts
 """
 
 from __future__ import annotations
@@ -10,23 +9,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.modes.study import looked_for, told
+from heuncli.analyses.modes.study import solve_modes, to_results
 from heuncli.base.records import record, replace
 from heuncli.motion.linearisation.modes import SceneModes
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import placed
+from heuncli.study.model.error_places import attach_locations
 
-HALF = 0.5
+MIN_SHARE = 0.5
 
 
 @record
-class MovedBodies:
-    """A scene with its modes, and its bodies by their names.
+class BodyModes:
+    """A scene with its modes, and its bodies by name.
 
-    places (n_b, 3): of the bodies' origins; attitudes (n_b, 3, 3), their columns the axes; centres (n_b, 3) of mass;
-    turns, shifts (modes, n_b, 3), complex.
+    places (n_b, 3): the bodies' origins
+    attitudes (n_b, 3, 3): with the axes as columns
+    centres (n_b, 3): centres of mass
+    turns, shifts (modes, n_b, 3): complex
     """
 
     scene: PreparedScene
@@ -38,32 +39,39 @@ class MovedBodies:
     turns: Array
     shifts: Array
 
-    def moved(self, mode: int, body: int, points: Array) -> Array:
-        """How far points (..., 3) of the world go with a body, (..., 3) complex."""
+    def displace_points(self, mode: int, body: int, points: Array) -> Array:
+        """Return the displacements (..., 3), complex, of a body's points at world positions (..., 3)."""
         turn, shift = self.turns[mode, body], self.shifts[mode, body]
         return np.asarray(shift + np.cross(np.broadcast_to(turn, points.shape), points - self.centres[body]))
 
-    def moves_across(self, mode: int, direction: Array) -> bool:
-        """Whether a mode moves bodies across a direction rather than along it: centres shift so, or turns about it."""
+    def is_transverse(self, mode: int, direction: Array) -> bool:
+        """Return whether a mode moves bodies across a direction rather than along it: centres shift across it, or
+        bodies turn about it.
+        """
         shifts, turns = np.abs(self.shifts[mode]) ** 2, np.abs(self.turns[mode]) ** 2
         along = np.abs(self.shifts[mode] @ direction) ** 2
         about = np.abs(self.turns[mode] @ direction) ** 2
-        return bool(along.sum() <= HALF * shifts.sum() and about.sum() >= HALF * turns.sum())
+        return bool(along.sum() <= MIN_SHARE * shifts.sum() and about.sum() >= MIN_SHARE * turns.sum())
 
 
-def moved_bodies(spec: Spec, without: Sequence[str] = ()) -> MovedBodies:
-    """The modes of a spec, and how its bodies move; without: as of `modes`. Raises SolveError as that does."""
-    with placed(spec):
-        found = looked_for(spec)
-        here, bodies = found.here, found.here.layout.mechanism.bodies
-        order = np.array([here.layout.place[k] for k in range(len(bodies))], dtype=np.intp)
-        own = here.found
-        twists = np.zeros((len(found.modes), len(bodies), 6), dtype=complex)
-        for k, mode in enumerate(found.modes):
-            twists[k] = own.twists[order] @ mode.shape
-        attitudes, centres = own.attitudes[order], own.centres[order]
-        inside = np.array([body.center for body in bodies]).reshape(-1, 3)
-        return MovedBodies(
-            here.scene, replace(told(spec, found), without=tuple(without)), tuple(body.name for body in bodies),
-            centres - np.einsum("bij,bj->bi", attitudes, inside), attitudes, centres, twists[..., :3], twists[..., 3:],
+def find_body_modes(spec: Spec, excluded: Sequence[str] = ()) -> BodyModes:
+    """Return the modes of a spec, and how its bodies move.
+
+    excluded: entries left out, as for compute_spec_modes
+
+    Raises SolveError as that does.
+    """
+    with attach_locations(spec):
+        spec_modes = solve_modes(spec)
+        linearised_state, bodies = spec_modes.linearised_state, spec_modes.linearised_state.layout.mechanism.bodies
+        order = np.array([linearised_state.layout.place[k] for k in range(len(bodies))], dtype=np.intp)
+        linear_equations = linearised_state.linear
+        twists = np.zeros((len(spec_modes.modes), len(bodies), 6), dtype=complex)
+        for k, mode in enumerate(spec_modes.modes):
+            twists[k] = linear_equations.twists[order] @ mode.shape
+        attitudes, centres = linear_equations.attitudes[order], linear_equations.centres[order]
+        local_centres = np.array([body.center for body in bodies]).reshape(-1, 3)
+        return BodyModes(
+            linearised_state.scene, replace(to_results(spec, spec_modes), omitted_paths=tuple(excluded)), tuple(body.name for body in bodies),
+            centres - np.einsum("bij,bj->bi", attitudes, local_centres), attitudes, centres, twists[..., :3], twists[..., 3:],
         )  # fmt: skip

@@ -1,4 +1,4 @@
-"""How disturbances of a motion grow, in what is integrated and out of the plane that it is integrated in."""
+"""Growth of disturbances of a motion: within the integrated freedoms, and out of the plane of a planar motion."""
 
 from __future__ import annotations
 
@@ -6,134 +6,147 @@ import math
 
 import numpy as np
 
-from heuncli.analyses.probing.instants import SearchedMotion
-from heuncli.analyses.probing.numerics.shadows import Growth, Shadows
-from heuncli.analyses.probing.numerics.twists import twists
+from heuncli.analyses.probing.instants import MotionSearch
+from heuncli.analyses.probing.numerics.shadows import DisturbanceGrowth, DisturbedRuns
+from heuncli.analyses.probing.numerics.twists import compute_twists
 from heuncli.analyses.probing.results import GrowthResults
 from heuncli.base import tolerances
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.methods.method import QUATERNION, Method
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.run.stiffness import implicit_for
+from heuncli.motion.integration.run.stiffness import choose_implicit_method
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 
-EVENLY = 200  # instants at which its slope is taken
-CONTACTS = "stops or ropes open and close, and each run meets them at instants of its own: the run's own horizon counts"
-TRIGGERS = "blows strike at a condition, and each run meets it at instants of its own: the run's own horizon counts"
-ONE_INSTANT = "one instant: nothing goes on; heun modes tells what grows about a pose that rests"
-FOLLOWED = "nothing is integrated: drives and joints leave no freedom"
+SLOPE_SAMPLES = 200  # instants for the fit of the slope
+CONTACTS_REASON = (
+    "stops or ropes open and close, and each run meets them at instants of its own: the run's own horizon counts"
+)
+TRIGGERS_REASON = (
+    "blows strike at a condition, and each run meets it at instants of its own: the run's own horizon counts"
+)
+ONE_INSTANT_REASON = "one instant: nothing goes on; heun modes tells what grows about a pose that rests"
+FOLLOWED_REASON = "nothing is integrated: drives and joints leave no freedom"
 
 
-def growing(along: SearchedMotion) -> tuple[GrowthResults | None, str]:
-    """The growth of disturbances of what is integrated; or why it is not told."""
-    checked, runner = along.checked, along.study.setup.runner
-    if checked is None:
-        return None, ONE_INSTANT
-    if checked.run.method.determined:
-        return None, FOLLOWED
-    if runner.moving.layout.contacts:
-        return None, CONTACTS
-    if any(blow.when is not None for blow in runner.moving.layout.mechanism.blows):
-        return None, TRIGGERS
-    shadows = Shadows(runner, checked.run, method_beside(checked.run))
-    Q = shadows.directions()
+def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
+    """Return the growth of disturbances of the integrated motion, or the reason why it is missing."""
+    checked_run, runner = motion.checked, motion.study.setup.runner
+    if checked_run is None:
+        return None, ONE_INSTANT_REASON
+    if checked_run.run.method.is_determined:
+        return None, FOLLOWED_REASON
+    if runner.integrated_scene.layout.contacts:
+        return None, CONTACTS_REASON
+    if any(blow.when is not None for blow in runner.integrated_scene.layout.mechanism.impulses):
+        return None, TRIGGERS_REASON
+    disturbed_runs = DisturbedRuns(runner, checked_run.run, choose_method(checked_run.run))
+    Q = disturbed_runs.find_directions()
     if not Q.shape[1]:
         return None, "nothing is free to move"
-    return told(shadows.growth(Q), Q.shape[1])
+    return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 
-def method_beside(run: Trajectory) -> Method:
-    """The method of runs beside a run: its own where that judges its steps and keeps quaternions.
+def choose_method(run: Trajectory) -> Method:
+    """Choose the method of the disturbed runs: the run's own if it is adaptive and keeps quaternions.
 
-    SciPy's own is asked for where a motion may be stiff, and is none of the kernel's: its stiff one stands for it.
+    SciPy's methods are used where a motion may be stiff, but are not in the kernel: an implicit method of the kernel
+    replaces them.
     """
-    own = run.method
-    if own.foreign:
-        return implicit_for(tolerances.LEAST_TOLERANCE)
-    return own if not own.fixed and own.attitude == QUATERNION else DOP853
+    run_method = run.method
+    if run_method.scipy_name:
+        return choose_implicit_method(tolerances.LEAST_TOLERANCE)
+    return run_method if not run_method.has_fixed_step and run_method.attitude == QUATERNION else DOP853
 
 
-def across_plane(along: SearchedMotion) -> tuple[GrowthResults | None, str]:
-    """The growth out of the plane that the scene was found to stay in; or why there is none."""
-    study = along.study
-    checked, layout = along.checked, along.layout
-    if checked is None or study.setup.model.get("plane") is None:
+def find_out_of_plane_growth(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
+    """Return the growth out of the plane that the scene was found to stay in, or the reason why it is missing."""
+    study = motion.study
+    checked_run, layout = motion.checked, motion.layout
+    if checked_run is None or study.setup.model.get("plane") is None:
         return None, ""
     if study.setup.model["plane"] == "declared":
         return None, "the scene is declared planar: nothing leaves the plane"
-    if checked.run.method.determined:
-        return None, FOLLOWED
+    if checked_run.run.method.is_determined:
+        return None, FOLLOWED_REASON
     if layout.contacts:
-        return None, CONTACTS
-    if any(blow.when is not None for blow in layout.mechanism.blows):
-        return None, TRIGGERS
-    shadows = Shadows(study.setup.runner, checked.run, method_beside(checked.run), whole=True)
-    Q = across(shadows)
+        return None, CONTACTS_REASON
+    if any(blow.when is not None for blow in layout.mechanism.impulses):
+        return None, TRIGGERS_REASON
+    disturbed_runs = DisturbedRuns(study.setup.runner, checked_run.run, choose_method(checked_run.run), whole=True)
+    Q = find_out_of_plane_directions(disturbed_runs)
     if Q is None or not Q.shape[1]:
         return None, "no joint lets a body leave the plane"
-    return told(shadows.growth(Q), Q.shape[1])
+    return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 
-def across(shadows: Shadows) -> Array | None:
-    """The disturbances (2 n, N) of the start that lead out of the plane of a flat motion; None where nothing turns.
+def find_out_of_plane_directions(disturbed_runs: DisturbedRuns) -> Array | None:
+    """Return the disturbances (2 n, N) of the start that lead out of the plane of a planar motion; None if nothing
+    rotates.
 
-    They turn bodies about axes within it and shift them along its normal n, which is the axis of all spins.
+    They rotate bodies about axes within the plane and shift them along its normal, which is the axis of all spins.
     """
-    runner, run = shadows.runner, shadows.run
-    omega = runner.recovered(run.times, run.states, holding=run.holding_at(run.times)).bodies["omega"].reshape(-1, 3)
+    runner, run = disturbed_runs.runner, disturbed_runs.run
+    omega = runner.evaluate(run.times, run.states, holding=run.find_holding(run.times)).bodies["omega"].reshape(-1, 3)
     fastest = omega[np.argmax(np.sum(omega**2, axis=1))] if len(omega) else np.zeros(3)
     size = float(np.sqrt(fastest @ fastest))
     if size == 0.0:
         return None
-    n = fastest / size
-    layout, own = shadows.layout, shadows.scale.coordinates
-    at = Runner(layout).recovered(np.zeros(1), run.states[:1])
-    found = twists(layout, at)
-    turn, shift = found.turn[0][:, own.answers], found.shift[0][:, own.answers]
-    within = np.concatenate([(turn @ n)[..., None], shift - (shift @ n)[..., None] * n], axis=2)
-    weights = shadows.scale.by[: shadows.scale.n]
-    T = shadows.directions()[: shadows.scale.n]
+    normal = fastest / size
+    layout, coordinates = disturbed_runs.layout, disturbed_runs.scale.coordinates
+    recovered = Runner(layout).evaluate(np.zeros(1), run.states[:1])
+    start_twists = compute_twists(layout, recovered)
+    turn, shift = (
+        start_twists.turn[0][:, coordinates.result_indices],
+        start_twists.shift[0][:, coordinates.result_indices],
+    )
+    in_plane_motion = np.concatenate([(turn @ normal)[..., None], shift - (shift @ normal)[..., None] * normal], axis=2)
+    weights = disturbed_runs.scale.weights[: disturbed_runs.scale.n]
+    T = disturbed_runs.find_directions()[: disturbed_runs.scale.n]
     T = T[:, : T.shape[1] // 2]
-    along_plane = within.swapaxes(1, 2).reshape(-1, shadows.scale.n) / weights
-    _, s, V = np.linalg.svd(along_plane @ T, full_matrices=True)
+    in_plane_rows = in_plane_motion.swapaxes(1, 2).reshape(-1, disturbed_runs.scale.n) / weights
+    _, s, V = np.linalg.svd(in_plane_rows @ T, full_matrices=True)
     T = T @ V[int(np.sum(s > tolerances.FLAT * max(float(s.max(initial=0.0)), 1.0))) :].T
     return np.block([[T, np.zeros_like(T)], [np.zeros_like(T), T]])
 
 
-def told(growth: Growth, directions: int) -> tuple[GrowthResults | None, str]:
-    """A growth with its rate and the instant from which on no digit is certain; or None, and why it is not told."""
+def to_results(growth: DisturbanceGrowth, directions: int) -> tuple[GrowthResults | None, str]:
+    """Return a growth with its rate and the horizon of double precision, or the reason why it is missing."""
     times, log = growth.times, growth.logarithm
     last = float(times[-1])
     if len(times) < 2:
-        return None, growth.stopped or "the run is too short"
-    rate = mean_rate(times, log)
+        return None, growth.stop_reason or "the run is too short"
+    rate = fit_mean_rate(times, log)
     exponential = 0.5 * rate * last > math.log(tolerances.FASTER_THAN_TIME)
-    horizon = first_beyond(growth)
+    horizon = find_horizon(growth)
     expected = None
     if horizon is None and exponential and rate > 0.0:
-        left = math.log(tolerances.CLAIMED / (tolerances.EPS * math.sqrt(growth.steps[-1]))) - float(log[-1])
-        expected = last + left / rate
-    found = GrowthResults(rate, float(log[-1]), exponential, directions, horizon, expected, last, growth.stopped)
-    return found, growth.stopped or ""
+        remaining_log = math.log(tolerances.CLAIMED / (tolerances.EPS * math.sqrt(growth.steps[-1]))) - float(log[-1])
+        expected = last + remaining_log / rate
+    results = GrowthResults(rate, float(log[-1]), exponential, directions, horizon, expected, last, growth.stop_reason)
+    return results, growth.stop_reason or ""
 
 
-def mean_rate(times: Array, log: Array) -> float:
-    """The slope of ln G over the second half of the run [1/s], by least squares; what a start does is over then."""
-    at = np.linspace(0.5 * float(times[-1]), float(times[-1]), EVENLY)
-    return float(np.polyfit(at - at.mean(), np.interp(at, times, log), 1)[0])
+def fit_mean_rate(times: Array, log: Array) -> float:
+    """Return the slope of ln G over the second half of the run [1/s], by least squares; transients of the start are
+    over by then.
+    """
+    instants = np.linspace(0.5 * float(times[-1]), float(times[-1]), SLOPE_SAMPLES)
+    return float(np.polyfit(instants - instants.mean(), np.interp(instants, times, log), 1)[0])
 
 
-def first_beyond(growth: Growth) -> float | None:
-    """The first instant at which EPS sqrt(steps) G passes CLAIMED, between the ends of pieces in its logarithm."""
+def find_horizon(growth: DisturbanceGrowth) -> float | None:
+    """Return the first instant at which EPS sqrt(steps) G exceeds CLAIMED, interpolated between pieces in its
+    logarithm.
+    """
     with np.errstate(divide="ignore"):
         error = math.log(tolerances.EPS) + 0.5 * np.log(growth.steps) + growth.logarithm
     limit = math.log(tolerances.CLAIMED)
-    beyond = np.flatnonzero(error > limit)
-    if not len(beyond):
+    exceeding = np.flatnonzero(error > limit)
+    if not len(exceeding):
         return None
-    k = int(beyond[0])
+    k = int(exceeding[0])
     if k == 0 or not np.isfinite(error[k - 1]):
         return float(growth.times[k])
-    share = (limit - error[k - 1]) / (error[k] - error[k - 1])
-    return float(growth.times[k - 1] + share * (growth.times[k] - growth.times[k - 1]))
+    fraction = (limit - error[k - 1]) / (error[k] - error[k - 1])
+    return float(growth.times[k - 1] + fraction * (growth.times[k] - growth.times[k - 1]))

@@ -1,11 +1,11 @@
-"""What a motion comes near to, as it is told: instants, conditions, stiffness, growth."""
+"""Results of a probe: events, condition numbers, stiffness and growth of disturbances."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-from heuncli.base.method_rows import row_of
+from heuncli.base.method_rows import find_method
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 
@@ -15,7 +15,12 @@ HALF_TURN, GIMBAL, DEAD_CENTRE, SINGULAR, NO_MASS = (
 
 
 class Event(NamedTuple):
-    """An instant [s]; kind: one of those above; where: a body, joint or loop by its path; message: a sentence."""
+    """An event at an instant [s].
+
+    kind: one of the kinds above
+    where: a body, joint or loop, by its path
+    message: a sentence
+    """
 
     time: float
     kind: str
@@ -24,28 +29,28 @@ class Event(NamedTuple):
 
 
 class AttitudeResults(NamedTuple):
-    """Of a body whose turns are all free: its name, its half turns, and the largest conditions of its Euler angles."""
+    """A body that rotates freely: its name, number of half turns, and the largest conditions of its Euler angles."""
 
     body: str
     half_turns: int
     euler: dict[str, tuple[float, float]]  # by sequence: condition, and when
 
-    def block(self) -> dict[str, Any]:
-        """As JSON has it."""
-        euler = {name: {"condition": number(k), "time": t} for name, (k, t) in self.euler.items()}
+    def to_block(self) -> dict[str, Any]:
+        """Return the results as a JSON block."""
+        euler = {name: {"condition": to_json_number(k), "time": t} for name, (k, t) in self.euler.items()}
         return {"half_turns": self.half_turns, **euler}
 
 
 class LargestCondition(NamedTuple):
-    """The largest of a condition number over the run, when, and where; infinite of what is singular."""
+    """The largest condition number over the run, with time and place; infinite if singular."""
 
     value: float
     time: float
     where: str = ""
 
 
-class Step(NamedTuple):
-    """The steps [s] that a method is allowed by stability and that accuracy asks of it; infinite: any."""
+class StepLimits(NamedTuple):
+    """The steps [s] that stability permits a method and that accuracy requires of it; infinite means no limit."""
 
     method: str
     order: int
@@ -55,27 +60,33 @@ class Step(NamedTuple):
 
 @record
 class StiffnessResults:
-    """How fast what is near the motion decays and oscillates, against the motion itself.
+    """How fast disturbances of the motion decay and oscillate, compared with the motion itself.
 
-    decay, oscillation [1/s]: largest over the run of -Re and |Im| of the eigenvalues of the tangent, on what the closed
-    chains admit; time [s]: when stability asks for the shortest step; own [1/s]: the motion's own rate; steps: of
-    explicit methods; ratio: by how much stability shortens the steps of the default method, at most; share of the run
-    in which it does.
+    decay, oscillation [1/s]: largest -Re and |Im| over the run of the eigenvalues of the tangent, on the motions that
+    closed chains admit
+    time [s]: when stability requires the shortest step
+    motion_rate [1/s]: rate of the motion itself
+    steps: of explicit methods
+    ratio: largest factor by which stability shortens the steps of the default method
+    share: share of the run in which it does
     """
 
     decay: float
     oscillation: float
     time: float
     own: float
-    steps: tuple[Step, ...]
+    steps: tuple[StepLimits, ...]
     ratio: float
     share: float
 
 
 @record
 class GrowthResults:
-    """How a disturbance grows: rate [1/s], how many times until an instant, whether exponentially; directions: how many
-    there are; horizon [s]: of double precision; expected: the one beyond the run, if it goes on so.
+    """Growth of disturbances.
+
+    rate [1/s]: of the growth; logarithm: ln of the factor up to `end_time`; exponential: whether it is exponential
+    directions: number of independent disturbances
+    horizon [s]: of double precision; expected_horizon: the horizon after the run if the growth goes on
     """
 
     rate: float
@@ -90,7 +101,11 @@ class GrowthResults:
 
 @record
 class Probe:
-    """What a probe found. reasons: why something is not told, by its key in JSON; more: events beyond those listed."""
+    """Results of a probe.
+
+    reasons: why results are missing, by JSON key
+    further_events: numbers of events beyond those listed
+    """
 
     title: str
     duration: float
@@ -111,73 +126,78 @@ class Probe:
     others: tuple[str, ...] = ()  # of other methods
 
     @property
-    def implicit(self) -> str | None:
-        """The method by which the run went, where that bears what is stiff; None of an explicit one."""
-        row = row_of(str(self.model.get("method")))
+    def implicit_method(self) -> str | None:
+        """The method of the run if it is implicit, else None."""
+        row = find_method(str(self.model.get("method")))
         return row.name if row is not None and row.kind != "explicit" else None
 
     @property
     def verdict(self) -> str:
-        """One sentence at the top."""
+        """One sentence for the top of the page."""
         if not self.trouble:
             return f"nothing {'in this motion' if self.duration else 'at this instant'} troubles heun's default method"
         return self.trouble[0]
 
-    def block(self) -> dict[str, Any]:
-        """As JSON has it."""
-        growth, stiff = self.growth, self.stiffness
+    def to_block(self) -> dict[str, Any]:
+        """Return the probe as a JSON block."""
+        growth, stiffness = self.growth, self.stiffness
         return {
             "verdict": self.verdict,
             "trouble": list(self.trouble),
             "others": list(self.others),
             "horizon": growth.horizon if growth is not None else None,
-            "stiffness": number(stiff.ratio) if stiff is not None else None,
-            "growth_rate": number(growth.rate) if growth is not None else None,
-            "condition": {"mass": number_of(self.mass), "closure": number_of(self.closure)},
+            "stiffness": to_json_number(stiffness.ratio) if stiffness is not None else None,
+            "growth_rate": to_json_number(growth.rate) if growth is not None else None,
+            "condition": {"mass": to_json_condition(self.mass), "closure": to_json_condition(self.closure)},
             "events": [event._asdict() for event in self.events],
-            "more": [{"kind": kind, "where": where, "count": count} for kind, where, count in self.more],
-            "growth": growing_block(growth),
-            "out_of_plane": growing_block(self.across),
-            "rates": stiff_block(stiff),
-            "steps": {s.method: {"stability": number(s.stability), "accuracy": number(s.accuracy)} for s in stiff.steps}
-            if stiff is not None
+            "more": [{"kind": kind, "where": where, "count": count} for kind, where, count in self.further_events],
+            "growth": to_growth_block(growth),
+            "out_of_plane": to_growth_block(self.out_of_plane),
+            "rates": to_rates_block(stiffness),
+            "steps": {
+                s.method: {"stability": to_json_number(s.stability), "accuracy": to_json_number(s.accuracy)}
+                for s in stiffness.steps
+            }
+            if stiffness is not None
             else {},
-            "condition_at": {name: at._asdict() | {"value": number(at.value)} for name, at in self.conditions()},
-            "attitudes": {turned.body: turned.block() for turned in self.attitudes},
+            "condition_at": {
+                name: at._asdict() | {"value": to_json_number(at.value)} for name, at in self.list_conditions()
+            },
+            "attitudes": {turned.body: turned.to_block() for turned in self.attitudes},
             "run": {"method": self.model.get("method"), "horizon": self.run_horizon, "error": self.error},
             "not_told": dict(self.reasons),
         }
 
-    def conditions(self) -> list[tuple[str, LargestCondition]]:
-        """The largest condition numbers that are known, with what of: mass matrix, closures."""
+    def list_conditions(self) -> list[tuple[str, LargestCondition]]:
+        """Return the known largest condition numbers with their names: mass, closure."""
         return [(name, at) for name, at in (("mass", self.mass), ("closure", self.closure)) if at is not None]
 
 
-def number(x: float) -> float | None:
-    """A number as JSON has it: what is without bound is null."""
+def to_json_number(x: float) -> float | None:
+    """Return a number for JSON: null if it is not finite."""
     return x if math.isfinite(x) else None
 
 
-def number_of(largest: LargestCondition | None) -> float | None:
-    """The largest as JSON has it."""
-    return number(largest.value) if largest is not None else None
+def to_json_condition(largest: LargestCondition | None) -> float | None:
+    """Return the largest condition as a JSON number."""
+    return to_json_number(largest.value) if largest is not None else None
 
 
-def growing_block(growth: GrowthResults | None) -> dict[str, Any] | None:
-    """A growth as JSON has it."""
+def to_growth_block(growth: GrowthResults | None) -> dict[str, Any] | None:
+    """Return a growth as a JSON block."""
     if growth is None:
         return None
     return {
-        "rate": growth.rate, "logarithm": growth.times, "exponential": growth.exponential,
-        "directions": growth.directions, "horizon": growth.horizon, "expected": growth.expected, "until": growth.until,
+        "rate": growth.rate, "logarithm": growth.logarithm, "exponential": growth.exponential,
+        "directions": growth.directions, "horizon": growth.horizon, "expected": growth.expected_horizon, "until": growth.end_time,
     }  # fmt: skip
 
 
-def stiff_block(stiff: StiffnessResults | None) -> dict[str, Any] | None:
-    """Rates as JSON has them."""
-    if stiff is None:
+def to_rates_block(stiffness: StiffnessResults | None) -> dict[str, Any] | None:
+    """Return the rates as a JSON block."""
+    if stiffness is None:
         return None
     return {
-        "decay": stiff.decay, "oscillation": stiff.oscillation, "time": stiff.time, "motion": number(stiff.own),
-        "share": stiff.share,
+        "decay": stiffness.decay, "oscillation": stiffness.oscillation, "time": stiffness.time, "motion": to_json_number(stiffness.motion_rate),
+        "share": stiffness.share,
     }  # fmt: skip

@@ -1,6 +1,6 @@
-"""What a scene's motion comes near to, of what methods cannot bear; with a verdict.
+"""Diagnose what in a scene's motion is difficult for numerical methods, and give a verdict.
 
-Impure: integrating looks at the clock.
+Impure: integration reads the clock.
 """
 
 from __future__ import annotations
@@ -8,69 +8,71 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from heuncli.analyses.probing.conditions import conditions_of, singular_events
-from heuncli.analyses.probing.growth import across_plane, growing
-from heuncli.analyses.probing.instants import SearchedMotion, attitudes, dead_centres, distinct_events
+from heuncli.analyses.probing.conditions import find_largest_conditions, find_singular_events
+from heuncli.analyses.probing.growth import find_out_of_plane_growth, growing
+from heuncli.analyses.probing.instants import MotionSearch, distinct_events, find_attitude_events, find_dead_centres
 from heuncli.analyses.probing.results import Event, Probe
-from heuncli.analyses.probing.stiffness import stiffness_of
-from heuncli.analyses.probing.verdict import others, trouble
+from heuncli.analyses.probing.stiffness import find_stiffness
+from heuncli.analyses.probing.verdict import iter_other_troubles, iter_troubles
 from heuncli.base.records import replace
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import placed
+from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
-MOST_EVENTS = 100  # that are listed of one kind and place
+MAX_LISTED_EVENTS = 100  # listed events of one kind and place
 
 
 def probe(spec: Spec, options: Options) -> Probe:
     """Probe the motion of a spec, or its state. Raises what solving it raises."""
-    with placed(spec):
-        return probed(spec, options)
+    with attach_locations(spec):
+        return make_probe(spec, options)
 
 
-def probed(spec: Spec, options: Options) -> Probe:
-    """The probe of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
-    study = solve(spec, replace(options, wanted=frozenset({"motion"})))
-    along = SearchedMotion(study)
-    turns, turned = attitudes(along)
-    centres, left = dead_centres(along)
-    mass, closure, why = conditions_of(along)
-    stiffness, no_stiffness = stiffness_of(along)
-    growth, no_growth = growing(along)
-    across, no_across = across_plane(along)
-    listed, more = most_of(distinct_events([*turns, *centres, *singular_events(along)], along.span))
-    checked, results = study.history.checked, study.results
+def make_probe(spec: Spec, options: Options) -> Probe:
+    """Probe a spec. Errors name bodies, joints and sections, but not their location in the file."""
+    study = solve(spec, replace(options, requested_reports=frozenset({"motion"})))
+    motion = MotionSearch(study)
+    attitude_events, attitude_results = find_attitude_events(motion)
+    centres, skipped_loops = find_dead_centres(motion)
+    mass, closure, no_condition = find_largest_conditions(motion)
+    stiffness, no_stiffness = find_stiffness(motion)
+    growth, no_growth = growing(motion)
+    out_of_plane, no_out_of_plane = find_out_of_plane_growth(motion)
+    listed, further_events = limit_events(
+        distinct_events([*attitude_events, *centres, *find_singular_events(motion)], motion.span)
+    )
+    checked_run, results = study.history.checked_run, study.results
     reasons = {
-        "stiffness": no_stiffness, "growth_rate": no_growth, "condition": why, "out_of_plane": no_across,
-        "dead centres": "; ".join(left),
+        "stiffness": no_stiffness, "growth_rate": no_growth, "condition": no_condition, "out_of_plane": no_out_of_plane,
+        "dead centres": "; ".join(skipped_loops),
     }  # fmt: skip
-    found = Probe(
+    result = Probe(
         title=spec.title,
-        duration=along.span,
+        duration=motion.span,
         model=dict(results.model),
-        run_horizon=checked.horizon if checked is not None else None,
+        run_horizon=checked_run.horizon if checked_run is not None else None,
         error=float(study.history.estimate["motion"]),
         status=str(results.status["message"]) if results.status["code"] != "completed" else "",
         events=tuple(listed),
-        attitudes=tuple(turned),
+        attitudes=tuple(attitude_results),
         mass=mass,
         closure=closure,
         stiffness=stiffness,
         growth=growth,
-        across=across,
+        out_of_plane=out_of_plane,
         reasons={key: text for key, text in reasons.items() if text},
-        more=tuple(more),
+        further_events=tuple(further_events),
     )
-    return replace(found, trouble=tuple(trouble(found)), others=tuple(others(found)))
+    return replace(result, trouble=tuple(iter_troubles(result)), others=tuple(iter_other_troubles(result)))
 
 
-def most_of(events: Sequence[Event]) -> tuple[list[Event], list[tuple[str, str, int]]]:
-    """The first so many events of each kind and place; how many more there are."""
-    seen: Counter[tuple[str, str]] = Counter()
+def limit_events(events: Sequence[Event]) -> tuple[list[Event], list[tuple[str, str, int]]]:
+    """Return the first MAX_LISTED_EVENTS events of each kind and place, and how many more there are."""
+    counts: Counter[tuple[str, str]] = Counter()
     listed = []
     for event in events:
-        seen[event.kind, event.where] += 1
-        if seen[event.kind, event.where] <= MOST_EVENTS:
+        counts[event.kind, event.where] += 1
+        if counts[event.kind, event.where] <= MAX_LISTED_EVENTS:
             listed.append(event)
-    return listed, [(*key, count - MOST_EVENTS) for key, count in seen.items() if count > MOST_EVENTS]
+    return listed, [(*key, count - MAX_LISTED_EVENTS) for key, count in counts.items() if count > MAX_LISTED_EVENTS]

@@ -1,9 +1,8 @@
-"""The published cases that come with heun: a spec each, and the numbers that others published of it.
+"""The published cases that come with heun: a spec each, and the numbers that others published for it.
 
-The numbers of a case stand in numbers/CASE.yaml, as text, so that the digits that were printed are known:
-
+The numbers of a case are in numbers/CASE.yaml, as text, so that the printed digits are known:
     about, source      what the case is, who published it
-    tables             each with `where` it stands in the source, its `kind` (KINDS), and `of`: paths into the results
+    tables             each with `where` it is in the source, its `kind` (KINDS), and `of`: paths into the results
                        with a number, a list (x, y, z) or a mapping of instants to these; and, where they are needed,
                        `at` (the instant of all), `case` (a load case of the spec), `axes` (of joint loads), `let`
                        (names of an exact expression), `error` (the source's own, a share of the largest number of the
@@ -26,12 +25,12 @@ KINDS = {
     "exact": "a published expression",
     "second program": "published data, solved by a second program to the digits shown",
 }
-NEEDED = frozenset({"where", "kind", "of"})
-KNOWN = NEEDED | {"at", "case", "axes", "let", "error", "because"}
+REQUIRED_KEYS = frozenset({"where", "kind", "of"})
+ALLOWED_KEYS = REQUIRED_KEYS | {"at", "case", "axes", "let", "error", "because"}
 
 
 class PublishedNumber(NamedTuple):
-    """One number: its path, its instant (None: a state's), its text, and the line of its file."""
+    """One number: its path, its time (None for a state), its text, and the line of its file."""
 
     path: str
     at: float | None
@@ -40,7 +39,7 @@ class PublishedNumber(NamedTuple):
 
 
 class PublishedTable(NamedTuple):
-    """Numbers that stand in one place of a source; error: the source's own, as a share of the largest of them."""
+    """Numbers from one place of a source; error: the source's own, relative to the largest of them."""
 
     where: str
     kind: str
@@ -53,7 +52,7 @@ class PublishedTable(NamedTuple):
 
 
 class PublishedCase(NamedTuple):
-    """A case: its name, what it is, its source, its spec as text, its tables of numbers."""
+    """A case: its name, description, source, spec as text, and tables of numbers."""
 
     name: str
     about: str
@@ -62,52 +61,52 @@ class PublishedCase(NamedTuple):
     tables: tuple[PublishedTable, ...]
 
 
-class Lined(str):
+class LocatedText(str):
     """A scalar of a file as it is written, with its line."""
 
     line: int
 
 
-def case_of(name: str) -> PublishedCase:
-    """The case of a name, one of `names`."""
-    return read(name, numbers_of(name), spec_of(name))
+def read_case(name: str) -> PublishedCase:
+    """Return the case with this name, one of `names`."""
+    return parse_case(name, numbers_of(name), spec_of(name))
 
 
-def read(name: str, text: str, spec: str) -> PublishedCase:
-    """A case from the texts of its numbers and of its spec. Raises ValueError where the first is none."""
-    data = _plain(yaml.compose(text, Loader=yaml.BaseLoader))
-    return PublishedCase(name, str(data["about"]), str(data["source"]), spec, tuple(map(_table, data["tables"])))
+def parse_case(name: str, text: str, spec: str) -> PublishedCase:
+    """Return a case from the texts of its numbers and of its spec. Raises ValueError if the first is invalid."""
+    data = _to_plain_data(yaml.compose(text, Loader=yaml.BaseLoader))
+    return PublishedCase(name, str(data["about"]), str(data["source"]), spec, tuple(map(_parse_table, data["tables"])))
 
 
-def _plain(node: Any) -> Any:
-    """Mappings, lists, and every scalar as it is written."""
+def _to_plain_data(node: Any) -> Any:
+    """Convert YAML nodes to mappings, lists, and scalars as they are written."""
     if isinstance(node, yaml.MappingNode):
-        return {key.value: _plain(value) for key, value in node.value}
+        return {key.value: _to_plain_data(value) for key, value in node.value}
     if isinstance(node, yaml.SequenceNode):
-        return [_plain(value) for value in node.value]
-    found = Lined(node.value)
-    found.line = node.start_mark.line + 1
-    return found
+        return [_to_plain_data(value) for value in node.value]
+    scalar = LocatedText(node.value)
+    scalar.line = node.start_mark.line + 1
+    return scalar
 
 
-def _table(data: Mapping[str, Any]) -> PublishedTable:
-    known = NEEDED <= data.keys() <= KNOWN and data["kind"] in KINDS
-    if not known or ("error" in data) != ("because" in data):
+def _parse_table(data: Mapping[str, Any]) -> PublishedTable:
+    is_valid = REQUIRED_KEYS <= data.keys() <= ALLOWED_KEYS and data["kind"] in KINDS
+    if not is_valid or ("error" in data) != ("because" in data):
         raise ValueError(f"a table of published numbers has {', '.join(data)}")
-    at = float(data["at"]) if "at" in data else None
-    numbers = tuple(one for path, value in data["of"].items() for one in _numbers(path, value, at))
-    given: dict[str, Any] = {key: str(data[key]) for key in ("where", "kind", "case", "axes", "because") if key in data}
+    time = float(data["at"]) if "at" in data else None
+    numbers = tuple(one for path, value in data["of"].items() for one in _iter_numbers(path, value, time))
+    texts: dict[str, Any] = {key: str(data[key]) for key in ("where", "kind", "case", "axes", "because") if key in data}
     let = tuple((name, str(text)) for name, text in data.get("let", {}).items())
-    return PublishedTable(numbers=numbers, let=let, error=float(data.get("error", 0)), **given)
+    return PublishedTable(numbers=numbers, let=let, error=float(data.get("error", 0)), **texts)
 
 
-def _numbers(path: str, value: Any, at: float | None) -> Iterator[PublishedNumber]:
-    """The numbers under a path: one, those of a vector, or those at instants."""
+def _iter_numbers(path: str, value: Any, time: float | None) -> Iterator[PublishedNumber]:
+    """Yield the numbers under a path: one, those of a vector, or those at instants."""
     if isinstance(value, dict):
-        for instant, there in value.items():
-            yield from _numbers(path, there, float(instant))
+        for instant, nested in value.items():
+            yield from _iter_numbers(path, nested, float(instant))
     elif isinstance(value, list):
         for axis, component in zip("xyz", value, strict=False):
-            yield from _numbers(f"{path}.{axis}", component, at)
+            yield from _iter_numbers(f"{path}.{axis}", component, time)
     else:
-        yield PublishedNumber(path, at, str(value), value.line)
+        yield PublishedNumber(path, time, str(value), value.line)

@@ -1,8 +1,6 @@
-"""Published numbers against what heun finds: how far apart, and whether that is more than both of them claim.
-
+"""Compare published numbers with heun's: their difference, and whether it exceeds what both claim.
     |found - printed| <= half of the last digit printed + the source's own error + the error that heun states
-
-What heun states may be no more than what the source claims, or a small share of the largest, so that a coarse run
+Heun's stated error may not exceed what the source claims, or a small share of the largest number, so that a coarse run
 cannot agree with everything.
 """
 
@@ -12,32 +10,32 @@ import math
 from collections.abc import Sequence
 
 from heuncli.analyses.published.cases import PublishedCase, PublishedNumber, PublishedTable
-from heuncli.analyses.published.printed import Printed, exact, printed
+from heuncli.analyses.published.printed import PrintedNumber, evaluate_exact, parse_decimal
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.results.results import Array
-from heuncli.results.results_paths import find
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.expectations import instant_among
+from heuncli.study.ask.expectations import find_instant_index
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import asked_by
-from heuncli.study.quantities.stated import error_of
+from heuncli.study.model.selection import select_paths
+from heuncli.study.quantities.stated import find_measure_error
 from heuncli.study.workflow import solve
 
 AGREES, DIFFERS, OPEN, COARSE = "agrees", "differs", "open", "too coarse"
-ROUNDED = 1.0 + 1e-6  # a number that ends in 5 may have been rounded either way
-PLAIN = Options()
-COARSEST = 1e-8  # of the largest of its table, that heun's stated error may be where more digits were printed
+ROUNDING_FACTOR = 1.0 + 1e-6  # a number that ended in 5 may have been rounded either way
+DEFAULT_OPTIONS = Options()
+MAX_STATED_ERROR = 1e-8  # of the largest of its table: permitted stated error of heun, even if more digits were printed
 
 
-class ComparedNumber(NamedTuple):
-    """A published number and heun's: with the error that heun states, and what they may differ by."""
+class NumberComparison(NamedTuple):
+    """A published number and heun's, with the error that heun states, and the permitted difference."""
 
     number: PublishedNumber
-    printed: Printed
+    printed: PrintedNumber
     found: float
     stated: float
     allowed: float
@@ -45,84 +43,87 @@ class ComparedNumber(NamedTuple):
 
     @property
     def difference(self) -> float:
-        """Heun's less the published one."""
-        return self.found - self.printed.value
+        """Heun's number minus the published one."""
+        return self.computed - self.published.value
 
     @property
     def in_last_digits(self) -> float:
-        """The difference in units of the last digit printed; nan where the number is exact."""
-        return self.difference / self.printed.last if self.printed.last else math.nan
+        """The difference in units of the last digit printed; nan if the number is exact."""
+        return self.difference / self.published.last_digit if self.published.last_digit else math.nan
 
 
-class ComparedTable(NamedTuple):
+class TableComparison(NamedTuple):
     """A table of a source with heun's numbers; largest: the largest of its numbers."""
 
     table: PublishedTable
-    numbers: tuple[ComparedNumber, ...]
+    numbers: tuple[NumberComparison, ...]
     largest: float
 
     @property
-    def is_to_the_digit(self) -> bool:
-        """Whether the last digit decides: its numbers were printed, and have no other error."""
+    def is_limited_by_digits(self) -> bool:
+        """Whether the last digit decides: the numbers were printed, and have no other error."""
         return self.table.kind != "exact" and not self.table.error
 
     @property
-    def worst(self) -> ComparedNumber:
-        """The number that is farthest off, of what is allowed; one that does not agree first."""
-        return max(self.numbers, key=lambda one: (one.verdict != AGREES, abs(one.difference) / one.allowed))
+    def worst(self) -> NumberComparison:
+        """The number with the largest difference relative to its tolerance; one that does not agree comes first."""
+        return max(self.numbers, key=lambda one: (one.verdict != AGREES, abs(one.difference) / one.tolerance))
 
 
-def compared(case: PublishedCase, options: Options = PLAIN) -> tuple[ComparedTable, ...]:
-    """A case solved, table by table, with a time limit and reductions as the options have them. Raises HeunError."""
+def compare_case(case: PublishedCase, options: Options = DEFAULT_OPTIONS) -> tuple[TableComparison, ...]:
+    """Solve a case and compare it table by table, with the time limit and reductions of the options. Raises
+    HeunError.
+    """
     spec, load_cases = load_with_cases(f"{case.name}.yaml", text=case.spec)
     scenes = {"": spec, **load_cases}
     studies: dict[tuple[str, str], Study] = {}
     for key in dict.fromkeys((table.case, table.axes) for table in case.tables):
-        own = [table for table in case.tables if (table.case, table.axes) == key]
-        studies[key] = _solved(scenes[key[0]], own, replace(options, axes=key[1]))
-    return tuple(_compared(table, studies[table.case, table.axes]) for table in case.tables)
+        key_tables = [table for table in case.tables if (table.case, table.axes) == key]
+        studies[key] = _solve_tables(scenes[key[0]], key_tables, replace(options, axes=key[1]))
+    return tuple(_compare_table(table, studies[table.case, table.axes]) for table in case.tables)
 
 
-def _solved(spec: Spec, tables: Sequence[PublishedTable], options: Options) -> Study:
-    asked = asked_by([number.path for table in tables for number in table.numbers], spec)
-    return solve(spec, replace(options, wanted=asked.reports, entries=asked.entries))
+def _solve_tables(spec: Spec, tables: Sequence[PublishedTable], options: Options) -> Study:
+    selection = select_paths([number.path for table in tables for number in table.numbers], spec)
+    return solve(spec, replace(options, requested_reports=selection.reports, entries=selection.entries))
 
 
-def _compared(table: PublishedTable, study: Study) -> ComparedTable:
-    values = [_printed(table, number, study.spec) for number in table.numbers]
+def _compare_table(table: PublishedTable, study: Study) -> TableComparison:
+    values = [_parse_number(table, number, study.spec) for number in table.numbers]
     largest = max(abs(value.value) for value in values)
     numbers = tuple(
-        _one(number, value, table, largest, study) for number, value in zip(table.numbers, values, strict=True)
+        _compare_number(number, value, table, largest, study)
+        for number, value in zip(table.numbers, values, strict=True)
     )
-    return ComparedTable(table, numbers, largest)
+    return TableComparison(table, numbers, largest)
 
 
-def _printed(table: PublishedTable, number: PublishedNumber, spec: Spec) -> Printed:
+def _parse_number(table: PublishedTable, number: PublishedNumber, spec: Spec) -> PrintedNumber:
     if table.kind != "exact":
-        return printed(number.text)
+        return parse_decimal(number.text)
     names = dict(spec.parameters)
-    names |= {name: exact(text, names).value for name, text in table.let}
-    return exact(number.text, names)
+    names |= {name: evaluate_exact(text, names).value for name, text in table.let}
+    return evaluate_exact(number.text, names)
 
 
-def _one(
-    number: PublishedNumber, value: Printed, table: PublishedTable, largest: float, study: Study
-) -> ComparedNumber:
-    found = _found(number, study)
-    claimed = value.last / 2.0 * ROUNDED + table.error * largest
-    if math.isnan(found):
-        return ComparedNumber(number, value, math.nan, math.nan, claimed, OPEN)
-    stated = error_of(MeasureRequest("at", number.path, number.at), Peak(found, 0.0), study) or 0.0
-    allowed = claimed + stated
-    coarse = not stated <= max(claimed, COARSEST * largest)
-    verdict = COARSE if coarse else AGREES if abs(found - value.value) <= allowed else DIFFERS
-    return ComparedNumber(number, value, found, stated, allowed, verdict)
+def _compare_number(
+    number: PublishedNumber, value: PrintedNumber, table: PublishedTable, largest: float, study: Study
+) -> NumberComparison:
+    computed = _compute_number(number, study)
+    claimed_error = value.last_digit / 2.0 * ROUNDING_FACTOR + table.error * largest
+    if math.isnan(computed):
+        return NumberComparison(number, value, math.nan, math.nan, claimed_error, OPEN)
+    stated_error = find_measure_error(MeasureRequest("at", number.path, number.time), Peak(computed, 0.0), study) or 0.0
+    tolerance = claimed_error + stated_error
+    is_coarse = not stated_error <= max(claimed_error, MAX_STATED_ERROR * largest)
+    verdict = COARSE if is_coarse else AGREES if abs(computed - value.value) <= tolerance else DIFFERS
+    return NumberComparison(number, value, computed, stated_error, tolerance, verdict)
 
 
-def _found(number: PublishedNumber, study: Study) -> float:
-    """What heun finds at the path, at the instant. Raises HeunError where the path leads to no one number."""
-    there = find(study.results, number.path)
-    values: Array = there.values
-    if there.timed:
-        values = values[0 if number.at is None else instant_among(study.results.time, number.at)]
+def _compute_number(number: PublishedNumber, study: Study) -> float:
+    """Return heun's number at the path and instant. Raises HeunError if the path does not lead to a single number."""
+    channel = find_values(study.results, number.path)
+    values: Array = channel.values
+    if channel.is_timed:
+        values = values[0 if number.time is None else find_instant_index(study.results.time, number.time)]
     return float(values.reshape(()))

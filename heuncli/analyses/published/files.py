@@ -1,4 +1,4 @@
-"""The files of the published cases: for each a spec and the numbers that others published of it. Impure: reads them."""
+"""Files of the published cases: for each a spec and the numbers that others published. Impure: reads files."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from pathlib import Path
 FOLDER = Path(__file__).parent
 
 
-def names() -> tuple[str, ...]:
-    """The names of all cases, sorted."""
+def list_names() -> tuple[str, ...]:
+    """Return the names of all cases, sorted."""
     return tuple(sorted(path.stem for path in (FOLDER / "numbers").glob("*.yaml")))
 
 
 def spec_of(name: str) -> str:
-    """The spec of a case, as text."""
+    """Return the spec of a case, as text."""
     return (FOLDER / "specs" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
 def numbers_of(name: str) -> str:
-    """The file of the numbers of a case, as text."""
+    """Return the file of the numbers of a case, as text."""
     return (FOLDER / "numbers" / f"{name}.yaml").read_text(encoding="utf-8")

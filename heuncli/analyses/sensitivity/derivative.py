@@ -1,16 +1,15 @@
-"""The derivative of what is known within an error only, by differences.
-
+"""The derivative of a measure that is known only within an error, by finite differences.
     D(h) = (m(+h) - m(-h)) / 2h          off by m''' h^2/6, and by the noise e/h
     R    = (4 D(h/2) - D(h)) / 3         off by less than |D(h/2) - D(h)|, and by 3 e/h
     K(h) = (m(+h) - 2 m(0) + m(-h)) / h  halves with h where m is smooth, stays where it bends, doubles where it jumps
     X    = K(h/2) - K(h)/2               of third order where m is smooth; known within 8 e/h
+If m has a kink J at c within the step, R is off by J (1/2 - 7c/6h) for c < h/2, else by J (1 - c/h)/6, which never
+exceeds |D(h/2) - D(h)| + |X|: the stated error contains both, and their noise. A third step, in no simple ratio to the
+first, shows whether D is quadratic in h between them; with waves shorter than the step it is not.
 
-If m bends by J at c, within the step, R is off by J (1/2 - 7c/6h) at c < h/2, else by J (1 - c/h)/6, and that is never
-more than |D(h/2) - D(h)| + |X|: the error that is told holds both, and the noise of both. A third step, of no simple
-ratio to the first, tells whether D goes with h^2 between them: waves shorter than the step do not.
-
-The step is the one at which what two steps differ by is about the noise: it begins at the cube root of the stated
-error, and goes on from there by fours. Where m bends or jumps, smaller ones tell whether at the value or beside it.
+The step is chosen so that the difference of two steps is about the noise: it begins at the cube root of the stated
+error and changes by factors of four. Where m has a kink or a jump, smaller steps show whether it is at the value or
+near it.
 """
 
 from __future__ import annotations
@@ -21,22 +20,24 @@ from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
 
-FIRST, LARGEST, LEAST = 2.0**-8, 2.0**-4, 2.0**-24  # steps, of the number's size
-ENOUGH = 1e-6  # of the derivative: an error that needs no better step
-UNEQUAL = 4.0  # times the other: of noise and difference of two steps the larger one sends to the next step
-MOST_MOVES = 5
-BENDS, JUMPS = 0.75, 1.5  # K(h/2) / K(h): between 1/2 and 1, between 1 and 2
-DOUBT = 0.1  # of a derivative on one side: two steps that differ by more, far beyond the noise, tell of none
-CLEAR = 4.0  # times its noise: what K or X is to be to tell of a bend
-BETWEEN = 0.37  # of a step: the third one
-STEADY = 0.3  # of what two steps differ by: how far the third may be off h^2 between them
-CLOSER = 1.0 / 16.0  # of a step: the next one towards what bends or jumps
-NOISES = 3.0 + 8.0  # times e/h: the noise of R and of X
-NOT_SMOOTH = "not-smooth"
+FIRST_STEP, MAX_STEP, MIN_STEP = 2.0**-8, 2.0**-4, 2.0**-24  # steps, of the number's size
+SUFFICIENT_ERROR = 1e-6  # of the derivative: an error small enough to keep the step
+IMBALANCE = 4.0  # ratio of noise and difference of two steps above which the step is changed
+MAX_STEP_CHANGES = 5
+KINK_RATIO, JUMP_RATIO = 0.75, 1.5  # K(h/2) / K(h): between 1/2 and 1, between 1 and 2
+MAX_DISAGREEMENT = 0.1  # of a one-sided derivative: if two steps differ by more, far above the noise, there is none
+SIGNIFICANCE = 4.0  # times its noise: size of K or X that shows a kink
+THIRD_STEP = 0.37  # of a step: the third one
+MAX_DEVIATION = 0.3  # of the difference of two steps: permitted deviation of the third from h^2 between them
+STEP_REDUCTION = 1.0 / 16.0  # of a step: the next one towards a kink or a jump
+NOISE_FACTOR = 3.0 + 8.0  # times e/h: the noise of R and of X
+NOT_SMOOTH_CODE = "not-smooth"
 
 
 class StepPair(NamedTuple):
-    """Differences at a step and its half: the derivative, what both differ by, the noise, and |X|."""
+    """Differences at a step and its half: the derivative, the difference between the two, the noise, and |X|
+    (excess).
+    """
 
     step: float
     value: float
@@ -46,214 +47,245 @@ class StepPair(NamedTuple):
 
     @property
     def error(self) -> float:
-        """What the derivative may be off by."""
+        """The error bound of the derivative."""
         return self.difference + self.noise + self.excess
 
 
 class Differences:
-    """Differences of a measure about a number; ask: the measure at a distance from it."""
+    """Finite differences of a measure about a number.
 
-    def __init__(self, ask: Callable[[float], NoisyValue], at: float) -> None:
-        """at: the number itself, which rounds its distances."""
-        self.ask, self.rounding = ask, 4.0 * EPS * abs(at)
-        self.base = ask(0.0)
+    evaluate: function that gives the measure at a distance from the number
+    """
 
-    def solved(self, *distances: float) -> bool:
-        """Whether there is a measure at all of these."""
-        return all(self.ask(each).value is not None for each in distances)
+    def __init__(self, evaluate: Callable[[float], NoisyValue], number: float) -> None:
+        """number: the centre, whose rounding limits the distances"""
+        self.evaluate, self.rounding = evaluate, 4.0 * EPS * abs(number)
+        self.base = evaluate(0.0)
 
-    def value(self, distance: float) -> float:
-        """The measure at a distance, where there is one."""
-        found = self.ask(distance).value
-        assert found is not None
-        return found
+    def has_values(self, *distances: float) -> bool:
+        """Return whether the measure exists at all these distances."""
+        return all(self.evaluate(distance).value is not None for distance in distances)
 
-    def error(self, *distances: float) -> float:
-        """The largest error there."""
-        return max(self.ask(each).error for each in distances)
+    def get_value(self, distance: float) -> float:
+        """Return the measure at a distance; it must exist."""
+        value = self.evaluate(distance).value
+        assert value is not None
+        return value
 
-    def central(self, h: float) -> float:
-        """D at a step."""
-        return (self.value(h) - self.value(-h)) / (2.0 * h)
+    def get_largest_error(self, *distances: float) -> float:
+        """Return the largest error at these distances."""
+        return max(self.evaluate(distance).error for distance in distances)
 
-    def curved(self, h: float) -> float:
-        """K at a step, with its sign."""
-        return (self.value(h) - 2.0 * self.value(0.0) + self.value(-h)) / h
+    def central_difference(self, h: float) -> float:
+        """Return D at a step."""
+        return (self.get_value(h) - self.get_value(-h)) / (2.0 * h)
 
-    def pair(self, h: float) -> StepPair:
-        """Central differences at a step and its half."""
-        whole, half = self.central(h), self.central(0.5 * h)
-        value = (4.0 * half - whole) / 3.0
-        error = self.error(0.0, h, -h, 0.5 * h, -0.5 * h) + 0.25 * abs(value) * self.rounding
-        excess = abs(self.curved(0.5 * h) - 0.5 * self.curved(h))
-        return StepPair(h, value, abs(half - whole), NOISES * error / h, excess)
+    def curvature(self, h: float) -> float:
+        """Return K at a step, with its sign."""
+        return (self.get_value(h) - 2.0 * self.get_value(0.0) + self.get_value(-h)) / h
 
-    def steady(self, pair: StepPair) -> bool:
-        """Whether D goes with the square of the step up to a third one, as far as the error leaves it open."""
-        between = BETWEEN * pair.step
-        if not self.solved(between, -between):
+    def compute_pair(self, h: float) -> StepPair:
+        """Return the central differences at a step and its half."""
+        full_step, half_step = self.central_difference(h), self.central_difference(0.5 * h)
+        value = (4.0 * half_step - full_step) / 3.0
+        error = self.get_largest_error(0.0, h, -h, 0.5 * h, -0.5 * h) + 0.25 * abs(value) * self.rounding
+        excess = abs(self.curvature(0.5 * h) - 0.5 * self.curvature(h))
+        return StepPair(h, value, abs(half_step - full_step), NOISE_FACTOR * error / h, excess)
+
+    def is_quadratic(self, pair: StepPair) -> bool:
+        """Return whether D is quadratic in the step at a third one, within the error."""
+        third_step = THIRD_STEP * pair.step
+        if not self.has_values(third_step, -third_step):
             return False
-        expected = pair.value + BETWEEN**2 * (self.central(pair.step) - pair.value)
-        off = abs(self.central(between) - expected)
-        return off <= STEADY * pair.difference + pair.excess + pair.noise
+        expected = pair.value + THIRD_STEP**2 * (self.central_difference(pair.step) - pair.value)
+        deviation = abs(self.central_difference(third_step) - expected)
+        return deviation <= MAX_DEVIATION * pair.difference + pair.excess + pair.noise
 
-    def side(self, h: float, way: int, start: float = 0.0) -> StepPair:
-        """Differences on one side, from a distance on as they are at the number: at a step, its half, its quarter."""
-        base = self.value(way * start)
-        ends = [way * (start + x) for x in (h, 0.5 * h, 0.25 * h)]
+    def compute_side_pair(self, h: float, sign: int, start: float = 0.0) -> StepPair:
+        """Return one-sided differences, extrapolated from a start distance to the number: at a step, its half, its
+        quarter.
+        """
+        base = self.get_value(sign * start)
+        ends = [sign * (start + x) for x in (h, 0.5 * h, 0.25 * h)]
         first, second, third = (
-            (self.value(x) - base) / (way * step) for x, step in zip(ends, (h, 0.5 * h, 0.25 * h), strict=True)
+            (self.get_value(x) - base) / (sign * step) for x, step in zip(ends, (h, 0.5 * h, 0.25 * h), strict=True)
         )
         value, coarser = 2.0 * third - second, 2.0 * second - first
-        noise = 20.0 * self.error(way * start, *ends) / h + 4.0 * abs(value) * self.rounding / h
+        noise = 20.0 * self.get_largest_error(sign * start, *ends) / h + 4.0 * abs(value) * self.rounding / h
         shift = start * 8.0 * abs(third - second) / h  # the second derivative, over the distance
         return StepPair(h, value, abs(value - coarser) + shift, noise)
 
-    def bend(self, h: float) -> tuple[float, float]:
-        """|K| at a step, and its noise."""
-        return abs(self.curved(h)), 4.0 * self.error(0.0, h, -h) / h
+    def measure_kink(self, h: float) -> tuple[float, float]:
+        """Return |K| at a step, and its noise."""
+        return abs(self.curvature(h)), 4.0 * self.get_largest_error(0.0, h, -h) / h
 
 
-def derivative(ask: Callable[[float], NoisyValue], at: float, size: float) -> NoisyDerivative:
-    """dm/dp at a number; ask: m at a distance from it; size: over which the number is expected to matter."""
-    about = Differences(ask, at)
-    if about.base.value is None:
-        return NoisyDerivative(None, kind="refused", why=about.base.why)
-    h = first_step(about.base, size)
+def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, size: float) -> NoisyDerivative:
+    """Compute dm/dp at a number.
+
+    evaluate: function that gives m at a distance from the number
+    size: range over which the number is expected to matter
+    """
+    differences = Differences(evaluate, number)
+    if differences.base.value is None:
+        return NoisyDerivative(None, kind="refused", why=differences.base.why)
+    h = choose_first_step(differences.base, size)
     for _ in range(2):
-        below, above = about.solved(-h, -0.5 * h), about.solved(h, 0.5 * h)
-        if below and above:
-            return central(about, h, size)
-        if (below or above) and about.solved(*(0.25 * h * (1 if above else -1) * k for k in (1, 2, 4))):
-            return one_sided(about, h, 1 if above else -1, size)
+        has_below, has_above = differences.has_values(-h, -0.5 * h), differences.has_values(h, 0.5 * h)
+        if has_below and has_above:
+            return compute_central(differences, h, size)
+        if (has_below or has_above) and differences.has_values(
+            *(0.25 * h * (1 if has_above else -1) * k for k in (1, 2, 4))
+        ):
+            return compute_one_sided(differences, h, 1 if has_above else -1, size)
         h /= 64.0
-    return NoisyDerivative(None, kind="refused", why=ask(64.0 * h).why)
+    return NoisyDerivative(None, kind="refused", why=evaluate(64.0 * h).why)
 
 
-def first_step(base: NoisyValue, size: float) -> float:
-    """Where the error of the run balances a third derivative of the measure's own size, as a power of two of `size`."""
+def choose_first_step(base: NoisyValue, size: float) -> float:
+    """Return the step, `size` times a power of two, at which the run's error balances a third derivative of the
+    measure's own size.
+    """
     relative = base.error / abs(base.value) if base.value else 0.0
-    step = FIRST
-    while step**3 > 8.0 * NOISES * relative and step > 2.0**-12:
+    step = FIRST_STEP
+    while step**3 > 8.0 * NOISE_FACTOR * relative and step > 2.0**-12:
         step *= 0.5
     return step * size
 
 
-def central(about: Differences, h: float, size: float) -> NoisyDerivative:
-    """By differences on both sides."""
-    if all(about.value(x) == about.value(0.0) for x in (h, -h, 0.5 * h, -0.5 * h)):
+def compute_central(differences: Differences, h: float, size: float) -> NoisyDerivative:
+    """Compute the derivative by differences on both sides."""
+    if all(differences.get_value(x) == differences.get_value(0.0) for x in (h, -h, 0.5 * h, -0.5 * h)):
         return NoisyDerivative(0.0, kind="nothing", step=h)
-    tried = [best_pair(about.pair, lambda x: about.solved(x, -x, 0.5 * x, -0.5 * x), h, size)]
-    steady = [each for each in tried if about.steady(each)]
-    if not steady or tried[0].excess > max(tried[0].noise, tried[0].difference) or bends(about, tried[0], 1.0):
-        tried += closer(about, tried[0], size)
-        steady = [each for each in tried if about.steady(each)]
-    best = min(steady, key=lambda each: each.error, default=None)
-    if best is None or (best.excess > CLEAR * best.noise and any(bends(about, each, CLEAR) for each in tried)):
-        return not_smooth(about, tried, size)
+    pairs = [
+        find_best_pair(differences.compute_pair, lambda x: differences.has_values(x, -x, 0.5 * x, -0.5 * x), h, size)
+    ]
+    quadratic = [each for each in pairs if differences.is_quadratic(each)]
+    if (
+        not quadratic
+        or pairs[0].excess > max(pairs[0].noise, pairs[0].difference)
+        or has_kink(differences, pairs[0], 1.0)
+    ):
+        pairs += compute_smaller_steps(differences, pairs[0], size)
+        quadratic = [each for each in pairs if differences.is_quadratic(each)]
+    best = min(quadratic, key=lambda each: each.error, default=None)
+    if best is None or (
+        best.excess > SIGNIFICANCE * best.noise and any(has_kink(differences, each, SIGNIFICANCE) for each in pairs)
+    ):
+        return describe_kink_or_jump(differences, pairs, size)
     return NoisyDerivative(best.value, best.error, step=best.step)
 
 
-def bends(about: Differences, pair: StepPair, clear: float) -> bool:
-    """Whether K stays or grows from a step to its half, by so many times its noise."""
-    (whole, _), (half, noise) = about.bend(pair.step), about.bend(0.5 * pair.step)
-    return pair.excess > clear * pair.noise and half > max(clear * noise, BENDS * whole)
+def has_kink(differences: Differences, pair: StepPair, significance: float) -> bool:
+    """Return whether K stays or grows from a step to its half, by more than `significance` times its noise."""
+    (full_step, _), (half_step, noise) = differences.measure_kink(pair.step), differences.measure_kink(0.5 * pair.step)
+    return pair.excess > significance * pair.noise and half_step > max(significance * noise, KINK_RATIO * full_step)
 
 
-def closer(about: Differences, first: StepPair, size: float) -> list[StepPair]:
-    """Differences at smaller steps, until the noise is more than the error of the first, or than all else."""
-    found: list[StepPair] = []
-    h = CLOSER * first.step
-    while h >= LEAST * size and about.solved(h, -h, 0.5 * h, -0.5 * h):
-        found.append(about.pair(h))
-        if found[-1].noise > max(found[-1].difference, found[-1].excess):
+def compute_smaller_steps(differences: Differences, first_pair: StepPair, size: float) -> list[StepPair]:
+    """Compute differences at smaller steps, until the noise exceeds all else."""
+    pairs: list[StepPair] = []
+    h = STEP_REDUCTION * first_pair.step
+    while h >= MIN_STEP * size and differences.has_values(h, -h, 0.5 * h, -0.5 * h):
+        pairs.append(differences.compute_pair(h))
+        if pairs[-1].noise > max(pairs[-1].difference, pairs[-1].excess):
             break
-        h *= CLOSER
-    return found
+        h *= STEP_REDUCTION
+    return pairs
 
 
-def one_sided(about: Differences, h: float, way: int, size: float) -> NoisyDerivative:
-    """By differences on the side that is solved, at smaller steps where these tell of another derivative.
+def compute_one_sided(differences: Differences, h: float, sign: int, size: float) -> NoisyDerivative:
+    """Compute the derivative on the side that has values, at smaller steps if these give another derivative.
 
-    From one side a bend at c does not show at steps of many c: they tell of what is beyond. So smaller ones are asked
-    until they drown in noise; what these differ by, as far as they are known as well, is part of the error.
+    From one side, a kink at c does not show at steps much larger than c: they give the derivative beyond it. So smaller
+    steps are tried until noise dominates; their disagreement, as far as it is significant, is part of the error.
     """
 
-    def solved(x: float) -> bool:
-        return about.solved(*(0.25 * x * way * k for k in (1, 2, 4)))
+    def has_step(x: float) -> bool:
+        return differences.has_values(*(0.25 * x * sign * k for k in (1, 2, 4)))
 
-    best = best_pair(lambda x: about.side(x, way), solved, h, size)
-    most, apart, h = abs(best.value), 0.0, 0.25 * best.step
-    while h >= LEAST * size and solved(h):
-        found = about.side(h, way)
-        most = max(most, abs(found.value))
-        if found.noise > most:
+    best = find_best_pair(lambda x: differences.compute_side_pair(x, sign), has_step, h, size)
+    largest, disagreement, h = abs(best.value), 0.0, 0.25 * best.step
+    while h >= MIN_STEP * size and has_step(h):
+        pair = differences.compute_side_pair(h, sign)
+        largest = max(largest, abs(pair.value))
+        if pair.noise > largest:
             break
-        differ = abs(found.value - best.value)
-        if differ > found.error + best.error or found.error < best.error:
-            best, apart = found, 0.0
-        elif found.error <= UNEQUAL * best.error:
-            apart = max(apart, differ)
+        difference = abs(pair.value - best.value)
+        if difference > pair.error + best.error or pair.error < best.error:
+            best, disagreement = pair, 0.0
+        elif pair.error <= IMBALANCE * best.error:
+            disagreement = max(disagreement, difference)
         h *= 0.25
-    why = about.ask(-way * best.step).why
-    if best.difference > CLEAR * best.noise and best.difference > DOUBT * abs(best.value):
+    why = differences.evaluate(-sign * best.step).why
+    if best.difference > SIGNIFICANCE * best.noise and best.difference > MAX_DISAGREEMENT * abs(best.value):
         return NoisyDerivative(None, kind="refused", why=why, step=best.step)
-    return NoisyDerivative(best.value, best.error + apart, "one-sided", why, step=best.step)
+    return NoisyDerivative(best.value, best.error + disagreement, "one-sided", why, step=best.step)
 
 
-def best_pair(pair: Callable[[float], StepPair], solved: Callable[[float], bool], h: float, size: float) -> StepPair:
-    """The differences with the least error, at steps that go where the larger share of it becomes less."""
-    best = pair(h)
-    for _ in range(MOST_MOVES):
-        if best.error <= ENOUGH * abs(best.value):
+def find_best_pair(
+    compute_pair: Callable[[float], StepPair], has_step: Callable[[float], bool], h: float, size: float
+) -> StepPair:
+    """Find the differences with the least error, changing the step so that the larger part of the error decreases."""
+    best = compute_pair(h)
+    for _ in range(MAX_STEP_CHANGES):
+        if best.error <= SUFFICIENT_ERROR * abs(best.value):
             break
-        if best.difference + best.excess > UNEQUAL * best.noise:
+        if best.difference + best.excess > IMBALANCE * best.noise:
             h *= 0.25
-        elif best.noise > UNEQUAL * best.difference:
+        elif best.noise > IMBALANCE * best.difference:
             h *= 4.0
         else:
             break
-        if not LEAST * size <= h <= LARGEST * size or not solved(h):
+        if not MIN_STEP * size <= h <= MAX_STEP * size or not has_step(h):
             break
-        found = pair(h)
-        if found.error >= best.error:
+        next_pair = compute_pair(h)
+        if next_pair.error >= best.error:
             break
-        best = found
+        best = next_pair
     return best
 
 
-def not_smooth(about: Differences, tried: list[StepPair], size: float) -> NoisyDerivative:
-    """What is told where the measure bends or jumps within the steps that were tried, the largest first."""
-    clear = [each for each in tried if bends(about, each, CLEAR)]
-    step = min(clear or tried, key=lambda each: each.step).step
-    near = 0.5 * step
-    (whole, _), (half, _) = about.bend(step), about.bend(near)
-    if clear and half > JUMPS * whole:
-        return refusal(f"it jumps within {near:.2g} of the value, by {half * near:.3g}", step)
-    sides = [beyond(about, way, near, tried[0].step, size) for way in (-1, 1)]
-    most = max((abs(each.value) for each in sides if each), default=0.0)
-    ends = [(each.value, each.error) for each in sides if each and is_told(each, most)]
-    if not clear or len(ends) < 2:
-        differ = f"two steps differ by {tried[0].difference:.2g} of {tried[0].value:.3g}"
-        return refusal(f"{differ}: it jumps, bends or swings within {step:.2g} of the value", step)
-    reason = f"it bends within {near:.2g} of the value: left and right of that the derivatives differ"
-    return NoisyDerivative(None, kind="kink", why=("kink", reason), left=ends[0], right=ends[1], step=near)
+def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size: float) -> NoisyDerivative:
+    """Return the result for a measure with a kink or a jump within the steps that were tried, the largest first."""
+    kinked = [each for each in pairs if has_kink(differences, each, SIGNIFICANCE)]
+    step = min(kinked or pairs, key=lambda each: each.step).step
+    distance = 0.5 * step
+    (full_step, _), (half_step, _) = differences.measure_kink(step), differences.measure_kink(distance)
+    if kinked and half_step > JUMP_RATIO * full_step:
+        return make_refusal(f"it jumps within {distance:.2g} of the value, by {half_step * distance:.3g}", step)
+    sides = [compute_outside(differences, sign, distance, pairs[0].step, size) for sign in (-1, 1)]
+    largest = max((abs(each.value) for each in sides if each), default=0.0)
+    side_derivatives = [(each.value, each.error) for each in sides if each and is_determined(each, largest)]
+    if not kinked or len(side_derivatives) < 2:
+        difference_text = f"two steps differ by {pairs[0].difference:.2g} of {pairs[0].value:.3g}"
+        return make_refusal(f"{difference_text}: it jumps, bends or swings within {step:.2g} of the value", step)
+    reason = f"it bends within {distance:.2g} of the value: left and right of that the derivatives differ"
+    return NoisyDerivative(
+        None, kind="kink", why=("kink", reason), left=side_derivatives[0], right=side_derivatives[1], step=distance
+    )
 
 
-def beyond(about: Differences, way: int, near: float, h: float, size: float) -> StepPair | None:
-    """The derivative on one side of a distance within which the measure bends; None where it is not solved."""
+def compute_outside(differences: Differences, sign: int, distance: float, h: float, size: float) -> StepPair | None:
+    """Return the derivative on one side, outside of a distance within which the measure has a kink; None if it has no
+    values there.
+    """
 
-    def solved(x: float) -> bool:
-        return about.solved(*(way * (near + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
+    def has_step(x: float) -> bool:
+        return differences.has_values(*(sign * (distance + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
 
-    return best_pair(lambda x: about.side(x, way, near), solved, h, size) if solved(h) else None
+    return (
+        find_best_pair(lambda x: differences.compute_side_pair(x, sign, distance), has_step, h, size)
+        if has_step(h)
+        else None
+    )
 
 
-def is_told(side: StepPair, most: float) -> bool:
-    """Whether two steps on a side tell of a derivative; most: the largest on both."""
-    return side.difference <= max(CLEAR * side.noise, DOUBT * most)
+def is_determined(pair: StepPair, largest: float) -> bool:
+    """Return whether two steps on a side agree on a derivative; largest: the largest on both sides."""
+    return pair.difference <= max(SIGNIFICANCE * pair.noise, MAX_DISAGREEMENT * largest)
 
 
-def refusal(reason: str, step: float) -> NoisyDerivative:
-    """No derivative, for that reason."""
-    return NoisyDerivative(None, kind="refused", why=(NOT_SMOOTH, reason), step=step)
+def make_refusal(reason: str, step: float) -> NoisyDerivative:
+    """Return a result without a derivative, with the reason."""
+    return NoisyDerivative(None, kind="refused", why=(NOT_SMOOTH_CODE, reason), step=step)

@@ -1,4 +1,4 @@
-"""What measures hang on: their derivatives by numbers of a spec, and what spreads of these make of them."""
+"""Derivatives of measures by numbers of a spec, and the effect of tolerances of these numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ DerivativeKind = Literal["", "nothing", "one-sided", "kink", "refused"]
 
 
 class NoisyValue(NamedTuple):
-    """A measure of a variant within its stated error; None: there is none, and why, a code and a sentence."""
+    """A measure of a variant within its stated error; value None: it does not exist, `why` has a code and a
+    sentence.
+    """
 
     value: float | None
     error: float = 0.0
@@ -20,9 +22,9 @@ class NoisyValue(NamedTuple):
 class NoisyDerivative(NamedTuple):
     """dm/dp within an error, in units of m and p.
 
-    kind: "nothing" hangs on it, it is known from one side alone, it bends there (left and right of it, each with its
-    error), or it is refused, and why: a code and a sentence. step: half the distance of the variants it is from; where
-    it bends, how far from the number that may be.
+    kind: "nothing" if m does not depend on p; "one-sided"; "kink", with the derivatives `left` and `right` of it and
+    their errors; "refused", with a code and a sentence in `why`
+    step: half the distance of the variants used; at a kink, how far from the number it may be
     """
 
     value: float | None
@@ -35,13 +37,13 @@ class NoisyDerivative(NamedTuple):
 
 
 class Contribution(NamedTuple):
-    """What a spread of one number makes of a measure: by the derivative, and by the variants within it.
+    """Effect of one number's tolerance on a measure: by the derivative, and by the variants within it.
 
-    size: what it is counted with, within an error: the largest change that is known, None where that is not known.
-    linear: what the derivative says; below, above: what the measure changes by at the ends; None where there is none.
-    bent: the variants do not lie on the line of the derivative, and the spread was searched with so many variants, for
-    the distances from the number and the changes of the least and the greatest; why: a code and a sentence where a part
-    of the spread cannot be solved.
+    size: largest known change, within an error; None if unknown
+    linear: change predicted by the derivative; below, above: changes at the ends, None if unsolved
+    bent: the variants do not lie on the derivative's line; the tolerance was then searched with `variants` variants,
+    `least` and `greatest` give distance and change of the extremes
+    why: a code and a sentence if part of the tolerance range cannot be solved
     """
 
     name: str
@@ -60,11 +62,12 @@ class Contribution(NamedTuple):
 
 
 class SpreadSum(NamedTuple):
-    """What all spreads together make of a measure, each way: worst case and root of the sum of squares, with errors.
+    """Combined effect of all tolerances on a measure, each way: worst case and root sum of squares, with errors; None
+    if unknown.
 
-    corners: the measure where each number is where it lowers it most, and where it raises it most. by_variant: the
-    worst case is what a variant showed, since that is more than the sum. largest: the largest change that a variant of
-    several numbers showed, and its error. None: not known.
+    corners: the measure with every number where it lowers it most, and where it raises it most
+    by_variant: the worst case comes from a variant, as that exceeds the sum
+    largest: the largest change of a variant of several numbers, with its error
     """
 
     contributions: tuple[Contribution, ...]

@@ -1,10 +1,10 @@
-"""What a sweep is of, and what it finds: a row a variant."""
+"""The description of a sweep, and its results: one row per variant."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from heuncli.analyses.variants.asking import Answer
+from heuncli.analyses.variants.asking import VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
 
@@ -12,14 +12,14 @@ WORKER_DIED = "worker-died"  # the code of a variant that ends the processes tha
 
 
 class SweptMeasure(NamedTuple):
-    """A measure in the words in which it was asked for, and its SI unit (empty: none)."""
+    """A measure in the words of the request, and its SI unit (empty: none)."""
 
     text: str
     unit: str
 
 
 class SweepHead(NamedTuple):
-    """What a sweep is of: the spec with its digest, what is varied, what is measured."""
+    """The description of a sweep: the spec with its digest, what is varied, what is measured."""
 
     title: str
     path: str
@@ -30,8 +30,8 @@ class SweepHead(NamedTuple):
 
 
 class SweptRow(NamedTuple):
-    """A variant by its number in the plan, its values in the form of `--set`, and what it answered."""
+    """A variant: its number in the plan, its values in the form of `--set`, and its result."""
 
     number: int
     values: Mapping[str, str]
-    answer: Answer
+    answer: VariantResult

@@ -1,9 +1,9 @@
-"""Down to the next minimum, by two methods in turn, each begun anew from the best.
+"""Descend to the next minimum by two methods in turn, each restarted from the best variant.
 
-COBYLA (Powell 1994) lays planes through its trials, of the goal and of each constraint: it is quick where these are
-smooth, and ends early where two of them meet in a kink, as those of a largest force do. The simplex of Nelder and Mead
-(1965) compares alone, creeps along kinks, and takes constraints as kinks of its merit: a weight times what they are
-passed by. What neither improves any more is a minimum, as far as either can tell.
+COBYLA (Powell 1994) fits planes to its trials, for the goal and each constraint: it is quick where these are smooth,
+and ends early at a kink, such as that of a largest force. The simplex of Nelder and Mead (1965) only compares, creeps
+along kinks, and treats constraints as kinks of its merit: a weight times their violation. A point that neither improves
+is a minimum, as far as both can tell.
 """
 
 from __future__ import annotations
@@ -16,124 +16,137 @@ from heuncli.analyses.tune.results import Trial
 from heuncli.analyses.tune.trials import Trials
 from heuncli.results.results import Array
 
-FIRST, WIDEST, LEAST = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box
-SHRUNK = 0.1  # of the steps before, at least: what follows looks around as far as the last one moved, twice
-END, ABOVE_NOISE = 0.01, 3.0  # of COBYLA's steps: of the root of the floor; of the floor, at least
-NEAR = 1e-3  # of the simplex, whose corners lie as near to each other when it ends, and differ by less than the floor
-PLANES_EACH, CORNERS_EACH = 30, 40  # the most evaluations of one run, for each variable and one more
-WEIGHT, RAISED = (
+FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box
+MIN_STEP_RATIO = 0.1  # of the step before, at least; otherwise twice the distance that the last run moved
+FINAL_STEP_FACTOR, NOISE_FACTOR = (
+    0.01,
+    3.0,
+)  # COBYLA's last step: of the root of the floor, but at least this multiple of the floor
+SIMPLEX_TOLERANCE = 1e-3  # distance of the simplex's corners when it ends; their values differ by less than the floor
+COBYLA_TRIALS, SIMPLEX_TRIALS = 30, 40  # most evaluations of one run, per variable plus one
+FIRST_WEIGHT, WEIGHT_FACTOR = (
     3.0,
     4.0,
-)  # of what constraints are passed by: first, and times which where that does not keep them
-KEPT = 1e-4  # scales by which the best by merit may pass the constraints before the weight is raised
-AIM = 1e-7  # scales that the planes stay inside of the constraints: rounding is not to pass them
-MOST_RUNS = 40
-STILL, STILL_OF_MANY, FEW = 2, 4, 2  # runs in turn that gain nothing when it ends; how many variables are few: of more
+)  # weight of violations: at first, and the factor by which it rises while they persist
+MAX_VIOLATION = 1e-4  # scales by which the best by merit may violate the constraints before the weight is raised
+CONSTRAINT_MARGIN = 1e-7  # scales by which COBYLA stays inside the constraints, so that rounding does not violate them
+MAX_RUNS = 40
+STALLED_RUNS_FEW, STALLED_RUNS_MANY, FEW_VARIABLES = (
+    2,
+    4,
+    2,
+)  # runs in turn that gain nothing when it ends; how many variables are few: of more
 # the simplex may collapse along a kink, and does so less from its other sides
 
 
 def descend(trials: Trials) -> float | None:
-    """Improve the best until no method does; returns what the last runs improved f by, None where it was not ended.
+    """Improve the best variant until no method does.
 
-    Impure: tries variants.
+    Returns the improvement of f by the last runs, or None if the descent did not converge. Impure: tries variants.
     """
     trials.phase = "descent"
-    weight, step = WEIGHT, FIRST
+    weight, step = FIRST_WEIGHT, FIRST_STEP
     gains: list[float] = []
-    still = STILL if len(trials.task.variables) <= FEW else STILL_OF_MANY
-    for run in range(MOST_RUNS):
-        own = weight if trials.feasible else None
-        begin = least(trials, own)
-        if begin is None or not trials.left:
+    stalled_runs = STALLED_RUNS_FEW if len(trials.task.variables) <= FEW_VARIABLES else STALLED_RUNS_MANY
+    for run in range(MAX_RUNS):
+        merit_weight = weight if trials.has_feasible else None
+        start = find_best(trials, merit_weight)
+        if start is None or not trials.remaining:
             return None
         if run % 2 == 0:
-            by_planes(trials, begin, step, own)
+            run_cobyla(trials, start, step, merit_weight)
         else:
-            by_simplex(trials, begin, step, own, mirrored=run % 4 == 3)
-        end = least(trials, own)
+            run_simplex(trials, start, step, merit_weight, is_mirrored=run % 4 == 3)
+        end = find_best(trials, merit_weight)
         assert end is not None
-        gains.append(trials.merit(begin, own) - trials.merit(end, own))
-        moved = float(np.abs(np.subtract(end.place, begin.place)).max())
-        step = min(WIDEST, max(2.0 * moved, SHRUNK * step, LEAST))
-        if own is not None and trials.passed(end) > KEPT:
-            weight *= RAISED
-        elif len(gains) >= still and max(gains[-still:]) < trials.floor and (own is None) is not trials.feasible:
-            return max(gains[-still:]) if trials.left else None
+        gains.append(trials.compute_merit(start, merit_weight) - trials.compute_merit(end, merit_weight))
+        distance = float(np.abs(np.subtract(end.place, start.place)).max())
+        step = min(MAX_STEP, max(2.0 * distance, MIN_STEP_RATIO * step, MIN_STEP))
+        if merit_weight is not None and trials.compute_violation(end) > MAX_VIOLATION:
+            weight *= WEIGHT_FACTOR
+        elif (
+            len(gains) >= stalled_runs
+            and max(gains[-stalled_runs:]) < trials.floor
+            and (merit_weight is None) is not trials.has_feasible
+        ):
+            return max(gains[-stalled_runs:]) if trials.remaining else None
     return None
 
 
-def try_from(trials: Trials, begin: Trial) -> None:
-    """One run of each method from a variant that is not the best. Impure: tries variants."""
+def descend_from(trials: Trials, start: Trial) -> None:
+    """Run each method once from a variant that is not the best. Impure: tries variants."""
     trials.phase = "elsewhere"
-    weight = WEIGHT if trials.feasible else None
-    before = len(trials.history)
-    by_planes(trials, begin, FIRST, weight)
-    reached = least(trials, weight, before)
-    if reached is not None and trials.merit(reached, weight) < trials.merit(begin, weight):
-        begin = reached
-    by_simplex(trials, begin, FIRST / 2.0, weight, mirrored=False)
+    weight = FIRST_WEIGHT if trials.has_feasible else None
+    trial_count = len(trials.history)
+    run_cobyla(trials, start, FIRST_STEP, weight)
+    reached = find_best(trials, weight, trial_count)
+    if reached is not None and trials.compute_merit(reached, weight) < trials.compute_merit(start, weight):
+        start = reached
+    run_simplex(trials, start, FIRST_STEP / 2.0, weight, is_mirrored=False)
 
 
-def least(trials: Trials, weight: float | None, since: int = 0) -> Trial | None:
-    """The best by merit of those tried, or of those tried since."""
-    solved = [trial for trial in trials.history[since:] if trial.solved]
-    return min(solved, key=lambda trial: trials.merit(trial, weight), default=None)
+def find_best(trials: Trials, weight: float | None, first: int = 0) -> Trial | None:
+    """Return the best trial by merit of those from index `first` on."""
+    candidates = [trial for trial in trials.history[first:] if trial.is_solved]
+    return min(candidates, key=lambda trial: trials.compute_merit(trial, weight), default=None)
 
 
-def by_planes(trials: Trials, begin: Trial, step: float, weight: float | None) -> None:
-    """COBYLA from a variant."""
+def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) -> None:
+    """Run COBYLA from a variant."""
     from scipy.optimize import NonlinearConstraint, minimize
 
-    worst = trials.worst(trials.scaled_goal)
-    n, count = len(begin.place), len(trials.task.constraints)
+    worst_goal = trials.worst_value(trials.scaled_goal)
+    n, count = len(start.place), len(trials.task.constraints)
 
-    def goal(place: Array) -> float:
-        trial = trials.at(place)
+    def evaluate_goal(place: Array) -> float:
+        trial = trials.try_place(place)
         if weight is None and count:
             return 0.0
-        return trials.scaled_goal(trial) if trial is not None and trial.solved else worst
+        return trials.scaled_goal(trial) if trial is not None and trial.is_solved else worst_goal
 
-    def excesses(place: Array) -> list[float]:
-        trial = trials.at(place)
-        return trials.scaled_excesses(trial) if trial is not None and trial.solved else [worst_excess] * count
+    def evaluate_excesses(place: Array) -> list[float]:
+        trial = trials.try_place(place)
+        return trials.scaled_excesses(trial) if trial is not None and trial.is_solved else [worst_excess] * count
 
-    worst_excess = trials.worst(lambda trial: max(trials.scaled_excesses(trial), default=0.0))
-    kept_to = [NonlinearConstraint(excesses, -np.inf, -AIM)] if count else []
-    most = min(PLANES_EACH * (n + 1), trials.left + n + 2)
+    worst_excess = trials.worst_value(lambda trial: max(trials.scaled_excesses(trial), default=0.0))
+    constraints = [NonlinearConstraint(evaluate_excesses, -np.inf, -CONSTRAINT_MARGIN)] if count else []
+    max_trials = min(COBYLA_TRIALS * (n + 1), trials.remaining + n + 2)
     minimize(
-        goal, np.array(begin.place), method="COBYLA", bounds=[(0.0, 1.0)] * n, constraints=kept_to,
-        options={"rhobeg": step, "tol": min(last_step(trials.floor), step), "maxiter": most},
+        evaluate_goal, np.array(start.place), method="COBYLA", bounds=[(0.0, 1.0)] * n, constraints=constraints,
+        options={"rhobeg": step, "tol": min(compute_last_step(trials.floor), step), "maxiter": max_trials},
     )  # fmt: skip
 
 
-def last_step(floor: float) -> float:
-    """Where COBYLA ends: over a longer step a smooth valley falls by the floor, over a shorter one nothing is seen."""
-    return max(END * math.sqrt(floor), ABOVE_NOISE * floor)
+def compute_last_step(floor: float) -> float:
+    """Return COBYLA's final step: over a longer one a smooth valley falls by the floor, over a shorter one nothing
+    changes.
+    """
+    return max(FINAL_STEP_FACTOR * math.sqrt(floor), NOISE_FACTOR * floor)
 
 
-def by_simplex(trials: Trials, begin: Trial, step: float, weight: float | None, mirrored: bool) -> None:
-    """Nelder and Mead from a variant; mirrored: with the corners of the first simplex on the other sides."""
+def run_simplex(trials: Trials, start: Trial, step: float, weight: float | None, is_mirrored: bool) -> None:
+    """Run Nelder-Mead from a variant; is_mirrored: the first simplex extends to the opposite sides."""
     from scipy.optimize import minimize
 
-    worst = trials.worst(lambda trial: trials.merit(trial, weight))
+    worst_merit = trials.worst_value(lambda trial: trials.compute_merit(trial, weight))
 
-    def merit(place: Array) -> float:
-        trial = trials.at(place)
-        return trials.merit(trial, weight) if trial is not None and trial.solved else worst
+    def evaluate_merit(place: Array) -> float:
+        trial = trials.try_place(place)
+        return trials.compute_merit(trial, weight) if trial is not None and trial.is_solved else worst_merit
 
-    n = len(begin.place)
-    most = min(CORNERS_EACH * (n + 1), trials.left + n + 2)
+    n = len(start.place)
+    max_trials = min(SIMPLEX_TRIALS * (n + 1), trials.remaining + n + 2)
     minimize(
-        merit, np.array(begin.place), method="Nelder-Mead", bounds=[(0.0, 1.0)] * n,
+        evaluate_merit, np.array(start.place), method="Nelder-Mead", bounds=[(0.0, 1.0)] * n,
         options={
-            "initial_simplex": simplex(np.array(begin.place), -step if mirrored else step), "adaptive": n > 2,
-            "xatol": NEAR, "fatol": trials.floor, "maxfev": most,
+            "initial_simplex": make_simplex(np.array(start.place), -step if is_mirrored else step), "adaptive": n > 2,
+            "xatol": SIMPLEX_TOLERANCE, "fatol": trials.floor, "maxfev": max_trials,
         },
     )  # fmt: skip
 
 
-def simplex(place: Array, step: float) -> Array:
-    """A place and its neighbours along each variable, all in the box, (n + 1, n)."""
+def make_simplex(place: Array, step: float) -> Array:
+    """Return a place and its neighbours along each variable, all within bounds, (n + 1, n)."""
     corners = np.tile(place, (len(place) + 1, 1))
     for i, x in enumerate(place):
         corners[i + 1, i] = x + step if 0.0 <= x + step <= 1.0 else x - step

@@ -1,6 +1,6 @@
-"""What a tuning is of, what was tried, and what came of it.
+"""Task, trials and results of a tuning.
 
-Variables are told in their own units and looked for as places in [0, 1], 0 at the lower bound; measures are SI.
+Variables are reported in their own units and searched as places in [0, 1], 0 at the lower bound; measures are in SI.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import Literal
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 
-DIGITS = 9  # of a variable, beside the width of its interval: a thousandth of what the search tells apart
+RESOLUTION_DIGITS = 9  # of a variable, relative to the width of its interval: a thousandth of the search's resolution
 Ending = Literal["converged", "evaluations", "time", "infeasible"]
 
 
-class TunedVariable(NamedTuple):
-    """A parameter that may lie between two bounds, in its unit; own: its value in the spec, None where that is none."""
+class DesignVariable(NamedTuple):
+    """A parameter with two bounds, in its unit; spec_value: its value in the spec, None if it has none."""
 
     name: str
     low: float
@@ -25,31 +25,33 @@ class TunedVariable(NamedTuple):
     unit: str
     own: float | None = None
 
-    def value(self, place: float) -> float:
-        """The value at a place of [0, 1], in as many digits as make a difference: what is typed is what was solved."""
+    def to_value(self, place: float) -> float:
+        """Return the value at a place of [0, 1], rounded to significant digits, so that the value shown is the value
+        solved.
+        """
         if place <= 0.0:
             return self.low
         if place >= 1.0:
             return self.high
         width = self.high - self.low
-        decimals = DIGITS - math.floor(math.log10(width))
+        decimals = RESOLUTION_DIGITS - math.floor(math.log10(width))
         return min(max(round(self.low + place * width, decimals), self.low), self.high)
 
-    def text(self, place: float) -> str:
-        """The value at a place, as --set takes it."""
-        value = repr(self.value(place))
+    def to_text(self, place: float) -> str:
+        """Return the value at a place, in the form of --set."""
+        value = repr(self.to_value(place))
         return f"{value} {self.unit}" if self.unit else value
 
     @property
-    def own_place(self) -> float | None:
-        """Where the spec's own value lies; None outside of the bounds."""
-        if self.own is None or not self.low <= self.own <= self.high:
+    def spec_place(self) -> float | None:
+        """The place of the spec's value; None if it is out of bounds."""
+        if self.spec_value is None or not self.low <= self.spec_value <= self.high:
             return None
-        return (self.own - self.low) / (self.high - self.low)
+        return (self.spec_value - self.low) / (self.high - self.low)
 
 
-class Goal(NamedTuple):
-    """What is to be least, or greatest: a measure in words, and its SI unit (empty: none)."""
+class TuneGoal(NamedTuple):
+    """A measure to be minimised, or maximised (`is_maximised`), and its SI unit (empty: none)."""
 
     measure: str
     unit: str
@@ -57,46 +59,47 @@ class Goal(NamedTuple):
 
     @property
     def sign(self) -> float:
-        """By which the measure is to be least."""
-        return -1.0 if self.greatest else 1.0
+        """Factor that makes the measure one to be minimised."""
+        return -1.0 if self.is_maximised else 1.0
 
 
-class Constraint(NamedTuple):
-    """A measure in words that is to lie below a limit, or above it; SI."""
+class TuneConstraint(NamedTuple):
+    """An upper or lower limit for a measure; SI."""
 
     measure: str
     sign: Literal["<", ">", "<=", ">="]
     limit: float
     unit: str
 
-    def excess(self, value: float) -> float:
-        """By how much the limit is passed; negative: how much is left."""
+    def compute_excess(self, value: float) -> float:
+        """Return by how much the limit is exceeded; negative: the margin."""
         return value - self.limit if self.sign in ("<", "<=") else self.limit - value
 
-    def met(self, value: float) -> bool:
-        """Whether it holds."""
-        excess = self.excess(value)
+    def is_met(self, value: float) -> bool:
+        """Return whether the constraint is satisfied."""
+        excess = self.compute_excess(value)
         return excess < 0.0 or (excess == 0.0 and len(self.sign) == 2)
 
 
 @record
 class TuneTask:
-    """What is to be tuned: variables, the goal, constraints.
+    """A tuning task: variables, goal, constraints.
 
-    most: how many variants may be solved; precision: below which share of what the goal ranges over nothing more is
-    looked for; seed: of what is drawn.
+    max_variants: maximum number of variants
+    precision: relative resolution of the goal, as a share of its range
+    seed: of random numbers
     """
 
-    variables: tuple[TunedVariable, ...]
-    goal: Goal
-    constraints: tuple[Constraint, ...] = ()
+    variables: tuple[DesignVariable, ...]
+    goal: TuneGoal
+    constraints: tuple[TuneConstraint, ...] = ()
     most: int = 400
     precision: float = 1e-6
     seed: int = 0
 
 
-class Reading(NamedTuple):
-    """A measure of a variant: its value with its stated error and its instant; None: not known, the word says why."""
+class MeasureReading(NamedTuple):
+    """A measure of a variant: value, stated error and instant; value None: unknown, `reason` says why."""
 
     value: float | None
     error: float | None = None
@@ -105,19 +108,19 @@ class Reading(NamedTuple):
 
 
 class TrialOutcome(NamedTuple):
-    """What a variant gave: readings of goal and constraints, or the code and the reason why there are none.
+    """Outcome of a variant: readings of goal and constraints, or the code and reason why there are none.
 
-    warnings: of the run, in sentences.
+    warnings: sentences of the run
     """
 
-    readings: tuple[Reading, ...] = ()
+    readings: tuple[MeasureReading, ...] = ()
     code: str = ""
     reason: str = ""
     warnings: tuple[str, ...] = ()
 
 
 class Trial(NamedTuple):
-    """A variant that was tried: where, in which phase of the search, and what it gave."""
+    """A variant that was tried: its place, the phase of the search, and its outcome."""
 
     number: int
     phase: str
@@ -125,27 +128,27 @@ class Trial(NamedTuple):
     outcome: TrialOutcome
 
     @property
-    def solved(self) -> bool:
-        """Whether all that is measured is known."""
+    def is_solved(self) -> bool:
+        """Whether all measures are known."""
         return bool(self.outcome.readings) and all(one.value is not None for one in self.outcome.readings)
 
     @property
     def failure(self) -> tuple[str, str]:
-        """The code or the word for what is not known, and a sentence."""
+        """Code of what is unknown, and a sentence."""
         outcome = self.outcome
-        word = next((one.word for one in outcome.readings if one.value is None), "")
+        word = next((one.reason for one in outcome.readings if one.value is None), "")
         return (outcome.code, outcome.reason) if outcome.code else (word, UNKNOWN.get(word, word))
 
     @property
     def goal(self) -> float:
-        """The value of the goal, of what is solved."""
+        """The value of the goal of a solved variant."""
         value = self.outcome.readings[0].value
         assert value is not None
         return value
 
     @property
-    def kept_to(self) -> tuple[float, ...]:
-        """The values of the constraints, of what is solved."""
+    def constraint_values(self) -> tuple[float, ...]:
+        """The values of the constraints of a solved variant."""
         return tuple(one.value for one in self.outcome.readings[1:] if one.value is not None)
 
 
@@ -157,32 +160,36 @@ UNKNOWN = {
 }
 
 
-class Move(NamedTuple):
+class ToleranceMove(NamedTuple):
     """How far a variable may move to one side before the goal is worse by some amount.
 
-    by: in its unit; until: what ends the way, `worse`, `bound`, `jump`, a constraint's words or a code; or `less` and
-    `more`, where it is less or more than that.
+    distance: in the variable's unit
+    limit: what ends it, `worse`, `bound`, `jump`, the measure of a constraint or a code; or `less` and `more`, if the
+    true distance is smaller or larger
     """
 
     by: float
     until: str
 
 
-class Leeway(NamedTuple):
+class ToleranceRange(NamedTuple):
     """How far one variable may move, down and up: until the goal is worse by the floor, and by a hundredth of it."""
 
-    of_floor: tuple[Move | None, Move | None] = (None, None)
-    of_hundredth: tuple[Move | None, Move | None] = (None, None)
+    of_floor: tuple[ToleranceMove | None, ToleranceMove | None] = (None, None)
+    of_hundredth: tuple[ToleranceMove | None, ToleranceMove | None] = (None, None)
 
 
 @record
 class TuneResults:
-    """What came of a tuning.
+    """Results of a tuning.
 
-    own: the scene as it is; best: the best that keeps all constraints, or, `feasible` being false, the one that passes
-    them least; None where nothing could be solved. gain: what the last two restarts improved the goal by; floor: below
-    which nothing was looked for. freedoms: a variable each, empty where there was no evaluation left. active: which
-    constraints hold the goal back; scales: of what is left of each constraint, as it ranges over the box.
+    spec_outcome: the scene with its own values
+    best: the best variant that satisfies all constraints, or, if not `is_feasible`, the one with the least violation;
+    None if nothing was solved
+    gain: improvement of the goal by the last two restarts; floor: smallest improvement searched for
+    tolerance_ranges: of each variable, empty if no evaluation was left
+    active_constraints: which constraints limit the goal
+    scales: scale of each constraint's margin over the box
     """
 
     task: TuneTask
@@ -193,41 +200,47 @@ class TuneResults:
     ending: Ending
     gain: float | None
     floor: float
-    freedoms: tuple[Leeway, ...]
+    freedoms: tuple[ToleranceRange, ...]
     active: tuple[bool, ...]
     scales: tuple[float, ...]
     failures: Mapping[str, int]
 
     @property
-    def texts(self) -> dict[str, str]:
-        """The values of the best variant, as --set takes them."""
+    def best_texts(self) -> dict[str, str]:
+        """The values of the best variant, in the form of --set."""
         assert self.best is not None
-        return texts_at(self.task.variables, self.best.place)
+        return make_texts(self.task.variables, self.best.place)
 
     @property
-    def own_is_better(self) -> bool:
-        """Whether the scene as it is keeps all constraints, and is better than the best by more than the floor."""
+    def is_spec_better(self) -> bool:
+        """Whether the scene's own values satisfy all constraints and beat the best variant by more than the floor."""
         assert self.best is not None
-        own = Trial(0, "", (), self.own)
-        if not own.solved or not all(map(Constraint.met, self.task.constraints, own.kept_to)):
+        spec_trial = Trial(0, "", (), self.spec_outcome)
+        if not spec_trial.is_solved or not all(
+            map(TuneConstraint.is_met, self.task.constraints, spec_trial.constraint_values)
+        ):
             return False
-        return not self.feasible or self.task.goal.sign * (self.best.goal - own.goal) > self.floor
+        return not self.is_feasible or self.task.goal.sign * (self.best.goal - spec_trial.goal) > self.floor
 
     @property
-    def nearest_unmet(self) -> int | None:
-        """Which of the constraints that the best does not keep is nearest to being met, by its scale."""
+    def nearest_violated(self) -> int | None:
+        """Index of the constraint violated by the best that is nearest to being satisfied, by its scale."""
         assert self.best is not None
-        cells = zip(self.task.constraints, self.best.kept_to, self.scales, strict=True)
-        passed = {i: one.excess(value) / scale for i, (one, value, scale) in enumerate(cells) if not one.met(value)}
-        return min(passed, key=passed.__getitem__, default=None)
+        cells = zip(self.task.constraints, self.best.constraint_values, self.scales, strict=True)
+        violations = {
+            i: constraint.compute_excess(value) / scale
+            for i, (constraint, value, scale) in enumerate(cells)
+            if not constraint.is_met(value)
+        }
+        return min(violations, key=violations.__getitem__, default=None)
 
-    def at_bound(self, which: int) -> str:
-        """Which of its bounds a variable of the best variant lies at: `low`, `high` or empty."""
+    def find_bound(self, index: int) -> str:
+        """Return the bound at which a variable of the best variant lies: `low`, `high` or empty."""
         assert self.best is not None
-        place = self.best.place[which]
+        place = self.best.place[index]
         return "low" if place <= 0.0 else "high" if place >= 1.0 else ""
 
 
-def texts_at(variables: tuple[TunedVariable, ...], place: tuple[float, ...]) -> dict[str, str]:
-    """The values at a place, as --set takes them."""
-    return {variable.name: variable.text(x) for variable, x in zip(variables, place, strict=True)}
+def make_texts(variables: tuple[DesignVariable, ...], place: tuple[float, ...]) -> dict[str, str]:
+    """Return the values at a place, in the form of --set."""
+    return {variable.name: variable.to_text(x) for variable, x in zip(variables, place, strict=True)}

@@ -1,114 +1,115 @@
-"""The best of a scene's variants: an overview, a descent, a last look around.
-
+"""Find the best of a scene's variants: an overview, a descent, and a last search around it.
     overview   differential evolution over the whole box
     descent    COBYLA and a simplex in turn, until neither improves the goal by more than its floor
     freedom    how far each variable may move
-    elsewhere  a descent from the best of the overview that lies apart, if evaluations are left
-
-What is found better by the last two is gone down from anew.
-
-The floor is the goal's own stated error, or a small share of what it ranges over if that is more. Impure: tries
-variants.
+    elsewhere  a descent from the best separate variant of the overview, if evaluations are left
+A better variant found by the last two starts a new descent. The floor is the goal's own stated error, or a small share
+of its range if that is larger. Impure: tries variants.
 """
 
 from __future__ import annotations
 
 import math
 
-from heuncli.analyses.tune.descent import descend, try_from
-from heuncli.analyses.tune.freedom import freedoms
-from heuncli.analyses.tune.overview import OVERVIEW, look_over
-from heuncli.analyses.tune.results import Ending, Leeway, Trial, TrialOutcome, TuneResults
+from heuncli.analyses.tune.descent import descend, descend_from
+from heuncli.analyses.tune.freedom import find_tolerance_ranges
+from heuncli.analyses.tune.overview import OVERVIEW_PHASE, search_globally
+from heuncli.analyses.tune.results import Ending, ToleranceRange, Trial, TrialOutcome, TuneResults
 from heuncli.analyses.tune.trials import Trials
 
-APART = 0.2  # of the box: another minimum may lie as far from the best
-ANEW = 4  # descents at most
-ACTIVE = 1e-5  # scales: a constraint with less left over is one that holds the goal back
+MIN_SEPARATION = 0.2  # of the box: distance at which another minimum may lie
+MAX_DESCENTS = 4  # descents at most
+ACTIVE_MARGIN = 1e-5  # scales: a constraint with a smaller margin is active
 
 
 class Tuning:
-    """A search under way: whatever interrupts it, what was found so far can be told."""
+    """A running search; if it is interrupted, the results so far are available."""
 
-    def __init__(self, trials: Trials, own: TrialOutcome) -> None:
-        """own: the scene as it is."""
-        self.trials, self.own = trials, own
+    def __init__(self, trials: Trials, spec_outcome: TrialOutcome) -> None:
+        """spec_outcome: the scene with its own values"""
+        self.trials, self.spec_outcome = trials, spec_outcome
         self.gain: float | None = None
-        self.freedoms: tuple[Leeway, ...] = ()
+        self.tolerance_ranges: tuple[ToleranceRange, ...] = ()
 
     def run(self) -> None:
         """Search. Impure: tries variants."""
-        look_over(self.trials)
+        search_globally(self.trials)
         if self.trials.best() is None:
             return
-        for _ in range(ANEW):
+        for _ in range(MAX_DESCENTS):
             self.gain = descend(self.trials)
             if not (self._finds_better_around() or self._finds_better_elsewhere()):
                 return
-        self.gain = None  # there always was something better
+        self.gain = None  # every descent found something better
 
     def _finds_better_around(self) -> bool:
-        """Whether the last look around the best finds a better one."""
+        """Return whether the last search around the best finds a better variant."""
         best = self.trials.best()
-        if self.gain is None or best is None or not self.trials.meets_all(best):
+        if self.gain is None or best is None or not self.trials.satisfies_all(best):
             return False
-        self.freedoms = freedoms(self.trials, best)
-        return self._is_better_than(best)
+        self.tolerance_ranges = find_tolerance_ranges(self.trials, best)
+        return self._has_improved(best)
 
     def _finds_better_elsewhere(self) -> bool:
-        """Whether the way down from the best of the overview that lies apart leads to a better one."""
+        """Return whether the descent from the best separate variant of the overview finds a better one."""
         trials = self.trials
         best = trials.best()
-        if self.gain is None or best is None or not trials.left:
+        if self.gain is None or best is None or not trials.remaining:
             return False
-        apart = trials.best(lambda trial: trial.phase == OVERVIEW and distance(trial, best) > APART)
-        if apart is None or any(
-            distance(trial, apart) < APART / 2.0 and trials.comes_before(trial, apart) for trial in trials.history
+        separate = trials.best(
+            lambda trial: trial.phase == OVERVIEW_PHASE and compute_distance(trial, best) > MIN_SEPARATION
+        )
+        if separate is None or any(
+            compute_distance(trial, separate) < MIN_SEPARATION / 2.0 and trials.is_better(trial, separate)
+            for trial in trials.history
         ):
-            return False  # there is none, or it lies on the slope down to another
-        try_from(trials, apart)
-        return self._is_better_than(best)
+            return False  # there is none, or it lies on the slope towards another trial
+        descend_from(trials, separate)
+        return self._has_improved(best)
 
-    def _is_better_than(self, best: Trial) -> bool:
-        """Whether there is now something better, by more than the floor."""
+    def _has_improved(self, best: Trial) -> bool:
+        """Return whether the current best is better by more than the floor."""
         trials = self.trials
-        now = trials.best()
-        assert now is not None
-        if not trials.meets_all(best):
-            return trials.passed(best) - trials.passed(now) > trials.floor
-        return trials.scaled_goal(best) - trials.scaled_goal(now) > trials.floor
+        current = trials.best()
+        assert current is not None
+        if not trials.satisfies_all(best):
+            return trials.compute_violation(best) - trials.compute_violation(current) > trials.floor
+        return trials.scaled_goal(best) - trials.scaled_goal(current) > trials.floor
 
-    def results(self) -> TuneResults:
-        """What was found so far."""
+    def to_results(self) -> TuneResults:
+        """Return the results so far."""
         trials = self.trials
         best = trials.best()
-        feasible = best is not None and trials.meets_all(best)
-        converged = self.gain is not None and feasible
-        ended: Ending = "time" if trials.time_is_up else "infeasible" if trials.left and not feasible else "evaluations"
+        is_feasible = best is not None and trials.satisfies_all(best)
+        is_converged = self.gain is not None and is_feasible
+        unfinished_ending: Ending = (
+            "time" if trials.time_is_up else "infeasible" if trials.remaining and not is_feasible else "evaluations"
+        )
         return TuneResults(
             task=trials.task,
-            own=self.own,
+            spec_outcome=self.spec_outcome,
             history=tuple(trials.history),
             best=best,
-            feasible=feasible,
-            ending="converged" if converged else ended,
+            is_feasible=is_feasible,
+            ending="converged" if is_converged else unfinished_ending,
             gain=None if self.gain is None else self.gain * trials.scale,
             floor=trials.floor * trials.scale,
-            freedoms=self.freedoms,
-            active=self._active(best),
+            tolerance_ranges=self.tolerance_ranges,
+            active_constraints=self._find_active(best),
             scales=trials.scales,
-            failures=trials.failures(),
+            failures=trials.count_failures(),
         )
 
-    def _active(self, best: Trial | None) -> tuple[bool, ...]:
-        """Which constraints hold the goal back: what is left of them is nothing, within their error."""
+    def _find_active(self, best: Trial | None) -> tuple[bool, ...]:
+        """Return which constraints limit the goal: their margin is zero within their error."""
         trials = self.trials
-        if best is None or not trials.meets_all(best):
+        if best is None or not trials.satisfies_all(best):
             return tuple(False for _ in trials.task.constraints)
         errors = [one.error or 0.0 for one in best.outcome.readings[1:]]
-        left = zip(trials.excesses(best), errors, trials.scales, strict=True)
-        return tuple(bool(abs(excess) <= max(error, ACTIVE * scale)) for excess, error, scale in left)
+        margins = zip(trials.compute_excesses(best), errors, trials.scales, strict=True)
+        return tuple(bool(abs(excess) <= max(error, ACTIVE_MARGIN * scale)) for excess, error, scale in margins)
 
 
-def distance(one: Trial, other: Trial) -> float:
-    """The largest difference of their places."""
+def compute_distance(one: Trial, other: Trial) -> float:
+    """Return the largest difference between the places of two trials."""
     return max((abs(a - b) for a, b in zip(one.place, other.place, strict=True)), default=math.inf)

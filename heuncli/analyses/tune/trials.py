@@ -1,10 +1,8 @@
-"""The variants that were tried, each once, and by what they are judged.
-
+"""The variants that were tried, each once, and the quantities by which they compare.
     goal     f = ± goal / scale            to be least
     excess   c_i = excess_i / scale_i      0 or less where constraint i is met
-
-The scales are those of a first sample over the whole box: half of it lies within one scale of the best. Impure: keeps
-what was tried.
+The scales are those of a first sample over the whole box: half of it lies within one scale of the best. Impure: stores
+the trials.
 """
 
 from __future__ import annotations
@@ -15,21 +13,21 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.analyses.tune.results import Trial, TrialOutcome, TuneTask, texts_at
+from heuncli.analyses.tune.results import Trial, TrialOutcome, TuneTask, make_texts
 from heuncli.results.results import Array
 
-Answers = Callable[[Sequence[Mapping[str, str]]], Iterable[TrialOutcome]]
-Tell = Callable[[int, int, str], None]
-TIME_LIMIT = "time-limit"  # the code of a variant that was not solved because the time is up
-SNAPPED = 1e-9  # of the width of a variable's interval: nearer to a bound is at it
-UNSOLVED = 1.0  # scales above the worst that was solved: what an optimiser is told of what has no value
+SolveVariants = Callable[[Sequence[Mapping[str, str]]], Iterable[TrialOutcome]]
+ReportProgress = Callable[[int, int, str], None]
+TIME_LIMIT_CODE = "time-limit"  # the code of a variant that was not solved for lack of time
+SNAP_DISTANCE = 1e-9  # of the width of a variable's interval: closer to a bound means at it
+UNSOLVED_PENALTY = 1.0  # scales above the worst solved value: the value of unsolved variants for the optimiser
 
 
 class Trials:
-    """Tries variants, as many as are allowed; what was tried before is not solved again."""
+    """Tries variants, up to the permitted number; repeated variants are not solved again."""
 
-    def __init__(self, task: TuneTask, answers: Answers, tell: Tell) -> None:
-        self.task, self.answers, self.tell = task, answers, tell
+    def __init__(self, task: TuneTask, solve_variants: SolveVariants, report_progress: ReportProgress) -> None:
+        self.task, self.solve_variants, self.report_progress = task, solve_variants, report_progress
         self.history: list[Trial] = []
         self.phase = ""
         self.time_is_up = False
@@ -37,130 +35,140 @@ class Trials:
         self._known: dict[tuple[str, ...], Trial] = {}
 
     @property
-    def left(self) -> int:
-        """How many more may be solved."""
-        return 0 if self.time_is_up else self.task.most - len(self.history)
+    def remaining(self) -> int:
+        """Number of variants that may still be solved."""
+        return 0 if self.time_is_up else self.task.max_variants - len(self.history)
 
-    def at(self, place: Array) -> Trial | None:
-        """The variant at a place (n,); None where no more may be solved."""
-        return self.at_all([place])[0]
+    def try_place(self, place: Array) -> Trial | None:
+        """Return the trial at a place (n,); None if no more may be solved."""
+        return self.try_places([place])[0]
 
-    def at_all(self, places: Sequence[Array]) -> list[Trial | None]:
-        """The variants at some places, those of them solved together that are new."""
-        snapped = [snap(place) for place in places]
-        names = [self._name(place) for place in snapped]
-        new: dict[tuple[str, ...], tuple[float, ...]] = {}
+    def try_places(self, places: Sequence[Array]) -> list[Trial | None]:
+        """Return the trials at several places; new ones are solved together."""
+        snapped = [snap_to_bounds(place) for place in places]
+        names = [self._make_key(place) for place in snapped]
+        new_places: dict[tuple[str, ...], tuple[float, ...]] = {}
         for name, place in zip(names, snapped, strict=True):
-            if name not in self._known and name not in new and len(new) < self.left:
-                new[name] = place
-        values = [texts_at(self.task.variables, place) for place in new.values()]
-        for (name, place), outcome in zip(new.items(), self.answers(values) if values else (), strict=False):
-            if outcome.code == TIME_LIMIT:
+            if name not in self._known and name not in new_places and len(new_places) < self.remaining:
+                new_places[name] = place
+        values = [make_texts(self.task.variables, place) for place in new_places.values()]
+        for (name, place), outcome in zip(
+            new_places.items(), self.solve_variants(values) if values else (), strict=False
+        ):
+            if outcome.code == TIME_LIMIT_CODE:
                 self.time_is_up = True
                 break
             trial = Trial(len(self.history) + 1, self.phase, place, outcome)
             self.history.append(trial)
             self._known[name] = trial
-            self.tell(len(self.history), self.task.most, self.phase)
+            self.report_progress(len(self.history), self.task.max_variants, self.phase)
         return [self._known.get(name) for name in names]
 
-    def _name(self, place: tuple[float, ...]) -> tuple[str, ...]:
-        return tuple(texts_at(self.task.variables, place).values())
+    def _make_key(self, place: tuple[float, ...]) -> tuple[str, ...]:
+        return tuple(make_texts(self.task.variables, place).values())
 
     def set_scales(self) -> None:
-        """Scale goal and constraints by what was solved so far."""
-        solved = [trial for trial in self.history if trial.solved]
-        if not solved:
+        """Set the scales of goal and constraints from the trials solved so far."""
+        solved_trials = [trial for trial in self.history if trial.is_solved]
+        if not solved_trials:
             return
-        goals = np.array([self.task.goal.sign * trial.goal for trial in solved])
-        self.scale = size_of(float(np.median(goals) - goals.min()), float(np.ptp(goals)), float(np.abs(goals).max()))
-        excesses = np.abs([self.excesses(trial) for trial in solved])
-        limits = [abs(one.limit) for one in self.task.constraints]
+        goals = np.array([self.task.goal.sign * trial.goal for trial in solved_trials])
+        self.scale = first_positive(
+            float(np.median(goals) - goals.min()), float(np.ptp(goals)), float(np.abs(goals).max())
+        )
+        excesses = np.abs([self.compute_excesses(trial) for trial in solved_trials])
+        limits = [abs(constraint.limit) for constraint in self.task.constraints]
         self.scales = tuple(
-            size_of(float(np.median(column)), float(column.max()), limit)
+            first_positive(float(np.median(column)), float(column.max()), limit)
             for column, limit in zip(excesses.T, limits, strict=True)
         )
 
-    def excesses(self, trial: Trial) -> list[float]:
-        """By how much a solved variant passes each limit; negative: how much is left."""
-        return [one.excess(value) for one, value in zip(self.task.constraints, trial.kept_to, strict=True)]
+    def compute_excesses(self, trial: Trial) -> list[float]:
+        """Return by how much a solved variant exceeds each limit; negative: the margin."""
+        return [
+            constraint.compute_excess(value)
+            for constraint, value in zip(self.task.constraints, trial.constraint_values, strict=True)
+        ]
 
     def scaled_goal(self, trial: Trial) -> float:
-        """f of a solved variant."""
+        """Return f of a solved variant."""
         return self.task.goal.sign * trial.goal / self.scale
 
     def scaled_excesses(self, trial: Trial) -> list[float]:
-        """c of a solved variant."""
-        return [excess / scale for excess, scale in zip(self.excesses(trial), self.scales, strict=True)]
+        """Return c of a solved variant."""
+        return [excess / scale for excess, scale in zip(self.compute_excesses(trial), self.scales, strict=True)]
 
-    def passed(self, trial: Trial) -> float:
-        """By how much the constraints are passed, in scales; 0 where all are met or just met."""
+    def compute_violation(self, trial: Trial) -> float:
+        """Return the sum of the constraint violations, in scales; 0 if all are satisfied."""
         return sum(max(excess, 0.0) for excess in self.scaled_excesses(trial))
 
-    def meets_all(self, trial: Trial) -> bool:
-        """Whether a solved variant keeps all constraints."""
-        return all(one.met(value) for one, value in zip(self.task.constraints, trial.kept_to, strict=True))
+    def satisfies_all(self, trial: Trial) -> bool:
+        """Return whether a solved variant satisfies all constraints."""
+        return all(
+            constraint.is_met(value)
+            for constraint, value in zip(self.task.constraints, trial.constraint_values, strict=True)
+        )
 
-    def rank(self, trial: Trial | None, middle: float) -> float:
-        """By which any two variants compare: what keeps the constraints comes first, then what passes them least.
+    def compute_rank(self, trial: Trial | None, median_goal: float) -> float:
+        """Return the rank by which any two variants compare: feasible ones come first, then those of least violation.
 
-        middle: of f, about which its differences are told apart best.
+        median_goal: value of f about which differences are resolved best
         """
-        if trial is None or not trial.solved:
+        if trial is None or not trial.is_solved:
             return 4.0
-        if self.meets_all(trial):
-            return math.atan(self.scaled_goal(trial) - middle) / math.pi
-        passed = self.passed(trial)
-        return 2.0 + passed / (1.0 + passed)
+        if self.satisfies_all(trial):
+            return math.atan(self.scaled_goal(trial) - median_goal) / math.pi
+        violation = self.compute_violation(trial)
+        return 2.0 + violation / (1.0 + violation)
 
-    def merit(self, trial: Trial, weight: float | None) -> float:
-        """f, and what the constraints are passed by with a weight (None: that alone), of a solved variant."""
-        passed = self.passed(trial)
-        return passed if weight is None else self.scaled_goal(trial) + weight * passed
+    def compute_merit(self, trial: Trial, weight: float | None) -> float:
+        """Return f plus the weighted violation of a solved variant; without a weight the violation alone."""
+        violation = self.compute_violation(trial)
+        return violation if weight is None else self.scaled_goal(trial) + weight * violation
 
-    def worst(self, judge: Callable[[Trial], float]) -> float:
-        """What stands for a variant that cannot be solved, or may not."""
-        return max((judge(trial) for trial in self.history if trial.solved), default=0.0) + UNSOLVED
+    def worst_value(self, evaluate: Callable[[Trial], float]) -> float:
+        """Return the value that represents an unsolved variant."""
+        return max((evaluate(trial) for trial in self.history if trial.is_solved), default=0.0) + UNSOLVED_PENALTY
 
-    def best(self, but: Callable[[Trial], bool] = lambda trial: True) -> Trial | None:
-        """The best of those that keep all constraints; else the one that passes them least."""
-        solved = [trial for trial in self.history if trial.solved and but(trial)]
-        kept = [trial for trial in solved if self.meets_all(trial)]
-        if kept:
-            return min(kept, key=self.scaled_goal)
-        return min(solved, key=self.passed, default=None)
+    def best(self, accepts: Callable[[Trial], bool] = lambda trial: True) -> Trial | None:
+        """Return the best feasible trial; if there is none, the one of least violation."""
+        candidates = [trial for trial in self.history if trial.is_solved and accepts(trial)]
+        feasible_trials = [trial for trial in candidates if self.satisfies_all(trial)]
+        if feasible_trials:
+            return min(feasible_trials, key=self.scaled_goal)
+        return min(candidates, key=self.compute_violation, default=None)
 
-    def comes_before(self, one: Trial, other: Trial) -> bool:
-        """Whether a variant is better than another one, which is solved."""
-        if not one.solved:
+    def is_better(self, trial: Trial, other: Trial) -> bool:
+        """Return whether a variant is better than another one, which is solved."""
+        if not trial.is_solved:
             return False
-        if self.meets_all(one) and self.meets_all(other):
-            return self.scaled_goal(one) < self.scaled_goal(other)
-        return self.passed(one) < self.passed(other)
+        if self.satisfies_all(trial) and self.satisfies_all(other):
+            return self.scaled_goal(trial) < self.scaled_goal(other)
+        return self.compute_violation(trial) < self.compute_violation(other)
 
     @property
-    def feasible(self) -> bool:
-        """Whether one that keeps all constraints is known."""
+    def has_feasible(self) -> bool:
+        """Whether a feasible variant is known."""
         best = self.best()
-        return best is not None and self.meets_all(best)
+        return best is not None and self.satisfies_all(best)
 
     @property
     def floor(self) -> float:
-        """What two values of f are not told apart by: the stated error of the best, or what is asked for."""
+        """The smallest difference of f that counts: the stated error of the best, or the requested precision."""
         best = self.best()
         error = best.outcome.readings[0].error if best is not None else None
         return max((error or 0.0) / self.scale, self.task.precision)
 
-    def failures(self) -> Counter[str]:
-        """How many could not be solved, by their codes."""
-        return Counter(trial.failure[0] for trial in self.history if not trial.solved)
+    def count_failures(self) -> Counter[str]:
+        """Return the number of unsolved variants by code."""
+        return Counter(trial.failure[0] for trial in self.history if not trial.is_solved)
 
 
-def snap(place: Array) -> tuple[float, ...]:
-    """A place in the box, at its bounds where it is next to them."""
-    return tuple(0.0 if x < SNAPPED else 1.0 if x > 1.0 - SNAPPED else float(x) for x in place)
+def snap_to_bounds(place: Array) -> tuple[float, ...]:
+    """Return a place in the box, moved to a bound if it is very near."""
+    return tuple(0.0 if x < SNAP_DISTANCE else 1.0 if x > 1.0 - SNAP_DISTANCE else float(x) for x in place)
 
 
-def size_of(*sizes: float) -> float:
-    """The first that is a size."""
+def first_positive(*sizes: float) -> float:
+    """Return the first finite positive size, or 1."""
     return next((size for size in sizes if math.isfinite(size) and size > 0.0), 1.0)

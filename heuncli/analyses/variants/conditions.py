@@ -1,4 +1,4 @@
-"""A measure held against a value: `max joints.main.force = 10 kN`, `max abs sections.web.M2 < 2*M`.
+"""Parse the comparison of a measure with a value: `max joints.main.force = 10 kN`, `max abs sections.web.M2 < 2*M`.
 
 A value is written as in a spec: with a unit of the measure's kind, in SI without one, or by parameters.
 """
@@ -9,12 +9,12 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
-from heuncli.analyses.variants.axes import AxisError, figure_of
+from heuncli.analyses.variants.axes import AxisError, parse_figure
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.quantity import Scope, number
+from heuncli.scene.file_format.quantity import Scope, read_number
 
 Sign = Literal["=", "<", ">", "<=", ">="]
 SPELLINGS: dict[str, Sign] = {
@@ -24,7 +24,7 @@ PARTS = re.compile(r"([^<>=≤≥]*)([<>=≤≥]+)([^<>=≤≥]*)\Z", re.DOTALL)
 
 
 class MeasureCondition(NamedTuple):
-    """The words of a measure, the sign, and the value behind it as it is written."""
+    """The words of a measure, the sign, and the value as it is written."""
 
     measure: str
     sign: Sign
@@ -32,18 +32,18 @@ class MeasureCondition(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The whole of it."""
+        """The whole condition."""
         return f"{self.measure} {self.sign} {self.value}"
 
     @property
     def unit(self) -> str:
-        """The unit in which the value is given; empty where it has none, or is an expression."""
-        figure = figure_of(self.value)
+        """The unit of the value; empty where it has none, or is an expression."""
+        figure = parse_figure(self.value)
         return figure.unit if figure is not None else ""
 
 
-def condition_of(text: str, form: str, hint: str) -> MeasureCondition:
-    """What a text such as `max joints.main.force < 10 kN` says; form, hint: what is told where it is none.
+def parse_condition(text: str, form: str, hint: str) -> MeasureCondition:
+    """Parse a text such as `max joints.main.force < 10 kN`; form, hint: the message where it is not understood.
 
     Raises AxisError.
     """
@@ -54,13 +54,13 @@ def condition_of(text: str, form: str, hint: str) -> MeasureCondition:
     if not found[1].strip() or not found[3].strip():
         what = "a measure before" if not found[1].strip() else "a value behind"
         raise AxisError(text, f"{form}; there is not {what} the '{found[2]}'", hint)
-    if figure_of(found[1]) is not None:
+    if parse_figure(found[1]) is not None:
         raise AxisError(text, "the measure stands first", hint)
     return MeasureCondition(found[1].strip(), sign, found[3].strip())
 
 
-def in_si(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:
-    """The value of a condition in SI, the same in all specs; unit: the measure's own, empty where it is not known.
+def find_si_value(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:
+    """Return the value of a condition in SI, the same in all specs; unit: the measure's own, empty where it is unknown.
 
     Raises AxisError.
     """
@@ -68,7 +68,7 @@ def in_si(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: s
     values: set[float] = set()
     for spec in specs:
         try:
-            values.add(number(_plain(condition.value), dimension, Scope(spec.parameters)))
+            values.add(read_number(_parse_plain(condition.value), dimension, Scope(spec.parameters)))
         except Finding as finding:
             raise AxisError(condition.text, finding.message, finding.hint or hint, finding.code) from None
     if len(values) > 1:
@@ -76,8 +76,8 @@ def in_si(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: s
     return values.pop()
 
 
-def _plain(text: str) -> float | str:
-    """A number where the text is one, for what a spec holds is no text then."""
+def _parse_plain(text: str) -> float | str:
+    """Return a number if the text is one, because in a spec a plain number is no text."""
     try:
         return float(text)
     except ValueError:

@@ -1,18 +1,18 @@
-"""Random parameters: numbers that a seed draws again.
+"""Draw random parameters from a seed, so that the same numbers can be drawn again.
 
-Each parameter is drawn in [0, 1) first, u, and then turned by its law into its values:
+Each parameter is first drawn in [0, 1), u, and then mapped by its law to its values:
 
     uniform, lhs, sobol    a + (b - a) u
     normal                 the u-quantile of mean a, deviation b
 
-uniform and normal have each a stream of their own: the bits of PCG64, seeded by the seed and the parameter's name, of
-which NumPy promises that they stay (NEP 19). So neither other parameters nor more samples change what is drawn of one.
-Of lhs all parameters together are one Latin hypercube, of sobol one scrambled Sobol sequence, as scipy.stats.qmc draws
-them by this seed; a normal beside them is a further coordinate of that plan.
+uniform and normal each have a stream of their own: the bits of PCG64, seeded by the seed and the parameter's name,
+which NumPy guarantees to stay the same (NEP 19). So neither other parameters nor more samples change the draws of one.
+With lhs all parameters together are one Latin hypercube, with sobol one scrambled Sobol sequence, as scipy.stats.qmc
+draws them from this seed; a normal parameter among them is a further coordinate of that plan.
 
-For Sobol indices every sample is drawn twice, A and B, and d variants follow it which are A but for one parameter, that
-of B (Saltelli 2010): d + 2 variants a sample, one behind the other. One plan tells nothing of how far its indices are
-off, since its points hang on each other. So the samples are of REPETITIONS plans in turn, each scrambled or shuffled by
+For Sobol indices every sample is drawn twice, A and B, followed by d variants which are A except for one parameter from
+B (Saltelli 2010): d + 2 variants per sample, one after the other. A single plan does not show the error of its indices,
+since its points depend on each other. So the samples belong to REPETITIONS plans in turn, each scrambled or shuffled by
 itself: sample k is the next point of plan k mod REPETITIONS.
 """
 
@@ -23,19 +23,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.variants.axes import AxisError, Drawn
-from heuncli.analyses.variants.plans import MOST_VARIANTS, Draws
+from heuncli.analyses.variants.axes import AxisError, RandomVariable
+from heuncli.analyses.variants.plans import MAX_VARIANTS, Draws
 from heuncli.results.results import Array
 
 BITS = 52  # of a random number: (k + 1/2) / 2^52 is neither 0 nor 1, and exact
-JOINT = ("lhs", "sobol")
+JOINT_LAWS = ("lhs", "sobol")
 REPETITIONS = 16  # of a plan for Sobol indices
-LEAST = 0.5 * 2.0**-BITS  # of them
+MIN_SHARE = 0.5 * 2.0**-BITS  # of them
 SAMPLES_HINT = "such as --samples 1000"
 
 
-def draws_of(laws: Sequence[Drawn], samples: int, seed: int = 0, *, indices: bool = False) -> Draws:
-    """The values of random parameters in their units; indices: for Sobol indices, d + 2 rows a sample.
+def make_draws(laws: Sequence[RandomVariable], samples: int, seed: int = 0, *, indices: bool = False) -> Draws:
+    """Draw the values of random parameters in their units; indices: for Sobol indices, d + 2 rows per sample.
 
     Raises AxisError.
     """
@@ -43,17 +43,17 @@ def draws_of(laws: Sequence[Drawn], samples: int, seed: int = 0, *, indices: boo
     if seed < 0:
         raise AxisError("--seed", f"{seed}: expected a number from 0 on", "such as --seed 7")
     copies = 2 if indices else 1
-    repetitions = REPETITIONS if indices and joint_law(laws) else 1
-    points = _points(laws, samples, seed, copies, repetitions).reshape(samples, copies, len(laws))
+    repetitions = REPETITIONS if indices and find_joint_law(laws) else 1
+    points = _draw_points(laws, samples, seed, copies, repetitions).reshape(samples, copies, len(laws))
     for place, law in enumerate(laws):
-        points[..., place] = _by_law(law, points[..., place])
+        points[..., place] = _apply_law(law, points[..., place])
     if not indices:
         return Draws(tuple(laws), points[:, 0], seed)
-    return Draws(tuple(laws), with_one_exchanged(points[:, 0], points[:, 1]), seed, len(laws) + 2, repetitions)
+    return Draws(tuple(laws), make_saltelli_plan(points[:, 0], points[:, 1]), seed, len(laws) + 2, repetitions)
 
 
-def with_one_exchanged(A: Array, B: Array) -> Array:
-    """Saltelli's plan: of each sample A, B, and A with its i-th parameter from B, (samples (d + 2), d)."""
+def make_saltelli_plan(A: Array, B: Array) -> Array:
+    """Make Saltelli's plan: of each sample A, B, and A with its i-th parameter from B, (samples (d + 2), d)."""
     samples, d = A.shape
     rows = np.repeat(A[:, None, :], d + 2, axis=1)
     rows[:, 1] = B
@@ -62,66 +62,70 @@ def with_one_exchanged(A: Array, B: Array) -> Array:
     return rows.reshape(samples * (d + 2), d)
 
 
-def joint_law(laws: Sequence[Drawn]) -> str:
-    """`lhs` or `sobol` where some are drawn so, together; else empty. Raises AxisError where both are named."""
-    named = {law.law for law in laws} & {*JOINT}
-    if len(named) > 1:
-        names = " ".join(law.name for law in laws if law.law in JOINT)
+def find_joint_law(laws: Sequence[RandomVariable]) -> str:
+    """Return `lhs` or `sobol` if some parameters are drawn together by it, else empty. Raises AxisError if both are
+    named.
+    """
+    joint_laws = {law.law for law in laws} & {*JOINT_LAWS}
+    if len(joint_laws) > 1:
+        names = " ".join(law.name for law in laws if law.law in JOINT_LAWS)
         raise AxisError(names, "lhs and sobol in one sweep", "one of both: their parameters are drawn together")
-    return named.pop() if named else ""
+    return joint_laws.pop() if joint_laws else ""
 
 
-def unbalanced(laws: Sequence[Drawn], samples: int) -> str:
-    """What is lost where a Sobol sequence is cut off within a power of two; else empty."""
-    if joint_law(laws) != "sobol" or samples & (samples - 1) == 0:
+def warn_unbalanced(laws: Sequence[RandomVariable], samples: int) -> str:
+    """Warn that a Sobol sequence is cut off within a power of two; else empty."""
+    if find_joint_law(laws) != "sobol" or samples & (samples - 1) == 0:
         return ""
     low = 1 << (samples.bit_length() - 1)
     return f"--samples {samples}: a Sobol sequence is balanced at powers of two, such as {low} and {2 * low}"
 
 
-def _require_few(laws: Sequence[Drawn], samples: int, each: int) -> None:
+def _require_few(laws: Sequence[RandomVariable], samples: int, rows_per_sample: int) -> None:
     if samples < 2:
         raise AxisError("--samples", f"{samples}: expected 2 or more", SAMPLES_HINT)
-    if samples * each > MOST_VARIANTS:
+    if samples * rows_per_sample > MAX_VARIANTS:
         names = " ".join(law.name for law in laws)
-        raise AxisError(names, f"{samples * each:,} variants; at most {MOST_VARIANTS:,}", "fewer --samples")
+        raise AxisError(names, f"{samples * rows_per_sample:,} variants; at most {MAX_VARIANTS:,}", "fewer --samples")
 
 
-def _points(laws: Sequence[Drawn], samples: int, seed: int, copies: int, repetitions: int) -> Array:
-    """Numbers in [0, 1), (samples, copies d): the d parameters of the first copy, then those of the next."""
-    law = joint_law(laws)
+def _draw_points(laws: Sequence[RandomVariable], samples: int, seed: int, copies: int, repetitions: int) -> Array:
+    """Draw numbers in [0, 1), (samples, copies d): the d parameters of the first copy, then those of the next."""
+    law = find_joint_law(laws)
     d = len(laws)
-    together = [place for place, one in enumerate(laws) if one.law in JOINT or (law and one.law == "normal")]
+    joint_places = [
+        place for place, variable in enumerate(laws) if variable.law in JOINT_LAWS or (law and variable.law == "normal")
+    ]
     points = np.empty((samples, copies * d))
     for copy in range(copies):
-        for place, one in enumerate(laws):
-            if place not in together:
-                points[:, copy * d + place] = _stream(one.name, seed, copy, samples)
-    if together:
-        columns = [copy * d + place for copy in range(copies) for place in together]
+        for place, variable in enumerate(laws):
+            if place not in joint_places:
+                points[:, copy * d + place] = _draw_stream(variable.name, seed, copy, samples)
+    if joint_places:
+        columns = [copy * d + place for copy in range(copies) for place in joint_places]
         for plan in range(min(repetitions, samples)):
-            own = np.arange(plan, samples, repetitions)
-            points[own[:, None], columns] = _joint(
-                law, len(columns), len(own), (seed, plan) if repetitions > 1 else seed
+            sample_indices = np.arange(plan, samples, repetitions)
+            points[sample_indices[:, None], columns] = _draw_joint(
+                law, len(columns), len(sample_indices), (seed, plan) if repetitions > 1 else seed
             )
     return points
 
 
-def _stream(name: str, seed: int, copy: int, samples: int) -> Array:
-    """The numbers in (0, 1) of one parameter, (samples,)."""
-    own = np.random.SeedSequence(seed, spawn_key=(copy, *name.encode()))
-    raw = np.random.PCG64(own).random_raw(samples)
+def _draw_stream(name: str, seed: int, copy: int, samples: int) -> Array:
+    """Draw the numbers in (0, 1) of one parameter, (samples,)."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(copy, *name.encode()))
+    raw = np.random.PCG64(sequence).random_raw(samples)
     found: Array = ((raw >> np.uint64(64 - BITS)).astype(np.float64) + 0.5) * 2.0**-BITS
     return found
 
 
-def _joint(law: str, columns: int, samples: int, seed: int | tuple[int, int]) -> Array:
-    """The points of one plan in all columns, (samples, columns) in [0, 1]."""
-    from scipy.stats import qmc  # half a second, where it is asked for
+def _draw_joint(law: str, columns: int, samples: int, seed: int | tuple[int, int]) -> Array:
+    """Draw the points of one plan in all columns, (samples, columns) in [0, 1]."""
+    from scipy.stats import qmc  # takes half a second to load
 
     generator = np.random.Generator(np.random.PCG64(seed))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: unbalanced() tells of them
+        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: see warn_unbalanced
         if law == "sobol":
             found: Array = qmc.Sobol(columns, seed=generator).random(samples)
         else:
@@ -129,13 +133,15 @@ def _joint(law: str, columns: int, samples: int, seed: int | tuple[int, int]) ->
     return found
 
 
-def _by_law(law: Drawn, u: Array) -> Array:
-    """The values whose shares below them are u."""
+def _apply_law(law: RandomVariable, u: Array) -> Array:
+    """Return the values of a law at the shares u of its distribution."""
     if law.law != "normal":
         found: Array = u * (law.b - law.a) + law.a  # in this order, as qmc.scale has it
         return found
     from statistics import NormalDist  # some milliseconds
 
     quantile = NormalDist(law.a, law.b).inv_cdf
-    within = np.clip(u, LEAST, 1.0 - LEAST)  # a joint plan may have points at its ends, whose quantiles are infinite
-    return np.array([quantile(x) for x in within.ravel().tolist()]).reshape(u.shape)
+    clipped = np.clip(
+        u, MIN_SHARE, 1.0 - MIN_SHARE
+    )  # a joint plan may have points at its ends, whose quantiles are infinite
+    return np.array([quantile(x) for x in clipped.ravel().tolist()]).reshape(u.shape)

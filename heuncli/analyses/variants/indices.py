@@ -1,18 +1,19 @@
-"""Sobol indices: which share of a measure's variance is due to which parameter.
+"""Sobol indices: the share of a measure's variance that is due to each parameter.
 
     f_A, f_B   the measure at two independent samples; f_i: at A with its i-th parameter from B
     V          the variance, of f_A and f_B together
     S_i        Σ f_B (f_i - f_A) / (n V)        first order: of the parameter alone (Saltelli 2010)
-    T_i        Σ (f_A - f_i)² / (2 n V)         total: of it and of all that it does together with others (Jansen 1999)
+    T_i        Σ (f_A - f_i)² / (2 n V)         total: with all its interactions with others (Jansen 1999)
 
 Each is a ratio of two means, R = ⟨m⟩/⟨v⟩, with the error s of the mean of (m - R v)/⟨v⟩. Products of measures have long
-tails, so that s of few samples is too small as a rule: 1.96 s holds the truth in 75 of 100 samples. How far R is off
-in units of its own s is found by drawing units of the sample again (the symmetric bootstrap-t of Hall 1988):
+tails, so that s of few samples is usually too small: 1.96 s contains the true value in 75 of 100 samples. The
+distribution of the error of R in units of its own s is found by resampling units of the sample (the symmetric
+bootstrap-t of Hall 1988):
 
     |R* - R| / s*  ≤ q   in a share p of drawings     interval: R ± q s, q not below that of Student's t
 
 with p somewhat above 95 % where n is small. Units are samples (of many of them batches) where these are drawn
-independently; of a plan that fills the space the repetitions of the plan, which alone are independent of each other.
+independently; for a space-filling plan they are the repetitions of the plan, which alone are independent of each other.
 """
 
 from __future__ import annotations
@@ -23,34 +24,36 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from heuncli.analyses.variants.sampling import SURE, Estimated
+from heuncli.analyses.variants.sampling import CONFIDENCE, BoundedEstimate
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
 Places = npt.NDArray[np.signedinteger[Any]]
-LEAST_COUNT = 8  # of samples of which indices are told
-LEAST_BOUNDED = 64  # of samples whose indices have intervals
-MORE_SURE = 0.03  # of the share p at that many samples; it falls with the root of their number
-MOST_UNITS = 512
+MIN_COUNT = 8  # of samples for indices
+MIN_BOUNDED = 64  # of samples whose indices have intervals
+EXTRA_CONFIDENCE = 0.03  # added to the share p at that many samples; it falls with the root of their number
+MAX_UNITS = 512
 DRAWINGS = 999
-EVEN_ONLY = 1e-12  # of the variance: deviations below are rounding
+ROUNDING = 1e-12  # of the variance: deviations below are rounding
 
 
 class SobolIndices(NamedTuple):
-    """The indices of a parameter: of first order, and in total."""
+    """The Sobol indices of a parameter: of first order, and total."""
 
-    first: Estimated
-    total: Estimated
+    first: BoundedEstimate
+    total: BoundedEstimate
 
 
-def sobol_indices(rows: Array, repetitions: Places | None = None) -> tuple[SobolIndices, ...] | None:
-    """The indices of each parameter.
+def compute_sobol_indices(rows: Array, repetitions: Places | None = None) -> tuple[SobolIndices, ...] | None:
+    """Compute the indices of each parameter.
 
-    rows (n, d + 2): f_A, f_B and the d exchanged ones of each sample; repetitions (n,): which repetition of its plan a
-    sample is of, None where samples are independent. None where there are few samples, or the measure does not vary.
+    rows (n, d + 2): f_A, f_B and the d exchanged ones of each sample
+    repetitions (n,): which repetition of its plan a sample belongs to, None where samples are independent
+
+    Returns None where there are few samples, or the measure does not vary.
     """
     n = len(rows)
-    if n < LEAST_COUNT:
+    if n < MIN_COUNT:
         return None
     centred = rows - rows[:, :2].mean()
     A, B, exchanged = centred[:, 0], centred[:, 1], centred[:, 2:].T
@@ -58,55 +61,55 @@ def sobol_indices(rows: Array, repetitions: Places | None = None) -> tuple[Sobol
     if not float(v.mean()) > 0.0:
         return None
     units = (
-        np.arange(n) * min(n, MOST_UNITS) // n
-        if repetitions is None
-        else np.unique(repetitions, return_inverse=True)[1]
+        np.arange(n) * min(n, MAX_UNITS) // n if repetitions is None else np.unique(repetitions, return_inverse=True)[1]
     )
-    weights = _drawings(int(units.max()) + 1) if n >= LEAST_BOUNDED else None
+    weights = _draw_weights(int(units.max()) + 1) if n >= MIN_BOUNDED else None
     return tuple(
-        SobolIndices(_ratio(B * (f - A), v, units, weights), _ratio(0.5 * (A - f) ** 2, v, units, weights))
+        SobolIndices(
+            _estimate_ratio(B * (f - A), v, units, weights), _estimate_ratio(0.5 * (A - f) ** 2, v, units, weights)
+        )
         for f in exchanged
     )
 
 
-def _drawings(count: int) -> Array:
-    """How often each of so many units is drawn, (DRAWINGS, count): the same numbers for the same count."""
+def _draw_weights(count: int) -> Array:
+    """Draw how often each of `count` units is drawn, (DRAWINGS, count): the same numbers for the same count."""
     generator = np.random.Generator(np.random.PCG64(count))
     found: Array = generator.multinomial(count, np.full(count, 1.0 / count), size=DRAWINGS).astype(np.float64)
     return found
 
 
-def _ratio(m: Array, v: Array, units: Places, weights: Array | None) -> Estimated:
-    """The ratio of two means, with its interval; weights: of units that are drawn again, None: without an interval."""
+def _estimate_ratio(m: Array, v: Array, units: Places, weights: Array | None) -> BoundedEstimate:
+    """Estimate the ratio of two means, with its interval; weights: of resampled units, None: without an interval."""
     R = float(m.mean()) / float(v.mean())
     if weights is None:
-        return Estimated(R, None, None)
+        return BoundedEstimate(R, None, None)
     M, W = np.bincount(units, m), np.bincount(units, v)
     count = len(M)
-    off = M - R * W
-    s = float(np.sqrt((off @ off) / (count * (count - 1)))) / float(W.mean())
-    if not s > EVEN_ONLY:
-        return Estimated(R, R, R)
+    residuals = M - R * W
+    s = float(np.sqrt((residuals @ residuals) / (count * (count - 1)))) / float(W.mean())
+    if not s > ROUNDING:
+        return BoundedEstimate(R, R, R)
     sums = weights @ np.stack([M, W, M * M, M * W, W * W], axis=1) / count
     mean, size, MM, MW, WW = sums.T
-    again = mean / size
-    squares = np.maximum(MM - 2.0 * again * MW + again * again * WW, 0.0) / (count - 1)
+    resampled_ratio = mean / size
+    squares = np.maximum(MM - 2.0 * resampled_ratio * MW + resampled_ratio * resampled_ratio * WW, 0.0) / (count - 1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        deviations = np.abs(again - R) / (np.sqrt(squares) / size)
-    q = max(_quantile(deviations[~np.isnan(deviations)], len(m)), _student(count, len(m)))
-    return Estimated(R, R - q * s, R + q * s)
+        deviations = np.abs(resampled_ratio - R) / (np.sqrt(squares) / size)
+    q = max(_quantile(deviations[~np.isnan(deviations)], len(m)), _student_quantile(count, len(m)))
+    return BoundedEstimate(R, R - q * s, R + q * s)
 
 
-def _share(n: int) -> float:
-    """The share of drawings that lie within an interval, of n samples."""
-    return SURE + MORE_SURE * math.sqrt(LEAST_BOUNDED / n)
+def _confidence(n: int) -> float:
+    """The share of drawings that lie within an interval, for n samples."""
+    return CONFIDENCE + EXTRA_CONFIDENCE * math.sqrt(MIN_BOUNDED / n)
 
 
 def _quantile(deviations: Array, n: int) -> float:
-    return float(np.quantile(deviations, _share(n), method="inverted_cdf")) if len(deviations) else 0.0
+    return float(np.quantile(deviations, _confidence(n), method="inverted_cdf")) if len(deviations) else 0.0
 
 
-def _student(count: int, n: int) -> float:
+def _student_quantile(count: int, n: int) -> float:
     from scipy.special import stdtrit  # where there are random sweeps
 
-    return float(stdtrit(count - 1, 0.5 + 0.5 * _share(n)))
+    return float(stdtrit(count - 1, 0.5 + 0.5 * _confidence(n)))

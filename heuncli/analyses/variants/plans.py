@@ -1,4 +1,4 @@
-"""A plan: which values the parameters have in each variant, made as they are asked for.
+"""Make a plan: the values of the parameters in each variant, made when they are needed.
 
 A plan of many variants holds its axes and its random numbers, not its rows.
 """
@@ -8,21 +8,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from heuncli.analyses.variants.axes import HINT, AxisError, Drawn, ParameterAxis, figure_of, text_of
+from heuncli.analyses.variants.axes import HINT, AxisError, ParameterAxis, RandomVariable, format_quantity, parse_figure
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
-MOST_VARIANTS = 10_000_000
+MAX_VARIANTS = 10_000_000
 
 
 class Draws(NamedTuple):
-    """Random parameters together: their laws, and what is drawn of them in their units, (variants, parameters).
+    """Random parameters together: their laws, and their draws in their units, (variants, parameters).
 
-    seed: by which the same are drawn again; each: so many variants in a row are of one sample; repetitions: the
-    k-th sample is of the k-th of so many plans, taken in turn, each drawn by itself (draws.py).
+    seed: with which the same draws are repeated
+    each: number of consecutive variants of one sample
+    repetitions: the k-th sample belongs to the k-th of so many plans, taken in turn, each drawn by itself (draws.py)
     """
 
-    laws: tuple[Drawn, ...]
+    laws: tuple[RandomVariable, ...]
     values: Array
     seed: int
     each: int = 1
@@ -30,10 +31,11 @@ class Draws(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """Variants by their numbers, from 0 on: every combination of the axes, or of all the values of one place together.
+    """Variants by their numbers, from 0 on: every combination of the axes, or (together) the values at equal places of
+    all axes.
 
-    The first axis changes slowest; draws, where there are any, come behind all axes and change fastest. columns: of a
-    table of which every row is combined with all that the axes make; these change slowest of all.
+    The first axis changes slowest; draws come after all axes and change fastest. columns: of a table, each row of which
+    is combined with all combinations of the axes; these change slowest of all.
     """
 
     axes: tuple[ParameterAxis, ...]
@@ -43,7 +45,7 @@ class Plan(NamedTuple):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is varied, in the order in which it was named."""
+        """The names of what is varied, in the given order."""
         return (
             *(axis.name for axis in (*self.columns, *self.axes)),
             *(law.name for law in (self.draws.laws if self.draws else ())),
@@ -51,7 +53,7 @@ class Plan(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many variants there are."""
+        """The number of variants."""
         return self._combinations * (len(self.draws.values) if self.draws is not None else 1)
 
     @property
@@ -61,37 +63,37 @@ class Plan(NamedTuple):
             return rows * (len(self.axes[0].texts) if self.axes else 1)
         return rows * math.prod(len(axis.texts) for axis in self.axes)
 
-    def values(self, number: int) -> dict[str, str]:
-        """The values of a variant, in the form of `--set`."""
-        found: dict[str, str] = {}
+    def find_values(self, number: int) -> dict[str, str]:
+        """Return the values of a variant, in the form of `--set`."""
+        drawn_values: dict[str, str] = {}
         if self.draws is not None:
             number, row = divmod(number, len(self.draws.values))
             drawn = zip(self.draws.laws, self.draws.values[row].tolist(), strict=True)
-            found = {law.name: text_of(value, law.unit) for law, value in drawn}
-        own: dict[str, str] = {}
+            drawn_values = {law.name: format_quantity(value, law.unit) for law, value in drawn}
+        axis_values: dict[str, str] = {}
         if self.together and self.axes:
             number, place = divmod(number, len(self.axes[0].texts))
-            own = {axis.name: axis.texts[place] for axis in self.axes}
+            axis_values = {axis.name: axis.texts[place] for axis in self.axes}
         for axis in reversed(self.axes) if not self.together else ():
             number, place = divmod(number, len(axis.texts))
-            own[axis.name] = axis.texts[place]
-        of_row = {axis.name: axis.texts[number] for axis in self.columns}
-        return of_row | {axis.name: own[axis.name] for axis in self.axes} | found
+            axis_values[axis.name] = axis.texts[place]
+        row_values = {axis.name: axis.texts[number] for axis in self.columns}
+        return row_values | {axis.name: axis_values[axis.name] for axis in self.axes} | drawn_values
 
-    def numbers(self, shard: tuple[int, int] = (1, 1)) -> Iterator[int]:
-        """The numbers of the variants, of a shard k of n: every n-th one, from the k-th on."""
+    def iter_numbers(self, shard: tuple[int, int] = (1, 1)) -> Iterator[int]:
+        """Iterate over the numbers of the variants; of a shard k of n: every n-th one, from the k-th on."""
         k, n = shard
         return iter(range(k - 1, self.size, n))
 
 
-def plan_of(
+def make_axes_plan(
     axes: Sequence[ParameterAxis],
     *,
     together: bool = False,
     draws: Draws | None = None,
     columns: Sequence[ParameterAxis] = (),
 ) -> Plan:
-    """The plan of some axes, and of the columns of a table, which are of one length. Raises AxisError."""
+    """Make the plan of some axes, and of the columns of a table, which have equal lengths. Raises AxisError."""
     if together or not axes:
         axes, columns, together = [*columns, *axes], (), together or bool(columns)
     names = [axis.name for axis in (*columns, *axes)] + [law.name for law in (draws.laws if draws else ())]
@@ -104,15 +106,19 @@ def plan_of(
             "--zip", f"the axes have not the same count of values: {counts}", "leave --zip out for all combinations"
         )
     plan = Plan(tuple(axes), together, draws, tuple(columns))
-    if plan.size > MOST_VARIANTS:
-        raise AxisError(" ".join(names), f"{plan.size:,} variants; at most {MOST_VARIANTS:,}", HINT)
+    if plan.size > MAX_VARIANTS:
+        raise AxisError(" ".join(names), f"{plan.size:,} variants; at most {MAX_VARIANTS:,}", HINT)
     return plan
 
 
-def numbers_of(texts: Sequence[str]) -> Mapping[str, float]:
-    """The figures of values by their texts, where all are numbers of one unit; empty where they are not."""
-    figures = {text: figure_of(text) for text in texts}
+def parse_numbers(texts: Sequence[str]) -> Mapping[str, float]:
+    """Return the figures of values by their texts, if all are numbers of one unit; otherwise empty."""
+    figures = {text: parse_figure(text) for text in texts}
     if any(figure is None for figure in figures.values()):
         return {}
-    known = {text: figure for text, figure in figures.items() if figure is not None}
-    return {text: figure.value for text, figure in known.items()} if len({f.unit for f in known.values()}) == 1 else {}
+    known_figures = {text: figure for text, figure in figures.items() if figure is not None}
+    return (
+        {text: figure.value for text, figure in known_figures.items()}
+        if len({f.unit for f in known_figures.values()}) == 1
+        else {}
+    )

@@ -1,16 +1,18 @@
-"""The time limit of a command, over all that it does: from before its spec is read until its first byte goes out.
+"""Enforce the time limit of a command over all that it does: from before its spec is read until its first byte goes
+out.
 
-Loops that look at the clock say themselves how far they have come; this is the net under all others. It has two stages:
+Loops that check the clock report by themselves how far they have come; this module catches everything else. It has two
+stages:
 
-    the ring      An interval timer of the system interrupts the work, and `TimeUp` is raised where heun's own code
-                  runs and nothing but code that lets an exception through has called it. A library in the middle of
-                  its work may wrap an exception, print it, or be left half made: it goes on until the next ring.
-    the hard end  Where the work does not come back HARD_END seconds later, the process ends with exit code 4. A thread
-                  does it, which also works while a library computes for long in one call. It waits while processes are
-                  forked (a process with two threads is not to be); then the ring does it.
+    the alarm     An interval timer of the system interrupts the work, and `TimeUp` is raised if heun's own code is
+                  running and all its callers let an exception pass unchanged. A library in the middle of its work
+                  may wrap an exception, print it, or be left in a broken state: it runs on until the next alarm.
+    the hard end  If the work does not stop within HARD_END seconds, the process ends with exit code 4. A thread
+                  does it, which also works while a library computes for long in one call. The thread is paused
+                  while processes are forked (a process with two threads must not fork); then the alarm does it.
 
-Where there is no such timer (Windows) the loops' own looks remain, one at the end, and the hard end. Impure: the
-process's alarm, a thread, and the clock.
+On systems without such a timer (Windows) there remain the clock checks of the loops, one check at the end, and the hard
+end. Impure: the process's alarm, a thread, and the clock.
 """
 
 from __future__ import annotations
@@ -28,13 +30,13 @@ import heuncli
 from heuncli.base import signals
 from heuncli.base.errors import HeunError, LimitError, Problem
 
-GRACE = 0.2  # seconds beyond the limit: the loops, which know more, speak first
-NEXT_RING = 0.01  # seconds from one ring to the next
-REPEAT = 0.1  # seconds from one exception to the next: what is under way is cleared away; a destructor may swallow one
-HARD_END = 5.0  # seconds from the first ring until the process ends (manual/commands.md, "Time limit")
-LONGEST = 1e8  # seconds that the timer is set to at most, three years; the system's clocks end somewhere
+GRACE = 0.2  # seconds beyond the limit, so that the loops, which know more, report first
+ALARM_INTERVAL = 0.01  # seconds from one alarm to the next
+EXCEPTION_INTERVAL = 0.1  # seconds between exceptions, for cleanup; a destructor may swallow one
+HARD_END = 5.0  # seconds from the first alarm until the process ends (manual/commands.md, "Time limit")
+MAX_TIMER = 1e8  # seconds, three years: the systems' clocks have a limit
 HINT = "a longer --time-limit, fewer samples, --only what is needed, or a shorter duration"
-# What is being done, by the modules at work: the first row that has one of them tells, else the command's own words.
+# Description of the work by the modules on the stack: the first row that matches, else the command's own phase.
 PHASES = (
     ("heuncli.scene.file_format", "while the spec was read"),
     ("heuncli.study.search.extremes", "while extremes between the samples were searched"),
@@ -57,170 +59,195 @@ PHASES = (
     ("heuncli.output.tables", "while the results were written down"),
     ("heuncli.base.files", "while the results were written down"),
 )  # fmt: skip
-UNTOLD = "before the work was done"  # of commands that have no words of their own
+DEFAULT_PHASE = "before the work was done"  # of commands without a phase of their own
 Answer = TypeVar("Answer")
-OWN = os.path.join(os.path.dirname(heuncli.__file__), "")  # noqa: PTH118, PTH120 - pathlib takes 3 ms
-SHELTERED = (__file__, signals.__file__)  # what begins and ends the watch; what ends the process
-# Libraries that let an exception of what they call through as it is. Not among them: what imports (a module half
-# imported cannot be imported again for the next spec), pydantic, which wraps it, and SciPy, whose Fortran prints it.
+PACKAGE_FOLDER = os.path.join(os.path.dirname(heuncli.__file__), "")  # noqa: PTH118, PTH120 - pathlib takes 3 ms
+PROTECTED_FILES = (__file__, signals.__file__)  # an alarm never interrupts code in these files
+# Libraries that let an exception of their callbacks pass unchanged. Not among them: the import system (a half
+# imported module cannot be imported again for the next spec), pydantic, which wraps it, and SciPy, whose Fortran
+# prints it.
 TRANSPARENT = (sys.stdlib_module_names | {"heuncli", "numpy", "yaml"}) - {"importlib", "multiprocessing", "sqlite3"}
 
 
 class TimeUp(BaseException):
-    """The time is up; no Exception, for what handles errors on the way is not to take it for one of its own."""
+    """The time limit was reached. Not an Exception, so that error handlers on the way do not catch it."""
 
 
 class _Clock:
-    """Until when the work may take; None: for as long as it wants."""
+    """State of the time limit.
+
+    deadline: when the work must end; None: no limit
+    phase: what the work does, if the modules at work do not say
+    subject: the file at work, of several
+    interrupted_phase: the phase that an alarm interrupted
+    pause_end: no alarm acts before this time
+    hard_end: when the process ends
+    end_lock: lock of the thread that ends the process, or that prevents it
+    silent: whether the parent process reports in place of this one
+    """
 
     deadline: float | None = None
     limit = 0.0
-    phase = UNTOLD
-    subject = ""  # the file at work, of several
-    rung: str | None = None  # what was going on when the ring ended the work
-    resting = 0.0  # no ring until then
+    phase = DEFAULT_PHASE
+    subject = ""  # the file at work, if there are several
+    rung: str | None = None  # the phase in which an alarm ended the work
+    resting = 0.0  # no alarm acts before this time
     hard_end = 0.0
-    ending = _thread.allocate_lock()  # held by who ends the process, or sees to it that nobody does
-    silent = False  # of a process whose parent tells
+    ending = _thread.allocate_lock()  # held by the thread that ends the process, or that ends the limit
+    silent = False  # in a worker process, whose parent reports
 
 
-def limited(
-    work: Callable[[], Answer], seconds: float | None, grace: float = GRACE, phase: str = UNTOLD, subject: str = ""
+def run_with_limit(
+    work: Callable[[], Answer],
+    seconds: float | None,
+    grace: float = GRACE,
+    phase: str = DEFAULT_PHASE,
+    subject: str = "",
 ) -> Answer:
-    """What the work gives. Raises LimitError [time-limit] where it takes longer; None: as long as it wants.
+    """Run the work and return its result. Raises LimitError [time-limit] if it takes longer than `seconds`; None: no
+    limit.
 
-    grace [s]: how much later it is interrupted; phase: what it is doing where the modules at work do not tell; subject:
-    the file at work, where there are several.
+    grace: how much later it is interrupted [s]
+    phase: what the work does, if the modules at work do not say
+    subject: the file at work, if there are several
     """
     if seconds is None:
         return work()
     now = time.monotonic()
     _Clock.deadline, _Clock.limit, _Clock.phase, _Clock.subject = now + seconds, seconds, phase, subject
-    _Clock.rung, _Clock.resting, _Clock.hard_end = None, 0.0, now + seconds + grace + HARD_END
-    undo = _timer(min(seconds + grace, LONGEST))
+    _Clock.interrupted_phase, _Clock.pause_end, _Clock.hard_end = None, 0.0, now + seconds + grace + HARD_END
+    undo = _start_timer(min(seconds + grace, MAX_TIMER))
     try:
-        with _watched():
-            return interruptible(work)
+        with _watch_hard_end():
+            return run_interruptible(work)
     except TimeUp as up:
-        raise _reached(str(up)) from None
+        raise _make_limit_error(str(up)) from None
     except HeunError:
         raise
     except Exception:
-        if _Clock.rung is None:
+        if _Clock.interrupted_phase is None:
             raise
-        raise _reached(_Clock.rung) from None  # what became of the exception on its way
+        raise _make_limit_error(_Clock.interrupted_phase) from None  # TimeUp, wrapped by a library
     finally:
         _Clock.deadline = None
         undo()
 
 
-def interruptible(work: Callable[[], Answer]) -> Answer:
-    """The work, within which the ring may raise TimeUp.
+def run_interruptible(work: Callable[[], Answer]) -> Answer:
+    """Run work that an alarm may interrupt with TimeUp.
 
-    Whoever is called by a library that an exception does not pass unharmed calls this, and handles TimeUp.
+    Code that is called by a library which an exception would harm calls this, and handles TimeUp.
     """
     return work()
 
 
-def remaining() -> float | None:
-    """How much of the limit is left [s], more than nothing; None where there is none."""
+def remaining_time() -> float | None:
+    """Return the time left until the limit [s], more than zero, or None without a limit."""
     return None if _Clock.deadline is None else max(_Clock.deadline - time.monotonic(), 1e-9)
 
 
 def disarm(*, late: bool = False) -> None:
-    """No alarm from here on: what goes out goes out whole. Raises LimitError where it comes too late, unless it may."""
-    with _Clock.ending:
+    """End the time limit, so that output is not interrupted. Raises LimitError if the limit has passed, unless
+    `late`.
+    """
+    with _Clock.end_lock:
         deadline, _Clock.deadline = _Clock.deadline, None
     if deadline is not None and time.monotonic() > deadline and not late:
-        raise _reached("before the results were written")
+        raise _make_limit_error("before the results were written")
 
 
-def be_silent() -> None:
-    """This process ends without a word, with exit code 4; its parent tells what became of the work."""
+def silence() -> None:
+    """End without a message at the time limit, with exit code 4: the parent process reports it."""
     _Clock.silent = True
 
 
-def _reached(where: str) -> LimitError:
+def _make_limit_error(where: str) -> LimitError:
     return LimitError(Problem("time-limit", f"the time limit of {_Clock.limit:g} s was reached {where}", hint=HINT))
 
 
-def _timer(seconds: float) -> Callable[[], None]:
-    """Set the system's timer, where there is one and this is the thread it interrupts; returns what unsets it."""
+def _start_timer(seconds: float) -> Callable[[], None]:
+    """Start the system's timer, if there is one and this is the thread that it interrupts; returns the function that
+    undoes it.
+    """
     import signal  # 1 ms that only limits need
     import threading
 
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         return lambda: None
-    before, told = signal.signal(signal.SIGALRM, _ring), sys.unraisablehook
+    previous_handler, previous_hook = signal.signal(signal.SIGALRM, _handle_alarm), sys.unraisablehook
 
     def swallowed(what: sys.UnraisableHookArgs) -> None:
-        """An alarm that came while an object was destroyed says nothing: the next one is on its way."""
+        """Ignore an alarm that came while an object was destroyed: the next one will act."""
         if not isinstance(what.exc_value, TimeUp):
-            told(what)
+            previous_hook(what)
 
     sys.unraisablehook = swallowed
-    signal.setitimer(signal.ITIMER_REAL, seconds, NEXT_RING)
+    signal.setitimer(signal.ITIMER_REAL, seconds, ALARM_INTERVAL)
 
     def undo() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
-        sys.unraisablehook = told
+        signal.signal(signal.SIGALRM, previous_handler)
+        sys.unraisablehook = previous_hook
 
     return undo
 
 
-def _ring(number: int, frame: FrameType | None) -> None:
-    """End the work, where that is possible at once."""
+def _handle_alarm(number: int, frame: FrameType | None) -> None:
+    """Interrupt the work if that is safe now, or end the process after the hard end."""
     now = time.monotonic()
-    if _Clock.deadline is None or now < _Clock.resting:
+    if _Clock.deadline is None or now < _Clock.pause_end:
         return
-    frames = list(_frames(frame))
+    frames = list(_iter_frames(frame))
     if now > _Clock.hard_end:
-        _end_at_once(frames)
-    elif _is_interruptible(frames) and not _is_on_its_way(sys.exc_info()[1]):
-        _Clock.rung, _Clock.resting = _at_work(frames), now + REPEAT
-        raise TimeUp(_Clock.rung)
+        _end_process(frames)
+    elif _is_interruptible(frames) and not _is_time_up_handled(sys.exc_info()[1]):
+        _Clock.interrupted_phase, _Clock.pause_end = _describe_work(frames), now + EXCEPTION_INTERVAL
+        raise TimeUp(_Clock.interrupted_phase)
 
 
 def _is_interruptible(frames: Sequence[FrameType]) -> bool:
-    """Whether heun's own code is running (innermost first), called through nothing that an exception does not pass."""
+    """Return whether heun's own code is running (innermost frame first), called only through code that lets exceptions
+    pass.
+    """
     file = frames[0].f_code.co_filename if frames else ""
-    if not file.startswith(OWN) or file in SHELTERED:
+    if not file.startswith(PACKAGE_FOLDER) or file in PROTECTED_FILES:
         return False
     for frame in frames:
-        if frame.f_code is interruptible.__code__:
+        if frame.f_code is run_interruptible.__code__:
             return True
         package = str(frame.f_globals.get("__name__", "")).partition(".")[0]
-        if not frame.f_code.co_filename.startswith(OWN) and package not in TRANSPARENT:
+        if not frame.f_code.co_filename.startswith(PACKAGE_FOLDER) and package not in TRANSPARENT:
             return False
     return False
 
 
-def _is_on_its_way(error: BaseException | None) -> bool:
-    """Whether a ring's exception is being handled: what is cleared away because of it is not to be interrupted."""
+def _is_time_up_handled(error: BaseException | None) -> bool:
+    """Return whether a TimeUp is being handled: the cleanup after it must not be interrupted."""
     while error is not None and not isinstance(error, TimeUp):
         error = error.__context__
     return error is not None
 
 
-def _at_work(frames: Sequence[FrameType]) -> str:
-    """What is going on, by the modules at work."""
+def _describe_work(frames: Sequence[FrameType]) -> str:
+    """Return what is going on, by the modules at work."""
     modules = [str(each.f_globals.get("__name__", "")) for each in frames]
-    told = (text for prefix, text in PHASES if any(name == prefix or name.startswith(prefix + ".") for name in modules))
-    return next(told, _Clock.phase)
+    phases = (
+        text for prefix, text in PHASES if any(name == prefix or name.startswith(prefix + ".") for name in modules)
+    )
+    return next(phases, _Clock.phase)
 
 
-def _frames(frame: FrameType | None) -> Iterator[FrameType]:
-    """The calls under way, the innermost first."""
+def _iter_frames(frame: FrameType | None) -> Iterator[FrameType]:
+    """Yield the frames of the calls under way, the innermost first."""
     while frame is not None:
         yield frame
         frame = frame.f_back
 
 
-class _Watch:
-    """The thread that ends the process where the work does not come back; it is there between `begin` and `end`."""
+class _Watchdog:
+    """The thread that ends the process if the work does not stop; it runs between `begin` and `end`."""
 
-    current: _Watch | None = None
+    current: _Watchdog | None = None
 
     def __init__(self) -> None:
         import threading
@@ -231,59 +258,59 @@ class _Watch:
         self.thread = threading.Thread(target=self._wait, daemon=True)
 
     def begin(self) -> None:
-        _Watch.current = self
+        _Watchdog.current = self
         self.thread.start()
 
     def end(self) -> None:
-        _Watch.current = None
+        _Watchdog.current = None
         self.over.release()
         self.thread.join()
 
     def _wait(self) -> None:
-        seconds = min(max(_Clock.hard_end - time.monotonic(), 0.0), LONGEST)
-        if not self.over.acquire(timeout=min(seconds, _thread.TIMEOUT_MAX)) and _Watch.current is self:
-            _end_at_once(list(_frames(sys._current_frames().get(self.main))))
+        seconds = min(max(_Clock.hard_end - time.monotonic(), 0.0), MAX_TIMER)
+        if not self.over.acquire(timeout=min(seconds, _thread.TIMEOUT_MAX)) and _Watchdog.current is self:
+            _end_process(list(_iter_frames(sys._current_frames().get(self.main))))
 
 
 @contextmanager
-def _watched() -> Iterator[None]:
-    """While this is under way the process ends at the hard end; it may not fork but `unwatched`."""
+def _watch_hard_end() -> Iterator[None]:
+    """End the process at the hard end while this context is open; forks in it need `pause_watch`."""
     import threading
 
     if threading.current_thread() is not threading.main_thread():
-        yield  # one of several threads, of a program that is not to end for it
+        yield  # another thread of a program that must not be ended
         return
-    watch = _Watch()
+    watch = _Watchdog()
     watch.begin()
     try:
         yield
     finally:
-        if _Watch.current is not None:
-            _Watch.current.end()
+        if _Watchdog.current is not None:
+            _Watchdog.current.end()
 
 
 @contextmanager
-def unwatched() -> Iterator[None]:
-    """While this is under way processes are forked: no thread looks at the hard end, but the ring does."""
-    watch = _Watch.current
+def pause_watch() -> Iterator[None]:
+    """Stop the watchdog thread while processes are forked; the alarm still enforces the hard end."""
+    watch = _Watchdog.current
     if watch is not None:
         watch.end()
     try:
         yield
     finally:
         if watch is not None and _Clock.deadline is not None:
-            _Watch().begin()
+            _Watchdog().begin()
 
 
-def _end_at_once(frames: Sequence[FrameType]) -> None:
-    """End the process with exit code 4 and leave nothing half written; not where the output goes out already."""
-    if not _Clock.ending.acquire(blocking=False):
+def _end_process(frames: Sequence[FrameType]) -> None:
+    """End the process with exit code 4 and leave no half-written file; does nothing if output is already going out."""
+    if not _Clock.end_lock.acquire(blocking=False):
         return
     if _Clock.deadline is None:
-        _Clock.ending.release()
+        _Clock.end_lock.release()
         return
     label = f"{_Clock.subject}: " if _Clock.subject else "heun: "
-    (problem,) = _reached(_at_work(frames)).problems
+    (problem,) = _make_limit_error(_describe_work(frames)).problems
     late = f"{problem.message}, and the work did not stop; heun ended {HARD_END:g} s later"
     text = "" if _Clock.silent else f"{label}{problem._replace(message=late)}\n"
-    signals.leave(LimitError.exit_code, text.encode())
+    signals.exit_after_cleanup(LimitError.exit_code, text.encode())

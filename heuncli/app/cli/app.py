@@ -1,4 +1,4 @@
-"""The command line as typer reads it, made of the commands' requests: help, completion, usage errors."""
+"""Parse command lines with typer, built from the requests of the commands: help, completion, usage errors."""
 
 from __future__ import annotations
 
@@ -11,16 +11,18 @@ import typer
 
 from heuncli.app.cli import registry
 from heuncli.app.cli.completion import BY_WORD
-from heuncli.app.cli.options import RequestField, fields_of
-from heuncli.app.cli.registry import Asked, Command
+from heuncli.app.cli.options import RequestField, list_fields
+from heuncli.app.cli.registry import Command, ParsedCommand
 
 EPILOG = "Exit codes: 0 fine, 1 a check failed, 2 bad usage or spec, 3 cannot be solved, 4 a limit, 5 output, 70 a bug."
-COMPLETING = "_HEUN_COMPLETE"  # set by the shell that asks
+COMPLETION_VARIABLE = "_HEUN_COMPLETE"  # set by a shell that completes
 
 
-def read(argv: list[str]) -> Asked | int:
-    """The request of a command line, or the exit code where typer has answered itself (help, completion, bad usage)."""
-    taken: list[Asked] = []
+def read(argv: list[str]) -> ParsedCommand | int:
+    """Parse a command line; returns its request, or the exit code if typer itself answered (help, completion, bad
+    usage).
+    """
+    parsed: list[ParsedCommand] = []
     app = typer.Typer(
         name="heun",
         help="Reactions, section forces and mass effects of rigid bodies and linked chains, after Heun (1901).",
@@ -30,40 +32,40 @@ def read(argv: list[str]) -> Asked | int:
         pretty_exceptions_enable=False,
     )
     app.callback()(_callback)
-    if COMPLETING in os.environ:  # each line is a completion: typer breaks what explains one at the terminal's width
+    if COMPLETION_VARIABLE in os.environ:  # each line is a completion, which typer must not wrap
         os.environ["COLUMNS"] = "10000"
-    named = registry.command_of(argv[0]) if argv else None
-    for command in registry.COMMANDS if named is None else (named,):
-        app.command(command.name, help=command.request.__doc__)(_reader(command, taken.append))
+    requested = registry.find_command(argv[0]) if argv else None
+    for command in registry.COMMANDS if requested is None else (requested,):
+        app.command(command.name, help=command.request.__doc__)(_make_reader(command, parsed.append))
     try:
         app(argv, prog_name="heun")
     except SystemExit as leaving:
-        if not taken:
+        if not parsed:
             return leaving.code if isinstance(leaving.code, int) else 0
-    return taken[0]
+    return parsed[0]
 
 
 def _callback(
     version: Annotated[bool, typer.Option("--version", help="The version, and which kernel runs.")] = False,
 ) -> None:
-    """Takes `--version` into the help; app/cli/entry.py answers it before typer is imported."""
+    """Add `--version` to the help; app/cli/entry.py answers it before typer is imported."""
 
 
-def _reader(command: Command, take: Callable[[Asked], None]) -> Callable[..., None]:
-    """A function with the command's options as parameters, which typer calls with their values."""
+def _make_reader(command: Command, take: Callable[[ParsedCommand], None]) -> Callable[..., None]:
+    """Make the function that typer calls, with the command's options as parameters."""
 
     def run(**values: Any) -> None:
-        given: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
-        take(Asked(command, request(**given)))
+        arguments: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
+        take(ParsedCommand(command, request(**arguments)))
 
     request = command.request
-    parameters = [_parameter(field, request._field_defaults) for field in fields_of(request)]
+    parameters = [_make_parameter(field, request._field_defaults) for field in list_fields(request)]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     return run
 
 
-def _parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect.Parameter:
+def _make_parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect.Parameter:
     kind: Any = list[str] if field.type == tuple[str, ...] else field.type
     option = field.option
     if not option.words:

@@ -1,4 +1,4 @@
-"""A figure for the terminal that is at hand, or for what reads standard output in its place."""
+"""Render a figure as text, for the terminal or for the program that reads standard output."""
 
 from __future__ import annotations
 
@@ -11,23 +11,25 @@ from heuncli.base.errors import Problem
 from heuncli.output.drawing.figure import Figure
 
 WIDTH = 100  # columns where there is no terminal
-LEAST, MOST = 40, 400
+MIN_WIDTH, MAX_WIDTH = 40, 400
 
 
 def require_width(width: int | None) -> None:
     """Raise UsageError for a width in which nothing can be drawn."""
-    if width is not None and not LEAST <= width <= MOST:
-        message = f"--width {width}: expected {LEAST} to {MOST} columns"
+    if width is not None and not MIN_WIDTH <= width <= MAX_WIDTH:
+        message = f"--width {width}: expected {MIN_WIDTH} to {MAX_WIDTH} columns"
         raise UsageError(Problem("bad-option", message, hint=f"such as --width {WIDTH}"))
 
 
-def in_letters(figure: Figure, width: int | None, output: str | None = None) -> str:
-    """The figure as text, for the terminal or for a file."""
-    from heuncli.output.drawing.canvas import look_of
-    from heuncli.output.drawing.letters import drawn
+def render_text(figure: Figure, width: int | None, output: str | None = None) -> str:
+    """Render the figure as text, for the terminal or for a file."""
+    from heuncli.output.drawing.canvas import make_terminal_style
+    from heuncli.output.drawing.letters import draw_text
 
-    present = output is None and terminal.present()
-    columns = width or (terminal.width() - 1 if present else WIDTH)
-    plain = present and os.environ.get("TERM", "") in terminal.PLAIN
-    encoding = "ascii" if plain else sys.stdout.encoding if present else None
-    return drawn(figure, look_of(columns, encoding, colours=present and terminal.styled()))
+    to_terminal = output is None and terminal.is_terminal()
+    columns = width or (terminal.find_width() - 1 if to_terminal else WIDTH)
+    plain = to_terminal and os.environ.get("TERM", "") in terminal.PLAIN_TERMINALS
+    encoding = "ascii" if plain else sys.stdout.encoding if to_terminal else None
+    return draw_text(
+        figure, make_terminal_style(columns, encoding, has_colours=to_terminal and terminal.supports_styles())
+    )

@@ -1,7 +1,7 @@
-"""The same work on many things, in several processes that are forked from this one.
+"""Apply one function to many items in several processes, forked from this one.
 
-What was imported before is there in each of them: Python starts once. A process that dies takes with it what it was at,
-and nothing else: the next takes its place, and what the dead one was at is tried once more. Impure: processes.
+A forked process inherits all imported modules, so Python starts once. If a process dies only the item at work is lost:
+another process replaces it, and the item is tried once more. Impure: processes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from heuncli.app.cli import alarm
 from heuncli.base import signals
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.signals import Undoing
+from heuncli.base.signals import CleanupOnSignal
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -24,69 +24,78 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
-WORTH = 8  # things from which on several processes are worth their making
+MIN_ITEMS = 8  # with fewer items several processes do not pay
 
 
-def processors() -> int:
-    """On how many processors this process may run."""
+def count_processors() -> int:
+    """Return the number of processors that this process may run on."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def forks() -> bool:
-    """Whether processes can be forked here."""
+def can_fork() -> bool:
+    """Return whether this system can fork processes."""
     return hasattr(os, "fork")
 
 
-def most(asked: int | None) -> int:
-    """How many processes may work at once."""
-    return asked if asked is not None else processors()
+def max_jobs(requested: int | None) -> int:
+    """Return the largest number of processes: the requested one, or one per processor."""
+    return requested if requested is not None else count_processors()
 
 
-def how_many(asked: int | None, things: int) -> int:
-    """How many processes work: as many as asked for, else one a processor where there is enough to do."""
-    if not forks():
+def choose_job_count(requested: int | None, item_count: int) -> int:
+    """Return the number of processes: the requested one, or one per processor if there are enough items."""
+    if not can_fork():
         return 1
-    wanted = most(asked) if asked is not None or things >= WORTH else 1
-    return max(1, min(wanted, things))
+    count = max_jobs(requested) if requested is not None or item_count >= MIN_ITEMS else 1
+    return max(1, min(count, item_count))
 
 
-class Died(NamedTuple):
-    """What stands for an answer whose process died: how, in words; exit code, negative that of a signal."""
+class ProcessDeath(NamedTuple):
+    """The result of an item whose process died.
+
+    description: how it ended, in words
+    code: its exit code, negative for a signal
+    """
 
     how: str
     code: int = 0
 
     @property
     def is_time_up(self) -> bool:
-        """Whether the time limit ended it, at its hard end (app/cli/alarm.py)."""
+        """Whether the time limit ended it, at its hard end (app/cli/timeout.py)."""
         return self.code == LimitError.exit_code
 
-    def problem(self, work: str, bug_hint: str) -> Problem:
-        """What is told of what was lost; work: what the process did; bug_hint: where no limit ended it."""
+    def make_problem(self, work: str, bug_hint: str) -> Problem:
+        """Make the problem that reports the lost item.
+
+        work: what the process did, for the message
+        bug_hint: the hint if no limit ended it
+        """
         if self.is_time_up:
             return Problem("time-limit", "the time limit was reached, and the work did not stop", hint=alarm.HINT)
-        return Problem("bug", f"the process that {work} was {self.how}, twice", hint=bug_hint)
+        return Problem("bug", f"the process that {work} was {self.description}, twice", hint=bug_hint)
 
 
-class SecondTries:
-    """Items, by their numbers, whose process died: each is tried once more, alone."""
+class RetryQueue:
+    """Items, by number, whose process died; each is tried once more, alone."""
 
     def __init__(self) -> None:
         self._waiting: deque[int] = deque()
         self._tried: set[int] = set()
 
-    def next(self) -> int | None:
-        """The next item to try again; None where there is none."""
+    def pop_next(self) -> int | None:
+        """Remove and return the next item to try again, or None."""
         return self._waiting.popleft() if self._waiting else None
 
-    def answered(self, numbers: Sequence[int]) -> None:
-        """Forget items that are answered."""
+    def forget(self, numbers: Sequence[int]) -> None:
+        """Forget items that have a result."""
         self._tried.difference_update(numbers)
 
-    def lost(self, numbers: Sequence[int], died: Died) -> list[int]:
-        """Note items whose process died. Returns those that are not tried again.
+    def add_lost(self, numbers: Sequence[int], died: ProcessDeath) -> list[int]:
+        """Add items whose process died; returns those that are not tried again.
 
-        These died twice; or one alone took longer than its time limit, and would take as long again.
+        An item is not tried again if its process died twice, or if it alone reached its time limit, which it would
+        reach again.
         """
         if died.is_time_up and len(numbers) == 1:
             return list(numbers)
@@ -97,112 +106,120 @@ class SecondTries:
         return twice
 
 
-def each(
+def run_in_order(
     work: Callable[[Item], Answer],
     items: Sequence[Item],
     jobs: int,
-    dead: Callable[[Item, Died], Answer],
+    make_failure: Callable[[Item, ProcessDeath], Answer],
     is_last: Callable[[Answer], bool] = lambda answer: False,
-    apart: bool = False,
+    separate_process: bool = False,
 ) -> Iterator[Answer]:
-    """The answers in the order of the items, each as soon as those before it are there.
+    """Yield the results in the order of the items, each as soon as all results before it are there.
 
-    dead: the answer for an item whose process died, twice, or at its time limit; is_last: whether no item behind one
-    with this answer is asked for; apart: in another process also where it is one alone.
+    make_failure: makes the result of an item whose process died twice, or at its time limit
+    is_last: whether a result ends the work, so that later items are skipped
+    separate_process: use another process even for a single job
     """
-    if jobs <= 1 and not (apart and forks()):
+    if jobs <= 1 and not (separate_process and can_fork()):
         for item in items:
             answer = work(item)
             yield answer
             if is_last(answer):
                 return
         return
-    until = len(items)
+    end = len(items)
     numbers = iter(range(len(items)))
-    again = SecondTries()
+    retries = RetryQueue()
 
     def more() -> int | None:
-        number = again.next()
+        number = retries.pop_next()
         if number is None:
-            number = next(numbers, until)
-        return number if number < until else None
+            number = next(numbers, end)
+        return number if number < end else None
 
-    waiting: dict[int, Answer] = {}
-    done = 0
-    for number, found in as_done(lambda number: work(items[number]), more, jobs):
-        if isinstance(found, Died):
-            if not again.lost([number], found):
+    finished: dict[int, Answer] = {}
+    next_number = 0
+    for number, outcome in run_as_completed(lambda number: work(items[number]), more, jobs):
+        if isinstance(outcome, ProcessDeath):
+            if not retries.add_lost([number], outcome):
                 continue
-            waiting[number] = dead(items[number], found)
+            finished[number] = make_failure(items[number], outcome)
         else:
-            waiting[number] = found
-        if is_last(waiting[number]):
-            until = min(until, number + 1)
-        while done in waiting:
-            answer = waiting.pop(done)
-            done += 1
+            finished[number] = outcome
+        if is_last(finished[number]):
+            end = min(end, number + 1)
+        while next_number in finished:
+            answer = finished.pop(next_number)
+            next_number += 1
             yield answer
             if is_last(answer):
                 return
 
 
-def as_done(
-    work: Callable[[Item], Answer], more: Callable[[], Item | None], jobs: int, stopped: int | None = None
-) -> Iterator[tuple[Item, Answer | Died]]:
-    """Each item with its answer, or how the process died that was at it, in the order in which they come.
+def run_as_completed(
+    work: Callable[[Item], Answer],
+    pop_next_item: Callable[[], Item | None],
+    jobs: int,
+    stop_descriptor: int | None = None,
+) -> Iterator[tuple[Item, Answer | ProcessDeath]]:
+    """Yield each item with its result, or with how its process died, in the order of completion.
 
-    more: the next item, None where there is none for now; it is asked after every answer, once what is done with that
-    is done, too, and the end is when there is none while nobody is at work. stopped: a descriptor; once anything can be
-    read from it, this ends. The processes are made as they find work, and end with this.
+    pop_next_item: returns the next item, or None if there is none now; it is called after each result has been
+    consumed, and the work ends when it returns None while no process is at work
+    stop_descriptor: a file descriptor; the work ends once anything can be read from it
+
+    Processes are started as items come, and end with this generator.
     """
-    pool = _Pool(work, more, jobs)
-    with alarm.unwatched(), Undoing(pool.kill):
+    pool = _Pool(work, pop_next_item, jobs)
+    with alarm.pause_watch(), CleanupOnSignal(pool.kill):
         try:
-            yield from pool.answers(stopped)
+            yield from pool.iter_results(stop_descriptor)
         finally:
             pool.kill()
             pool.join()
 
 
 class _Worker(Generic[Item, Answer]):
-    """A process at work on one item after the other, and the pipe to it."""
+    """A process that works on one item after the other, and the pipe to it."""
 
-    def __init__(self, work: Callable[[Item], Answer], others: Sequence[_Worker[Item, Answer]]) -> None:
+    def __init__(self, work: Callable[[Item], Answer], other_workers: Sequence[_Worker[Item, Answer]]) -> None:
         import multiprocessing
 
         context = multiprocessing.get_context("fork")
-        self.pipe, theirs = context.Pipe()
-        inherited = [self.pipe, *(other.pipe for other in others)]
-        self.process: ForkProcess = context.Process(target=_serve, args=(theirs, work, inherited), daemon=True)
+        self.pipe, child_end = context.Pipe()
+        inherited = [self.pipe, *(other.pipe for other in other_workers)]
+        self.process: ForkProcess = context.Process(target=_serve, args=(child_end, work, inherited), daemon=True)
         self.process.start()
-        theirs.close()
-        self.at: Item | None = None
+        child_end.close()
+        self.item: Item | None = None
 
-    def give(self, item: Item) -> None:
-        """Something to do."""
-        self.at = item
-        with suppress(BrokenPipeError, ConnectionResetError):  # it died between two items: found while waiting
+    def send(self, item: Item) -> None:
+        """Send an item to the process."""
+        self.item = item
+        with suppress(BrokenPipeError, ConnectionResetError):  # it died between two items: noticed while waiting
             self.pipe.send(item)
 
-    def end(self) -> Died:
-        """How it died."""
+    def join_dead(self) -> ProcessDeath:
+        """Wait for the dead process, and return how it ended."""
         self.process.join()
         code = self.process.exitcode or 0
         self.pipe.close()
-        return Died(f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}", code)
+        return ProcessDeath(f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}", code)
 
 
-def _serve(pipe: Connection, work: Callable[[Item], Answer], inherited: Sequence[Connection]) -> None:
-    """The life of a process: items in, answers out, until nobody sends any more; signals are its parent's affair."""
+def _serve(pipe: Connection, work: Callable[[Item], Answer], parent_ends: Sequence[Connection]) -> None:
+    """Run the loop of a worker process: receive items, send results, until the pipe closes. Signals are left to the
+    parent.
+    """
     import signal
 
-    for end in inherited:  # else none of these would see its other side close
-        end.close()
+    for parent_end in parent_ends:  # otherwise no worker would notice that its parent is gone
+        parent_end.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in ("SIGTERM", "SIGHUP"):
         signal.signal(getattr(signal, name), signal.SIG_DFL)
-    signals.undo_nothing()
-    alarm.be_silent()
+    signals.clear_cleanups()
+    alarm.silence()
     try:
         while True:
             pipe.send(work(pipe.recv()))
@@ -211,60 +228,60 @@ def _serve(pipe: Connection, work: Callable[[Item], Answer], inherited: Sequence
 
 
 class _Pool(Generic[Item, Answer]):
-    """Processes, each at work on an item or idle."""
+    """Worker processes, each with an item or idle."""
 
-    def __init__(self, work: Callable[[Item], Answer], more: Callable[[], Item | None], jobs: int) -> None:
-        self.work, self.more, self.jobs = work, more, jobs
+    def __init__(self, work: Callable[[Item], Answer], pop_next_item: Callable[[], Item | None], jobs: int) -> None:
+        self.work, self.pop_next_item, self.jobs = work, pop_next_item, jobs
         self.workers: list[_Worker[Item, Answer]] = []
 
-    def answers(self, stopped: int | None) -> Iterator[tuple[Item, Answer | Died]]:
-        """All of them as they come."""
+    def iter_results(self, stop_descriptor: int | None) -> Iterator[tuple[Item, Answer | ProcessDeath]]:
+        """Yield all items with their results in the order of completion."""
         from multiprocessing.connection import wait
 
         while True:
-            self._employ()
+            self._assign_items()
             busy: dict[object, _Worker[Item, Answer]] = {
-                worker.pipe: worker for worker in self.workers if worker.at is not None
+                worker.pipe: worker for worker in self.workers if worker.item is not None
             }
             if not busy:
                 return
-            ready = wait([*busy, *(() if stopped is None else (stopped,))])  # type: ignore[list-item]
-            if stopped in ready:
+            ready = wait([*busy, *(() if stop_descriptor is None else (stop_descriptor,))])  # type: ignore[list-item]
+            if stop_descriptor in ready:
                 return
             for pipe in ready:
-                yield self._received(busy[pipe])
+                yield self._receive_result(busy[pipe])
 
-    def _employ(self) -> None:
-        """Items for those who have none, as long as there are any."""
-        idle = [worker for worker in self.workers if worker.at is None]
+    def _assign_items(self) -> None:
+        """Send items to idle workers, and start workers up to the number of jobs, while there are items."""
+        idle = [worker for worker in self.workers if worker.item is None]
         while idle or len(self.workers) < self.jobs:
-            item = self.more()
+            item = self.pop_next_item()
             if item is None:
                 return
             if not idle:
                 self.workers.append(_Worker(self.work, self.workers))
-            (idle.pop() if idle else self.workers[-1]).give(item)
+            (idle.pop() if idle else self.workers[-1]).send(item)
 
-    def _received(self, worker: _Worker[Item, Answer]) -> tuple[Item, Answer | Died]:
-        """What a worker has to say, which goes on with the next item at once."""
-        item, answer = worker.at, None
+    def _receive_result(self, worker: _Worker[Item, Answer]) -> tuple[Item, Answer | ProcessDeath]:
+        """Return the item and the result of a worker, and send it the next item at once."""
+        item, answer = worker.item, None
         assert item is not None
         try:
             answer = worker.pipe.recv()
-        except (EOFError, OSError):  # the latter where it died while it spoke
+        except (EOFError, OSError):  # OSError if it died while sending
             self.workers.remove(worker)
-            return item, worker.end()
-        worker.at = None
-        self._employ()
+            return item, worker.join_dead()
+        worker.item = None
+        self._assign_items()
         return item, answer
 
     def join(self) -> None:
-        """Wait until all of them have ended."""
+        """Wait until all processes have ended."""
         for worker in self.workers:
             worker.process.join()
 
     def kill(self) -> None:
-        """End all of them at once."""
+        """Kill all processes at once."""
         for worker in self.workers:
             if worker.process.pid is not None:
                 worker.process.kill()

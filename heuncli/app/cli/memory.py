@@ -1,28 +1,30 @@
-"""Whether there is memory enough for a command to begin with, and whether it ended for want of it. Impure."""
+"""Check that enough memory is left to start a command, and whether an error came from lack of memory. Impure."""
 
 from __future__ import annotations
 
 from heuncli.base.errors import LimitError, Problem
-from heuncli.base.memory_left import room as room  # for the commands, beside what is here
-from heuncli.base.memory_left import within_limit
+from heuncli.base.memory_left import remaining_address_space
+from heuncli.base.memory_left import result_memory as result_memory  # re-exported for the commands
 
-LEAST = 160e6  # bytes of addresses that Python's modules, NumPy's and the kernel's take
-UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # as loaders say it
+MIN_MEMORY = 160e6  # bytes of address space for the modules of Python, NumPy and the kernel
+UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # messages of system loaders
 
 
-def require_some() -> None:
-    """Raise LimitError [out-of-memory] where a limit on addresses leaves too little to begin with."""
-    left = within_limit()
-    if left is None:
+def require_minimum() -> None:
+    """Raise LimitError [out-of-memory] if a limit on the address space leaves too little to start."""
+    available = remaining_address_space()
+    if available is None:
         return
-    if left < LEAST:
-        message = f"the limit on memory leaves {left / 1e6:.0f} MB; heun takes {LEAST / 1e6:.0f} MB to begin with"
+    if available < MIN_MEMORY:
+        message = (
+            f"the limit on memory leaves {available / 1e6:.0f} MB; heun takes {MIN_MEMORY / 1e6:.0f} MB to begin with"
+        )
         raise LimitError(Problem("out-of-memory", message, hint="a higher limit (ulimit -v)"))
     import numpy as np
 
-    np.ones((64, 64)) @ np.ones((64, 64))  # BLAS takes its memory now: where it finds none it ends the process itself
+    np.ones((64, 64)) @ np.ones((64, 64))  # BLAS allocates its memory now; it would end the process without any
 
 
-def ended(error: Exception) -> bool:
-    """Whether a library could not be loaded for want of memory."""
+def is_memory_error(error: Exception) -> bool:
+    """Return whether a library could not be loaded for lack of memory."""
     return isinstance(error, ImportError) and any(words in str(error) for words in UNMAPPED)

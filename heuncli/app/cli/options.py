@@ -1,9 +1,8 @@
-"""The vocabulary of requests: what an option of a command is, and those that many commands have.
+"""The vocabulary of requests: the class of an option, and the options that many commands share.
 
-A request is a named tuple, one for each command; a field is an option (or the arguments), its annotation holds the
-words and the help. Two readers fill it in: app/cli/plain.py at once for plain command lines, app/cli/app.py through
-typer for help and usage errors. Named tuples here and in report/, not dataclasses: those take 0.6 ms each to define,
-and every command pays.
+A request is a named tuple, one per command. Each field is an option or argument; its annotation holds the words and the
+help text. Two parsers fill it: app/cli/plain.py for plain command lines, and app/cli/app.py through typer for help and
+usage errors. Named tuples, not dataclasses, because those take 0.6 ms each to define, and every command pays.
 """
 
 from typing import Any, ClassVar, Protocol
@@ -12,9 +11,12 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class Option(NamedTuple):
-    """The words of an option (none: an argument), what it does, and what stands for its value in the help.
+    """An option of a command.
 
-    completes: by which of the words of app/cli/completion.py a shell completes it.
+    words: its words; none: an argument
+    help: what it does
+    metavar: the name of its value in the help
+    completes: the key in app/cli/completion.py of its shell completion
     """
 
     words: tuple[str, ...]
@@ -56,18 +58,18 @@ class Request(Protocol):
 
     _field_defaults: ClassVar[dict[str, Any]]
 
-    def __init__(self, **given: Any) -> None: ...
+    def __init__(self, **values: Any) -> None: ...
 
 
 class RequestField(NamedTuple):
-    """One field of a request: its name, its type, and the option that fills it."""
+    """One field of a request: its name, its type, and its option."""
 
     name: str
     type: object
     option: Option
 
 
-def fields_of(request: type[Request]) -> list[RequestField]:
-    """The options and arguments of a command, in their order."""
+def list_fields(request: type[Request]) -> list[RequestField]:
+    """List the options and arguments of a command, in their order."""
     notes = request.__annotations__.items()
     return [RequestField(name, note.__origin__, note.__metadata__[0]) for name, note in notes]

@@ -1,6 +1,7 @@
-"""Where results go: standard output, or a file that is written whole or not at all. Impure: writes.
+"""Write results to standard output, or to a file that is written whole or not at all. Impure: writes.
 
-Whatever keeps output from arriving is an OutputError (exit 5), but for a reader that went away: ReaderGone (exit 141).
+Whatever keeps output from arriving is an OutputError (exit 5), except a reader that closed the pipe: ReaderGone (exit
+141).
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from typing import TextIO
 from heuncli.app.cli import alarm
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
-from heuncli.base.files import ReaderGone
-from heuncli.base.foreign_text import escaped, shown_lines
+from heuncli.base.files import ReaderGoneError
+from heuncli.base.foreign_text import escape_all, escape_lines
 
 DESCRIPTOR = 1  # of standard output
 ESCAPED = "heun.escaped"
@@ -25,45 +26,47 @@ BLOCK = 1 << 18  # characters that are written together
 def emit(text: str | Iterable[str], target: str | None = None, *, late: bool = False) -> None:
     """Write the text, or its pieces as they are made, to a file, or to standard output for None and `-`.
 
-    No time limit interrupts what is written: it holds until the first byte goes out, and of a file that is written
-    whole or not at all until the last piece is made. late: also where the time limit is past; else LimitError is
-    raised, and nothing is written.
+    The time limit never interrupts writing. It applies until the first byte goes out, and for a file that is written
+    whole or not at all until the last piece is made.
+
+    late: write even after the time limit; otherwise LimitError is raised then, and nothing is written
     """
     pieces = [text] if isinstance(text, str) else text
     to_stdout = target is None or target == files.STDOUT
-    if target is None or to_stdout or (place := files.place_of(target)).descriptor == DESCRIPTOR:  # /dev/stdout
+    if target is None or to_stdout or (place := files.find_target(target)).descriptor == DESCRIPTOR:  # /dev/stdout
         alarm.disarm(late=late)
-        _to_standard_output(pieces)
-    elif place.ordinary:
-        files.write(_within_limit(as_blocks(pieces), late), target)
+        _write_stdout(pieces)
+    elif place.is_replaceable:
+        files.write(_disarm_after(encode_blocks(pieces), late), target)
     else:
         alarm.disarm(late=late)
-        files.write(as_blocks(pieces), target)
+        files.write(encode_blocks(pieces), target)
 
 
-def _within_limit(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
+def _disarm_after(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
+    """Yield the content, then end the time limit. Raises LimitError if it has passed, unless `late`."""
     yield from content
     alarm.disarm(late=late)
 
 
-def as_blocks(pieces: Iterable[str], encoding: str = "utf-8") -> Iterator[bytes]:
-    """The pieces as bytes, short ones together: each call of the system has its price."""
-    gathered: list[str] = []
+def encode_blocks(pieces: Iterable[str], encoding: str = "utf-8") -> Iterator[bytes]:
+    """Encode the pieces as bytes, and join short ones, because each system call costs time."""
+    buffer: list[str] = []
     length = 0
     for piece in pieces:
-        gathered.append(piece)
+        buffer.append(piece)
         length += len(piece)
         if length >= BLOCK:
-            yield as_bytes("".join(gathered), encoding)
-            gathered, length = [], 0
-    yield as_bytes("".join(gathered), encoding)
+            yield encode_text("".join(buffer), encoding)
+            buffer, length = [], 0
+    yield encode_text("".join(buffer), encoding)
 
 
-def as_bytes(text: str, encoding: str = "utf-8") -> bytes:
-    """The text in UTF-8 wherever programs read it, whatever the locale says: two names never become one.
+def encode_text(text: str, encoding: str = "utf-8") -> bytes:
+    """Encode the text in UTF-8 for programs, whatever the locale says, so that two different names stay different.
 
-    On a terminal that shows another encoding, what that lacks is escaped as in JSON, and so are halves of pairs
-    everywhere (of file names that are not UTF-8).
+    On a terminal with another encoding, characters that it lacks are escaped as in JSON. Lone surrogates (of file names
+    that are not UTF-8) are escaped everywhere.
     """
     codecs.register_error(ESCAPED, _escape)
     return text.encode(encoding, ESCAPED)
@@ -72,41 +75,41 @@ def as_bytes(text: str, encoding: str = "utf-8") -> bytes:
 def _escape(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return escaped(error.object[error.start : error.end]), error.end
+    return escape_all(error.object[error.start : error.end]), error.end
 
 
 def save(content: bytes, target: str) -> None:
-    """Write what is no text to a file, however late."""
+    """Write bytes to a file, even after the time limit."""
     alarm.disarm(late=True)
     files.write(content, target)
 
 
-def say(text: str) -> None:
-    """A line to standard error, if anybody can read it."""
+def print_stderr(text: str) -> None:
+    """Print a line to standard error, if it is open."""
     with contextlib.suppress(OSError, ValueError):
         if sys.stderr is not None:
-            print(shown_lines(text), file=sys.stderr, flush=True)
+            print(escape_lines(text), file=sys.stderr, flush=True)
 
 
-def _to_standard_output(pieces: Iterable[str]) -> None:
+def _write_stdout(pieces: Iterable[str]) -> None:
     if sys.stdout is None:
         raise OutputError(Problem("output-closed", "standard output is closed", hint="write to a file: -o FILE"))
     try:
-        content = as_blocks(pieces, sys.stdout.encoding if sys.stdout.isatty() else "utf-8")
-        number = _number(sys.stdout)
+        content = encode_blocks(pieces, sys.stdout.encoding if sys.stdout.isatty() else "utf-8")
+        number = _find_descriptor(sys.stdout)
         if number is None:
             sys.stdout.buffer.writelines(content)
-        else:  # past Python's buffer, which would complain at its end once more
+        else:  # bypasses Python's buffer, which would report an error again at exit
             sys.stdout.flush()
             files.write_pieces(number, content)
     except BrokenPipeError:
-        raise ReaderGone from None
+        raise ReaderGoneError from None
     except OSError as reason:
-        raise OutputError(files.failed("standard output", reason)) from None
+        raise OutputError(files.write_problem("standard output", reason)) from None
 
 
-def _number(stream: TextIO) -> int | None:
-    """The descriptor of a stream, if it has one of the system's."""
+def _find_descriptor(stream: TextIO) -> int | None:
+    """Return the file descriptor of a stream, or None."""
     try:
         return stream.fileno()
     except (OSError, ValueError):

@@ -1,6 +1,6 @@
-"""A reader for plain command lines that imports nothing: saves typer's 35 ms where neither help nor an error is needed.
+"""Parse plain command lines without typer, which takes 35 ms to import.
 
-It reads what it fully understands, as typer would, and gives up on the rest.
+It reads what it fully understands, exactly as typer would, and leaves the rest to typer: help and errors.
 """
 
 from __future__ import annotations
@@ -8,19 +8,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from heuncli.app.cli.options import fields_of
-from heuncli.app.cli.registry import Asked, command_of
+from heuncli.app.cli.options import list_fields
+from heuncli.app.cli.registry import ParsedCommand, find_command
 
 NUMBERS: dict[object, Callable[[str], float]] = {float | None: float, int | None: int}
 
 
-def read(argv: Sequence[str]) -> Asked | None:
-    """The request of a command line, or None where typer has to look: help, errors, `--`, bundled short options."""
-    command = command_of(argv[0]) if argv else None
+def read(argv: Sequence[str]) -> ParsedCommand | None:
+    """Parse a command line, or return None if typer has to: for help, errors, `--`, bundled short options."""
+    command = find_command(argv[0]) if argv else None
     if command is None:
         return None
     request = command.request
-    fields = fields_of(request)
+    fields = list_fields(request)
     options = {word: field for field in fields for word in field.option.words}
     values: dict[str, Any] = {}
     arguments: list[str] = []
@@ -56,4 +56,4 @@ def read(argv: Sequence[str]) -> Asked | None:
         values |= {target.name: argument for target, argument in zip(targets, arguments, strict=False)}
     if any(target.name not in values and target.name not in request._field_defaults for target in targets):
         return None
-    return Asked(command, request(**values))
+    return ParsedCommand(command, request(**values))

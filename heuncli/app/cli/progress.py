@@ -1,4 +1,4 @@
-"""A progress bar on standard error: only on a terminal, and only for work that takes a while. Impure."""
+"""Show a progress bar on standard error, only on a terminal and only for work that takes a while. Impure."""
 
 from __future__ import annotations
 
@@ -9,60 +9,62 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from heuncli.app.cli.terminal import styled
-from heuncli.base.signals import Undoing
+from heuncli.app.cli.terminal import supports_styles
+from heuncli.base.signals import CleanupOnSignal
 
 PATIENCE = 1.5  # seconds before it shows
 WIPE = b"\r\x1b[2K\x1b[?25h"  # clears the line and shows the cursor, which the bar hides
-Tell = Callable[[int, int, str], None]
+ReportProgress = Callable[[int, int, str], None]
 
 
 @contextmanager
-def progress(quiet: bool) -> Iterator[Tell]:
-    """What work calls with how much is done of how much, and what is under way."""
-    bar = None if quiet or sys.stderr is None or not sys.stderr.isatty() or not styled() else Bar()
+def show_progress(quiet: bool) -> Iterator[ReportProgress]:
+    """Provide the function that work calls with the count done, the total, and the current task; wipe the bar at the
+    end.
+    """
+    bar = None if quiet or sys.stderr is None or not sys.stderr.isatty() or not supports_styles() else ProgressBar()
     if bar is None:
-        yield _silent
+        yield _ignore_progress
         return
     try:
-        with Undoing(bar.wipe):
-            yield bar.tell
+        with CleanupOnSignal(bar.wipe):
+            yield bar.update
     finally:
         bar.close()
 
 
-def _silent(done: int, of: int, what: str) -> None:
-    """Nothing is told."""
+def _ignore_progress(count: int, total: int, task: str) -> None:
+    """Do nothing: no bar is shown."""
 
 
-class Bar:
-    """The bar, which is made when the work has taken a while."""
+class ProgressBar:
+    """A progress bar that appears once the work has taken a while."""
 
     def __init__(self) -> None:
-        self.begun = time.monotonic()
-        self.shown: Any = None
+        self.start_time = time.monotonic()
+        self.display: Any = None
         self.task: Any = None
 
-    def tell(self, done: int, of: int, what: str) -> None:
-        """So much is done."""
-        if self.shown is None:
-            if time.monotonic() - self.begun < PATIENCE:
+    def update(self, count: int, total: int, task: str) -> None:
+        """Show the progress; makes the bar after PATIENCE seconds."""
+        if self.display is None:
+            if time.monotonic() - self.start_time < PATIENCE:
                 return
             from rich.console import Console  # 44 ms, only for long work
             from rich.progress import BarColumn, Progress, TextColumn
 
             columns = (BarColumn(), TextColumn("{task.percentage:>3.0f} %  {task.description}"))
-            self.shown = Progress(*columns, console=Console(stderr=True), transient=True)
-            self.shown.start()
-            self.task = self.shown.add_task(what, total=of)
-        self.shown.update(self.task, completed=done, total=of, description=what)
+            self.display = Progress(*columns, console=Console(stderr=True), transient=True)
+            self.display.start()
+            self.task = self.display.add_task(task, total=total)
+        self.display.update(self.task, completed=count, total=total, description=task)
 
     def wipe(self) -> None:
-        """Take it away at once, where a signal leaves no time to."""
-        if self.shown is not None:
+        """Erase the bar at once, when a signal ends the process."""
+        if self.display is not None:
             os.write(2, WIPE)
 
     def close(self) -> None:
-        """Take it away."""
-        if self.shown is not None:
-            self.shown.stop()
+        """Stop and erase the bar."""
+        if self.display is not None:
+            self.display.stop()

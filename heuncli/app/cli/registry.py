@@ -1,15 +1,14 @@
-"""The commands, a row each: a new command is a folder in heuncli/app/commands and a row here.
+"""The table of commands: a new command is a folder in heuncli/app/commands and a row here.
 
-The folder of a command holds what it alone needs:
+The folder of a command holds the code that only this command needs:
 
     request.py   the named tuple of its options, such as RunRequest of `heun run`; imports the vocabulary of
-                 app/cli/options.py and nothing else, for `--help` reads the requests of all commands
-    command.py   main(request) -> exit code; the one module that knows the command line, files and the terminal
-    study.py     what it finds out; page.py: how that is told; results.py: the rows of what is found; and the like
+                 app/cli/options.py and nothing else, because `--help` reads the requests of all commands
+    command.py   main(request) -> exit code; the only module that knows the command line, files and the terminal
+    page.py      how the result is shown; and the like. What it computes is in heuncli/analyses
 
-Both modules are found by name when the command is asked for, so that nothing below heuncli/app/commands imports any of
-it, and one command loads nothing of another. What two commands need stands below them: in cli, report, drawing or
-study.
+Both modules are imported by name when the command runs, so nothing below heuncli/app/commands imports them, and no
+command loads code of another. Code that two commands share is in layers below: app/cli, output, analyses or study.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from heuncli.app.cli.alarm import GRACE, UNTOLD
+from heuncli.app.cli.alarm import DEFAULT_PHASE, GRACE
 from heuncli.app.cli.options import Request
 from heuncli.base.named_tuples import NamedTuple
 
@@ -25,34 +24,36 @@ from heuncli.base.named_tuples import NamedTuple
 class Command(NamedTuple):
     """A command.
 
-    name: the word of the command line; folder: in heuncli/app/commands, where that is not the name; page: the name of
-    the page of the manual that tells of it; grace [s]: how long it may go on beyond its time limit, longer for a
-    command that then tells the part that is done; phase: what the error of the time limit says was under way, where
-    app/cli/alarm.py has no words for the modules at work.
+    name: its word on the command line
+    folder: its folder in heuncli/app/commands, if not the name
+    page: the manual page that describes it
+    grace: how long it may run beyond its time limit [s]; longer for a command that then shows a partial result
+    phase: what the error of the time limit names as the current work, if app/cli/timeout.py has no words for the
+    modules at work
     """
 
     name: str
     folder: str = ""
     page: str = "commands"
     grace: float = GRACE
-    phase: str = UNTOLD
+    phase: str = DEFAULT_PHASE
 
     @property
     def request(self) -> type[Request]:
         """The named tuple of its options."""
-        found: type[Request] = getattr(self._module("request"), f"{self.name.capitalize()}Request")
-        return found
+        request_type: type[Request] = getattr(self._module("request"), f"{self.name.capitalize()}Request")
+        return request_type
 
     def main(self, request: Request) -> int:
-        """Do what is asked for; returns the exit code."""
+        """Run the command; returns the exit code."""
         return int(self._module("command").main(request))
 
     def _module(self, file: str) -> Any:
         return import_module(f"heuncli.app.commands.{self.folder or self.name}.{file}")
 
 
-class Asked(NamedTuple):
-    """A command line that is understood: a command, and what it is asked for."""
+class ParsedCommand(NamedTuple):
+    """A parsed command line: a command and its request."""
 
     command: Command
     request: Request
@@ -85,6 +86,6 @@ COMMANDS = (
 )
 
 
-def command_of(name: str) -> Command | None:
-    """The command of a name, if there is one."""
+def find_command(name: str) -> Command | None:
+    """Return the command of a name, or None."""
     return next((command for command in COMMANDS if command.name == name), None)

@@ -1,20 +1,20 @@
-"""What the commands share: options read from words, warnings and timings written."""
+"""Shared code of the commands: parse options, print warnings and timings."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
-from heuncli.app.cli.output import say
+from heuncli.app.cli.output import print_stderr
 from heuncli.base.errors import Problem, UsageError
-from heuncli.base.foreign_text import shown
-from heuncli.output.snapshots.warned import warnings_of
+from heuncli.base.foreign_text import escape
+from heuncli.output.snapshots.warned import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.asked_values import all_or_errors as all_or_errors  # for the commands, beside these here
-from heuncli.study.ask.asked_values import choice as choice
-from heuncli.study.ask.asked_values import positive as positive
-from heuncli.study.ask.asked_values import tolerance as tolerance
+from heuncli.study.ask.asked_values import collect_results as collect_results  # re-exported for the commands
+from heuncli.study.ask.asked_values import require_choice as require_choice
+from heuncli.study.ask.asked_values import require_positive as require_positive
+from heuncli.study.ask.asked_values import require_tolerance as require_tolerance
 from heuncli.study.model.options import Options
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class SolverRequest(Protocol):
-    """A request with the options by which scenes are solved."""
+    """A request with the options of solving."""
 
     @property
     def tolerance(self) -> float | None: ...
@@ -36,19 +36,19 @@ class SolverRequest(Protocol):
     def no_reduce(self) -> bool: ...
 
 
-def solver_options(request: SolverRequest) -> Options:
-    """By what a scene is solved. Raises UsageError."""
+def make_solver_options(request: SolverRequest) -> Options:
+    """Convert the options of a request to those of the solver. Raises UsageError."""
     return Options(
-        tolerance=tolerance(request.tolerance),
+        tolerance=require_tolerance(request.tolerance),
         method=request.method,
-        step=positive("--step", request.step),
+        step=require_positive("--step", request.step),
         least_norm=request.least_norm,
         reduce=not request.no_reduce,
     )
 
 
-def overrides(words: Sequence[str]) -> dict[str, str]:
-    """`name=value` words as a mapping."""
+def parse_overrides(words: Sequence[str]) -> dict[str, str]:
+    """Parse `name=value` words into a mapping. Raises UsageError."""
     pairs: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")
@@ -59,48 +59,62 @@ def overrides(words: Sequence[str]) -> dict[str, str]:
 
 
 def require_cases(cases: Collection[str]) -> None:
-    """Raise UsageError where all load cases are asked for, and there is none."""
+    """Raise UsageError if all load cases are requested and there is none."""
     if not cases:
         hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
         raise UsageError(Problem("unknown-case", "--case all: the spec has no load cases", hint=hint))
 
 
-def spec_among(words: Sequence[str], command: str, usage: str) -> tuple[str, list[str]]:
-    """The one word that names the spec's file, and those that say NAME=... of something. Raises UsageError."""
+def split_spec_and_assignments(words: Sequence[str], command: str, usage: str) -> tuple[str, list[str]]:
+    """Split the arguments into the spec's file and the words NAME=.... Raises UsageError unless exactly one file is
+    named.
+    """
     files = [word for word in words if "=" not in word]
     if len(files) != 1:
-        found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
-        raise UsageError(Problem("bad-option", f"{command}: {found}", hint=usage))
+        problem_text = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
+        raise UsageError(Problem("bad-option", f"{command}: {problem_text}", hint=usage))
     return files[0], [word for word in words if "=" in word]
 
 
-def instants(words: str, study: Study) -> Array:
-    """The instants of `--at` in a run, (n_t,) ascending. Raises UsageError, also of extremes, which tables tell."""
-    from heuncli.study.ask.asked_instants import measures, parse, times_of  # where they are asked for
+def parse_instants(words: str, study: Study) -> Array:
+    """Return the instants of `--at` in a run, (n_t,) ascending.
 
-    asked = parse(words)
-    if measures(asked):
+    Raises UsageError, also for extremes, which tables show anyway.
+    """
+    from heuncli.study.ask.asked_instants import (  # where they are asked for
+        find_requested_times,
+        make_extreme_requests,
+        parse,
+    )
+
+    requested = parse(words)
+    if make_extreme_requests(requested):
         message = f"--at {words}: tables show by themselves when each number is largest"
         hint = "leave --at out; or name a time, first, last, impulse:NAME"
         raise UsageError(Problem("bad-option", message, hint=hint))
-    return times_of(asked, study)
+    return find_requested_times(requested, study)
 
 
-def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()) -> list[str]:
-    """Tell the warnings of reading, of solving (of which `place`) and of what came later, once each; returns them."""
-    read, solved = warnings_of(spec, results, later)
-    for line in warning_lines(spec, results, place, later) if not quiet else ():
-        say(line)
+def print_warnings(
+    spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()
+) -> list[str]:
+    """Print the warnings of reading, of solving and of later steps, each once; returns them.
+
+    place: names the run in the warnings of solving
+    """
+    read, solved = collect_warnings(spec, results, later)
+    for line in format_warnings(spec, results, place, later) if not quiet else ():
+        print_stderr(line)
     return read + solved
 
 
-def warning_lines(spec: Spec, results: Results | None, place: str, later: Iterable[str] = ()) -> list[str]:
-    """The warnings as they are told, a line each, with their places."""
-    read, solved = warnings_of(spec, results, later)
-    return [f"warning: {text}" for text in read + [shown(f"{place}: {text}") for text in solved]]
+def format_warnings(spec: Spec, results: Results | None, place: str, later: Iterable[str] = ()) -> list[str]:
+    """Return the warnings as they are printed, one per line, with their locations."""
+    read, solved = collect_warnings(spec, results, later)
+    return [f"warning: {text}" for text in read + [escape(f"{place}: {text}") for text in solved]]
 
 
-def timings(work: Mapping[str, Any]) -> str:
-    """Where the time went, in milliseconds."""
+def format_timings(work: Mapping[str, Any]) -> str:
+    """Return the time of each step of the work, in milliseconds."""
     parts = [f"{name} {1e3 * seconds:.1f} ms" for name, seconds in work.get("seconds", {}).items()]
     return ", ".join(parts)

@@ -1,26 +1,28 @@
-"""`-o FILE`: the format its name asks for, and what would keep it from being written. Impure: looks at the files."""
+"""The option `-o FILE`: choose the format by the file's name, and check that it can be written. Impure: looks at the
+files.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.solving import choice
+from heuncli.app.cli.solving import require_choice
 from heuncli.base.errors import Problem
-from heuncli.base.files import STDOUT, place_of
+from heuncli.base.files import STDOUT, find_target
 
 ENDINGS = {"json": ".json", "csv": ".csv", "markdown": ".md", "parquet": ".parquet", "m": ".m"}
 
 
-def format_of(asked: str | None, output: str | None, formats: Sequence[str]) -> str:
-    """The format asked for, else what the file's name ends in, else the first, which .txt and no ending mean, too.
+def choose_format(requested: str | None, output: str | None, formats: Sequence[str]) -> str:
+    """Return the requested format, else that of the file's ending, else the first, which .txt and no ending also mean.
 
-    An ending that means none of them is refused: a table in a file that is named a spreadsheet helps nobody.
+    Raises UsageError for an unknown ending: a table in a file named as a spreadsheet helps nobody.
     """
     if output is not None and output != STDOUT:
-        require_room(output)
-    if asked is not None:
-        return choice("--format", asked, formats)
+        require_writable(output)
+    if requested is not None:
+        return require_choice("--format", requested, formats)
     if output is None or output == STDOUT:
         return formats[0]
     from pathlib import Path  # 3 ms that only files need
@@ -35,9 +37,9 @@ def format_of(asked: str | None, output: str | None, formats: Sequence[str]) -> 
     return endings[ending]
 
 
-def require_room(output: str, option: str = "-o") -> None:
-    """Say before the work what would keep a file from being written after it."""
+def require_writable(output: str, option: str = "-o") -> None:
+    """Raise an error before the work if a file could not be written after it: UsageError, OutputError."""
     if not output:
         hint = f"such as {option} {'results.json' if option == '-o' else 'chart.svg'}"
         raise UsageError(Problem("bad-option", f"{option}: expected the name of a file", hint=hint))
-    place_of(output)
+    find_target(output)

@@ -1,20 +1,20 @@
-"""What `--units` asks for: of tables alone."""
+"""The option `--units`, which applies to tables only."""
 
 from __future__ import annotations
 
-from heuncli.app.cli.output import say
-from heuncli.output.snapshots.asked_units import asked_units
+from heuncli.app.cli.output import print_stderr
+from heuncli.output.snapshots.asked_units import read_display_units
 from heuncli.study.quantities.table_units import Units
 
 TABLES = ("table", "markdown")
 
 
-def units(words: str | None) -> Units:
-    """The units that tables show. Raises UsageError."""
-    return asked_units("--units", words)
+def parse_units(words: str | None) -> Units:
+    """Parse the units in which tables are shown. Raises UsageError."""
+    return read_display_units("--units", words)
 
 
-def say_what_stays(words: str | None, form: str, quiet: bool) -> None:
-    """On standard error, that what is no table stays in SI though units were asked for."""
+def note_si_format(words: str | None, form: str, quiet: bool) -> None:
+    """Print a note to standard error that a format other than a table stays in SI although units were given."""
     if words is not None and not quiet and form not in TABLES:
-        say(f"heun: --units is of tables: {form} stays in SI")
+        print_stderr(f"heun: --units is of tables: {form} stays in SI")

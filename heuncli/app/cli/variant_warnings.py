@@ -1,15 +1,17 @@
-"""What a command that solves many variants warns of: each sentence once, with how many of them it holds of."""
+"""Print the warnings of a command that solves many variants: each sentence once, with the number of variants it holds
+for.
+"""
 
 from __future__ import annotations
 
-from heuncli.analyses.variants.once import AnswersOnce
-from heuncli.app.cli.output import say
-from heuncli.app.cli.solving import warn
+from heuncli.analyses.variants.once import CachedEvaluator
+from heuncli.app.cli.output import print_stderr
+from heuncli.app.cli.solving import print_warnings
 from heuncli.scene.file_format.models import Spec
 
 
-def warn_of_variants(spec: Spec, once: AnswersOnce, quiet: bool) -> None:
-    """Tell what reading the spec and solving its variants warn of."""
-    warn(spec, None, quiet)
-    for text, variants in ({} if quiet else once.warnings()).items():
-        say(f"warning: heun: {text} (in {variants} of {once.runs} variants)")
+def print_variant_warnings(spec: Spec, evaluator: CachedEvaluator, quiet: bool) -> None:
+    """Print the warnings of reading the spec and of solving its variants."""
+    print_warnings(spec, None, quiet)
+    for text, variants in ({} if quiet else evaluator.count_warnings()).items():
+        print_stderr(f"warning: heun: {text} (in {variants} of {evaluator.runs} variants)")

@@ -1,7 +1,7 @@
-"""Arguments of Python of the wrong kind, refused by their names, all of a call at once.
+"""Check the types of Python arguments, and refuse all wrong ones of a call at once, by name.
 
-Truths are no numbers here, nor NumPy's arrays truths; what only resembles a kind (a list of texts with a number in it)
-is refused as well.
+Booleans do not count as numbers, nor NumPy arrays as booleans; a list of texts that contains a number is refused as
+well.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ArgumentKind(NamedTuple):
-    """What an argument may be: whether a value is of the kind, the kind in words, an example in Python."""
+    """A type of argument: the test of a value, the type in words, and an example in Python."""
 
     is_met: Callable[[object], bool]
     words: str
@@ -42,7 +42,7 @@ def _is_number_or_numbers(value: object) -> bool:
         return False
     try:
         array = np.asarray(value)
-    except ValueError:  # of several lengths
+    except ValueError:  # rows of different lengths
         return False
     return array.size == 0 or array.dtype.kind in "iuf"
 
@@ -50,22 +50,24 @@ def _is_number_or_numbers(value: object) -> bool:
 TEXT = ArgumentKind(lambda value: isinstance(value, str), "a text", "'...'")
 TEXTS = ArgumentKind(_is_text_or_texts, "a text or a list of texts", "['joints', 'energy']")
 NUMBER = ArgumentKind(_is_number, "a number", "0.5")
-WHOLE = ArgumentKind(lambda value: isinstance(value, Integral) and _is_number(value), "a whole number", "10")
+INTEGER = ArgumentKind(lambda value: isinstance(value, Integral) and _is_number(value), "a whole number", "10")
 NUMBERS = ArgumentKind(_is_number_or_numbers, "a number or an array of numbers", "[0.1, 0.2]")
 NUMBER_OR_TEXT = ArgumentKind(lambda value: isinstance(value, str) or _is_number(value), "a number or a text", "0.5")
-TRUTH = ArgumentKind(lambda value: isinstance(value, bool | np.bool_), "True or False", "True")
+BOOLEAN = ArgumentKind(lambda value: isinstance(value, bool | np.bool_), "True or False", "True")
 MAPPING = ArgumentKind(lambda value: isinstance(value, Mapping), "a mapping", "{'bodies.rod.mass': 2}")
 FILE = ArgumentKind(lambda value: isinstance(value, str | os.PathLike), "the name of a file", "'results.json'")
 
 
 def check_arguments(*arguments: tuple[str, object, ArgumentKind], optional: bool = True) -> None:
-    """Refuse arguments (name, value, kind) of the wrong kind. optional: None means that one is not given.
+    """Require that each argument (name, value, kind) is of its kind.
 
-    Raises UsageError with a problem for each of them.
+    optional: None is allowed, and means that the argument is not given
+
+    Raises UsageError with a problem for each wrong argument.
     """
     problems = []
     for name, value, kind in arguments:
-        if (value is None and optional) or kind.is_met(value):
+        if (value is None and optional) or kind.accepts(value):
             continue
         message = f"{name}: expected {kind.words}, found {type(value).__name__}"
         problems.append(Problem("bad-option", message, hint=f"such as {name}={kind.example}"))

@@ -1,4 +1,4 @@
-"""A diagram of a solved scene, which notebooks show and files take."""
+"""A diagram of a solved scene, for notebooks and files."""
 
 from __future__ import annotations
 
@@ -8,33 +8,35 @@ from pathlib import Path
 
 from heuncli.app.python.arguments import FILE, check_arguments
 from heuncli.base.errors import Problem, UsageError
-from heuncli.output.drawing.as_file import as_file, form_of
-from heuncli.output.drawing.layout import laid_out
-from heuncli.output.drawing.picture import Picture, svg
-from heuncli.output.figures.courses import Pictured
-from heuncli.output.figures.histories import history
-from heuncli.output.snapshots.asked_units import asked_units
-from heuncli.output.snapshots.measure import check
+from heuncli.output.drawing.as_file import encode_drawing, find_form
+from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.picture import VectorDrawing, to_svg
+from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.histories import make_history
+from heuncli.output.snapshots.asked_units import read_display_units
+from heuncli.output.snapshots.measure import require_known_paths
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.study.ask.study import Study
 
 
 class Diagram:
-    """A diagram as `heun plot` draws it; the last value of a cell of a notebook, it is shown."""
+    """A diagram as `heun plot` draws it; a notebook shows it as the last value of a cell."""
 
-    def __init__(self, picture: Picture) -> None:
+    def __init__(self, picture: VectorDrawing) -> None:
         self._picture = picture
 
     @property
     def svg(self) -> str:
-        """The drawing as a file of SVG: no fonts or scripts from elsewhere."""
-        return svg(self._picture)
+        """The drawing as the text of an SVG file, without external fonts or scripts."""
+        return to_svg(self._picture)
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Write it by the name's end: .svg, or .png or .pdf by matplotlib. Raises UsageError, OSError."""
+        """Write the diagram in the format of the file's ending: .svg, or .png or .pdf by matplotlib. Raises UsageError,
+        OSError.
+        """
         check_arguments(("file", file, FILE), optional=False)
         name = os.fspath(file)
-        Path(name).write_bytes(as_file(self._picture, form_of(name, "save")))
+        Path(name).write_bytes(encode_drawing(self._picture, find_form(name, "save")))
 
     def _repr_svg_(self) -> str:
         return self.svg.partition("?>\n")[2]
@@ -43,11 +45,13 @@ class Diagram:
         return f"<heuncli.Diagram {self._picture.title!r}>"
 
 
-def diagram_of(study: Study, paths: Sequence[str], over: str | None, units: str | None) -> Diagram:
-    """Numbers over time, or over another number. Raises UsageError, NotDrawable, NotOneNumber, SpecError."""
+def make_diagram(study: Study, paths: Sequence[str], x_path: str | None, units: str | None) -> Diagram:
+    """Draw numbers over time, or over the number at `x_path`. Raises UsageError, NotDrawable, NotOneNumber,
+    SpecError.
+    """
     if not paths:
         hint = "such as study.plot('energy.kinetic')"
         raise UsageError(Problem("bad-option", "plot: no path says what is drawn", hint=hint))
-    asked = [MeasureRequest("", path) for path in (*paths, *([] if over is None else [over]))]
-    check(asked, study.spec, "plot")
-    return Diagram(laid_out(history([Pictured("", study)], paths, asked_units("units", units), over)))
+    requests = [MeasureRequest("", path) for path in (*paths, *([] if x_path is None else [x_path]))]
+    require_known_paths(requests, study.spec, "plot")
+    return Diagram(lay_out(make_history([FigureSource("", study)], paths, read_display_units("units", units), x_path)))

@@ -1,4 +1,4 @@
-"""One number of a run, which knows its unit, its error, and when and where it is."""
+"""One number of a run, with its unit, its error, its instant and its position."""
 
 from __future__ import annotations
 
@@ -6,17 +6,20 @@ import math
 
 from heuncli.output.snapshots import measure
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.stated import error_of, unit_of
+from heuncli.study.quantities.stated import find_measure_error, find_unit
 
-ASKED_BY = "measure"
+COMMAND = "measure"
 
 
 class Number(float):
-    """A number of a run: a float, and beside it its unit, error, instant and place.
+    """A number of a run: a float with its unit, error, instant and position.
 
-    unit: SI; error: stated, absolute, nan where the run states none; at: its instant [s], None where it has none;
-    s [m], side and cut: where along a run of cuts. horizon: set where the number is not claimed, and so nan; is_open:
-    where it is nan since the laws of rigid bodies do not give it.
+    unit: SI
+    error: the stated absolute error, nan if the run states none
+    at: its instant [s], or None
+    s: position along a run of cuts [m]; side, cut: the side of a load there, and the number of the cut
+    horizon: the instant [s] from which on nothing is claimed, if that makes the number nan
+    is_open: whether it is nan because the laws of rigid bodies do not determine it
     """
 
     unit: str = ""
@@ -40,16 +43,16 @@ class Number(float):
         return float.__repr__(self)
 
 
-def measured(study: Study, words: str) -> Number:
-    """The number that the words of a measure mean. Raises UsageError, SpecError [unknown-path]."""
-    asked = measure.parse(words, ASKED_BY)
-    measure.check([asked], study.spec, ASKED_BY)
-    peak, horizon = measure.measured(asked, study, ASKED_BY)
-    block = measure.described(asked, study, peak, horizon)
-    found = Number(math.nan if block["value"] is None else block["value"])
-    found.unit, found.at, found.horizon = unit_of(asked.path, study.spec), block["at"], block.get("horizon")
-    found.s, found.side, found.cut = block.get("s"), block.get("side"), block.get("cut")
-    stated = error_of(asked, peak, study)
-    found.error = math.nan if stated is None else float(stated)
-    found.is_open = math.isnan(found) and found.horizon is None and found.at not in study.unknown
-    return found
+def compute_number(study: Study, words: str) -> Number:
+    """Compute the number that the words of a measure describe. Raises UsageError, SpecError [unknown-path]."""
+    request = measure.parse_measure(words, COMMAND)
+    measure.require_known_paths([request], study.spec, COMMAND)
+    peak, horizon = measure.measure_number(request, study, COMMAND)
+    block = measure.describe_measure(request, study, peak, horizon)
+    number = Number(math.nan if block["value"] is None else block["value"])
+    number.unit, number.at, number.horizon = find_unit(request.path, study.spec), block["at"], block.get("horizon")
+    number.s, number.side, number.cut = block.get("s"), block.get("side"), block.get("cut")
+    stated = find_measure_error(request, peak, study)
+    number.error = math.nan if stated is None else float(stated)
+    number.is_open = math.isnan(number) and number.horizon is None and number.at not in study.unknown
+    return number

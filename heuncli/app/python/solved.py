@@ -1,7 +1,7 @@
-"""A solved scene as Python has it: numbers by their paths, measures, tables, frames, diagrams.
+"""The result object of the Python API: signals by path, measures, tables, data frames and diagrams.
 
-Thin: all of it is what the study below answers, in the words and the forms of the command line. What is seldom asked
-for is imported where it is. Impure: keeps what it was asked for.
+A thin layer: the study below computes everything, and names and formats are those of the command line. Rarely used
+modules are imported where they are used. Impure: keeps signals that were requested.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from heuncli.app.python.arguments import (
+    BOOLEAN,
     FILE,
+    INTEGER,
     NUMBER,
     NUMBER_OR_TEXT,
     NUMBERS,
     TEXT,
     TEXTS,
-    TRUTH,
-    WHOLE,
     check_arguments,
 )
-from heuncli.app.python.asked_run import AskedRun, distinct
-from heuncli.app.python.warned import warn
+from heuncli.app.python.asked_run import LockedRun, find_distinct_instants
+from heuncli.app.python.warned import emit_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.study import Study
@@ -42,28 +42,28 @@ if TYPE_CHECKING:
 
 
 class Solved(Mapping[str, "Signal"]):
-    """A solved scene: a mapping from paths of the results, as the JSON has them, to their numbers.
+    """A solved scene: a mapping from paths of the results, as the JSON names them, to their signals.
 
         study["joints.main.force"].values            (n_t, 3) [N]
         study.measure("max abs sections.web.M1")      searched between the samples, with its instant
 
-    Solved by `heuncli.solve`; nothing of it changes afterwards. All is in SI. It may be asked from several threads.
+    `heuncli.solve` returns it; it does not change afterwards. All values are in SI. Several threads may use it.
     """
 
-    def __init__(self, run: AskedRun) -> None:
+    def __init__(self, run: LockedRun) -> None:
         self._run = run
         self._signals: dict[str, Signal] = {}
 
     # -- numbers by their paths
 
     def __getitem__(self, path: str) -> Signal:
-        """The numbers at a path, such as "joints.main.force.z". Raises UnknownPath."""
-        from heuncli.app.python.signals import signal_at
+        """Return the signal at a path, such as "joints.main.force.z". Raises UnknownPath."""
+        from heuncli.app.python.signals import make_signal
 
         if not isinstance(path, str):
-            return signal_at(self._run, path)  # refused there
+            return make_signal(self._run, path)  # raises UnknownPath
         if path not in self._signals:
-            self._signals[path] = signal_at(self._run, path)
+            self._signals[path] = make_signal(self._run, path)
         return self._signals[path]
 
     def __iter__(self) -> Iterator[str]:
@@ -79,16 +79,16 @@ class Solved(Mapping[str, "Signal"]):
         return id(self)
 
     def paths(self, under: str = "") -> list[str]:
-        """The paths of all numbers, or of those under the words with which a path begins: "joints.main"."""
-        from heuncli.app.python.signals import paths_of
+        """List the paths of all numbers, or of those that begin with the words `under`, such as "joints.main"."""
+        from heuncli.app.python.signals import list_paths
 
         check_arguments(("under", under, TEXT), optional=False)
-        return [path for path in paths_of(self.results) if not under or f"{path}.".startswith(f"{under}.")]
+        return [path for path in list_paths(self.results) if not under or f"{path}.".startswith(f"{under}.")]
 
     def _ipython_key_completions_(self) -> list[str]:
         return self.paths()
 
-    # -- what the run tells of itself
+    # -- information on the run
 
     @property
     def title(self) -> str:
@@ -97,28 +97,30 @@ class Solved(Mapping[str, "Signal"]):
 
     @property
     def time(self) -> Array:
-        """The instants at which results are told, (n_t,) [s]. Read-only."""
+        """Instants of the results, (n_t,) [s]. Read-only."""
         return self._run.times
 
     @property
     def status(self) -> str:
-        """How the run ended, in words: "completed", or what stopped it."""
-        told = self.results.status
-        return " ".join(filter(None, (f"{told['code']}:" if told["message"] else told["code"], told["message"])))
+        """How the run ended, in words: "completed", or the reason why it stopped."""
+        status = self.results.status
+        return " ".join(
+            filter(None, (f"{status['code']}:" if status["message"] else status["code"], status["message"]))
+        )
 
     @property
     def horizon(self) -> float | None:
-        """The instant [s] from which on nothing is claimed; None where all is."""
+        """The instant [s] from which on no result is claimed, or None if all are."""
         return self._run.horizon
 
     @property
     def warnings(self) -> list[str]:
-        """What reading and solving warned of, and all that was asked since: sentences, once each."""
+        """Warnings of reading, of solving and of all later requests, each sentence once."""
         return self._run.warnings()
 
     @property
     def model(self) -> dict[str, Any]:
-        """What was solved and why, in words and counts: the block `model` of the JSON."""
+        """The block `model` of the JSON: what was solved and why, in words and counts."""
         model: dict[str, Any] = self.as_dict()["model"]
         return model
 
@@ -129,31 +131,36 @@ class Solved(Mapping[str, "Signal"]):
 
     @property
     def study(self) -> Study:
-        """What answers, below this door: it is heun's own, may change, and is asked by one thread at a time."""
+        """heun's internal study, which computes the results. It may change between versions; only one thread may use it
+        at a time.
+        """
         return self._run.study
 
     @property
     def results(self) -> Results:
-        """The results as heun has them: blocks of arrays."""
+        """heun's internal results: blocks of arrays."""
         return self._run.results
 
-    # -- asking more
+    # -- further results
 
     def measure(self, words: str) -> Number:
-        """One number, as `--measure` takes it: "max abs sections.web.M1", "at 0.5 energy.kinetic", "final PATH".
+        """Return one number, in the words of `--measure`: "max abs sections.web.M1", "at 0.5 energy.kinetic", "final
+        PATH".
 
-        Extremes are those between the samples, too, up to the horizon; nan is open, or not claimed. Raises UsageError.
+        Extremes include those between the samples, up to the horizon. nan means indeterminate, or not claimed. Raises
+        UsageError.
         """
         check_arguments(("words", words, TEXT), optional=False)
         return self._run.measure(words)
 
     def at(self, times: float | Sequence[float] | Array) -> Solved:
-        """The same run with its results told at other instants [s] of it, in ascending; nothing is solved again.
+        """Return the same run with its results at other instants [s] of it, in ascending order; nothing is solved
+        again.
 
-        Raises UsageError for instants outside of the run.
+        Raises UsageError for instants outside the run.
         """
         check_arguments(("times", times, NUMBERS), optional=False)
-        return Solved(self._run.told_at(distinct(times)[1]))
+        return Solved(self._run.resample(find_distinct_instants(times)[1]))
 
     def collective(
         self,
@@ -165,92 +172,110 @@ class Solved(Mapping[str, "Signal"]):
         repeat: int = 1,
         closed: bool = False,
     ) -> Collective:
-        """The load collective of a number over the motion, of a vector of its magnitude, as `--collective` counts it.
+        """Count the load collective of a number over the motion, as `--collective` does; of a vector that of its
+        magnitude.
 
-        slopes: of Wöhler lines, each with its damage-equivalent range in `equivalents`, of so many cycles (None: of one
-        each time the motion is run through); bins: classes of ranges and means; repeat: how often the motion is run
-        through; closed: for ever. Ranges and levels in SI. Raises HeunError for what has no collective.
+        slopes: slopes of Wöhler lines; each gives a damage-equivalent range in `equivalents`
+        cycles: number of cycles of the equivalents; None: one for each repetition of the motion
+        bins: classes of ranges and means
+        repeat: how often the motion is repeated
+        closed: whether it is repeated for ever
+
+        Ranges and levels are in SI. Raises HeunError for a number that has no collective.
         """
-        from heuncli.output.snapshots.collectives import collective
+        from heuncli.output.snapshots.collectives import count_collective
 
-        check_arguments(("path", path, TEXT), ("slopes", slopes, NUMBERS), ("bins", bins, WHOLE), optional=False)
-        check_arguments(("repeat", repeat, WHOLE), ("closed", closed, TRUTH), optional=False)
+        check_arguments(("path", path, TEXT), ("slopes", slopes, NUMBERS), ("bins", bins, INTEGER), optional=False)
+        check_arguments(("repeat", repeat, INTEGER), ("closed", closed, BOOLEAN), optional=False)
         check_arguments(("cycles", cycles, NUMBER))
-        of = tuple(np.atleast_1d(np.asarray(slopes, dtype=np.float64)).tolist())
-        with self._run.asking():
-            return collective(self.study, path, slopes=of, cycles=cycles, bins=bins, repeat=repeat, closed=closed)
+        slope_values = tuple(np.atleast_1d(np.asarray(slopes, dtype=np.float64)).tolist())
+        with self._run.hold_lock():
+            return count_collective(
+                self.study, path, slopes=slope_values, cycles=cycles, bins=bins, repeat=repeat, is_closed=closed
+            )
 
     def load_cases(self, body: str, at: float | str) -> LoadCases:
-        """The self-balanced load cases of a body, as `heun export loads` writes them, in SI and in the body's axes.
+        """Return the self-balanced load cases of a body, as `heun export loads` writes them, in SI and in the body's
+        axes.
 
-        at: instants, as `--at` of that command takes them: 0.31, "first,last", "peak:joints.main.force,impulse:0".
-        Raises HeunError for instants that are none, and for loads that are open.
+        at: instants, as `--at` of that command takes them: 0.31, "first,last", "peak:joints.main.force,impulse:0"
+
+        Raises HeunError for invalid instants, and for indeterminate loads.
         """
-        from heuncli.analyses.load_cases.gathered import gathered
+        from heuncli.analyses.load_cases.gathered import assemble_load_cases
         from heuncli.study.ask.asked_instants import parse
-        from heuncli.study.ask.asked_values import choice
+        from heuncli.study.ask.asked_values import require_choice
 
         check_arguments(("body", body, TEXT), ("at", at, NUMBER_OR_TEXT), optional=False)
-        choice("load_cases", body, list(self.spec.bodies))
-        with self._run.asking():
-            return gathered(self.study, body, parse(str(at)))
+        require_choice("load_cases", body, list(self.spec.bodies))
+        with self._run.hold_lock():
+            return assemble_load_cases(self.study, body, parse(str(at)))
 
-    # -- other forms
+    # -- export
 
     def to_json(self) -> str:
-        """The results as `heun run --format json` writes them."""
+        """Return the results as `heun run --format json` writes them."""
         from heuncli.output.tables.export import to_json
 
         return to_json(self.results)
 
     def to_csv(self) -> str:
-        """The results as `heun run --format csv` writes them."""
+        """Return the results as `heun run --format csv` writes them."""
         from heuncli.output.tables.export import to_csv
-        from heuncli.study.quantities.labels import labels_of
+        from heuncli.study.quantities.labels import make_labels
 
-        return to_csv(self.results, labels_of(self.spec))
+        return to_csv(self.results, make_labels(self.spec))
 
     def as_dict(self) -> dict[str, Any]:
-        """The results as the JSON has them, in lists and numbers; None is open."""
-        found: dict[str, Any] = json.loads(self.to_json())
-        return found
+        """Return the results as the JSON has them, as lists and numbers; None is indeterminate."""
+        data: dict[str, Any] = json.loads(self.to_json())
+        return data
 
     def tables(self, *, units: str | None = None, only: str | Sequence[str] | None = None) -> str:
-        """The tables of `heun run`: with the extremes, searched between the samples; of results `at` instants these.
+        """Return the tables of `heun run`, with extremes searched between the samples; after `at(...)` those at its
+        instants.
 
-        units: "kN,mm,deg,rpm"; only: reports or entries, as of `solve`. Raises UsageError.
+        units: "kN,mm,deg,rpm"
+        only: reports or entries, as in `solve`
+
+        Raises UsageError.
         """
-        from heuncli.app.python.told import text_of
+        from heuncli.app.python.told import format_text
 
         check_arguments(("units", units, TEXT), ("only", only, TEXTS))
-        with self._run.asking():
-            return text_of(self.study, self._run.instants, units, only)
+        with self._run.hold_lock():
+            return format_text(self.study, self._run.instants, units, only)
 
     def frame(self, *paths: str, units: bool = False) -> pd.DataFrame:
-        """Numbers over the instants as a pandas.DataFrame: a column a number, its index `time` [s].
+        """Return numbers over time as a pandas.DataFrame: one column per number, index `time` [s].
 
-        paths: what is in it, vectors by their components; by default all. units: whether names of columns have them;
-        they stand in `frame.attrs["units"]`, and errors in `frame.attrs["errors"]`, too. What is open, or beyond the
-        horizon, is nan. Raises UsageError where pandas is not installed, or a path has no instants.
+        paths: the numbers, vectors by component; default: all
+        units: whether column names contain the units
+
+        Units also stand in `frame.attrs["units"]`, errors in `frame.attrs["errors"]`. nan is indeterminate or beyond
+        the horizon. Raises UsageError if pandas is not installed, or if a path has no instants.
         """
-        from heuncli.app.python.frames import frame_of
+        from heuncli.app.python.frames import make_frame
 
-        check_arguments(("units", units, TRUTH), ("paths", paths, TEXTS), optional=False)
-        return frame_of(self._run, [self[path] for path in paths or self.paths()], units, named=bool(paths))
+        check_arguments(("units", units, BOOLEAN), ("paths", paths, TEXTS), optional=False)
+        return make_frame(self._run, [self[path] for path in paths or self.paths()], units, is_explicit=bool(paths))
 
     def plot(self, *paths: str, over: str | None = None, units: str | None = None) -> Diagram:
-        """Numbers over time, or over another number, as `heun plot SPEC PATH...` draws them: a notebook shows it.
+        """Draw numbers over time, or over another number, as `heun plot SPEC PATH...` does; a notebook shows the
+        diagram.
 
-        units: "kN,mm". Raises HeunError for what cannot be drawn.
+        units: "kN,mm"
+
+        Raises HeunError for what cannot be drawn.
         """
-        from heuncli.app.python.diagrams import diagram_of
+        from heuncli.app.python.diagrams import make_diagram
 
         check_arguments(("paths", paths, TEXTS), ("over", over, TEXT), ("units", units, TEXT))
-        with self._run.asking():
-            return diagram_of(self.study, paths, over, units)
+        with self._run.hold_lock():
+            return make_diagram(self.study, paths, over, units)
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """The results into a file, by its ending: .json or .csv. Raises UsageError, OSError."""
+        """Write the results into a file, in the format of its ending: .json or .csv. Raises UsageError, OSError."""
         from heuncli.app.python.told import write_results
 
         check_arguments(("file", file, FILE), optional=False)
@@ -269,11 +294,11 @@ class Solved(Mapping[str, "Signal"]):
         return f"<heuncli.Solved {self.title!r}: {run}; {self.status}>"
 
     def _repr_html_(self) -> str:
-        """The tables as a part of a page: what a notebook shows."""
-        from heuncli.app.python.told import fragment_of
+        """Return the tables as an HTML fragment, which a notebook shows."""
+        from heuncli.app.python.told import render_html
 
-        with self._run.asking():
-            return fragment_of(self.study, self._run.instants)
+        with self._run.hold_lock():
+            return render_html(self.study, self._run.instants)
 
     def __copy__(self) -> Solved:
         return self
@@ -285,9 +310,9 @@ class Solved(Mapping[str, "Signal"]):
         raise TypeError("a solved scene is not pickled: send to_json(), or the spec, and solve it there")
 
 
-def told(study: Study, at: float | Sequence[float] | None) -> Solved:
-    """A scene that was just solved, at its own instants or at others; its warnings are told."""
-    run = AskedRun(study)
-    warn(run.warnings())
+def make_solved(study: Study, instants: float | Sequence[float] | None) -> Solved:
+    """Wrap a study that was just solved, at its own instants or at others, and emit its warnings."""
+    run = LockedRun(study)
+    emit_warnings(run.warnings())
     solved = Solved(run)
-    return solved if at is None else solved.at(at)
+    return solved if instants is None else solved.at(instants)

@@ -1,6 +1,7 @@
-"""The undriven coordinates of a scene: states displaced along them, accelerations along them, their names.
+"""The undriven coordinates of a scene: displacements of states along them, accelerations along them, their names.
 
-In the order of the layout's answers: three small turns of a ball about the world's axes, one number of any other.
+They have the order of the layout's results: three small rotations of a ball joint about the world's axes, one number
+for any other freedom.
 """
 
 from __future__ import annotations
@@ -10,21 +11,26 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.evaluator import Evaluator, Recovered
-from heuncli.motion.linearisation.displacements import displaced, displacement
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
+from heuncli.motion.linearisation.displacements import displace, find_displacement
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.scene.shapes.rotations import cross
+from heuncli.scene.shapes.rotations import cross_vectors
 
 
 @record
 class Coordinates:
-    """Where n coordinates stand.
+    """The n undriven coordinates and their positions in the layout.
 
-    weights (n,): 1 of a turn, 1 / size of a shift; shifts (n,): which are shifts; answers (n,): their places among the
-    layout's answers; rates (n,): of their rates in the state. balls: places of bodies in the tree, turns: number of the
-    first turn of each; freedoms: the other undriven freedoms, numbers: which coordinate each is.
+    weights (n,): 1 for a rotation, 1 / size for a shift
+    shifts (n,): which are shifts
+    answers (n,): their indices in the layout's results
+    rates (n,): indices of their rates in the state
+    balls: numbers in the tree of bodies on ball joints
+    turns: number of the first rotation of each
+    freedoms: the other undriven freedoms
+    numbers: coordinate of each of these
     """
 
     layout: Layout
@@ -39,145 +45,153 @@ class Coordinates:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of coordinates."""
         return len(self.weights)
 
-    def displaced(self, states: Array, by: Array) -> Array:
-        """States (k, n_state) displaced by small turns and shifts (k, n)."""
-        return displaced(self.layout, states, by)
+    def displace(self, states: Array, displacements: Array) -> Array:
+        """Displace states (k, n_state) by small rotations and shifts (k, n)."""
+        return displace(self.layout, states, displacements)
 
-    def between(self, state: Array, other: Array) -> Array:
-        """The small turns and shifts (n,) that make a state (n_state,) another one."""
-        return displacement(self.layout, state, other)
+    def find_displacement(self, state: Array, other: Array) -> Array:
+        """Return the small rotations and shifts (n,) that turn one state (n_state,) into another one."""
+        return find_displacement(self.layout, state, other)
 
-    def followed(self, by: Array, velocities: Array) -> Array:
-        """How displacements (n,) from a pose change where they have led, at velocities (n,) there.
+    def transport_velocities(self, displacement: Array, velocities: Array) -> Array:
+        """Return the rates of displacements (n,) from a pose, for velocities (n,) at their end.
 
-        A ball's rotation vector r changes by w - r x w / 2 + ..., w its angular velocity (Bortz).
+        The rotation vector r of a ball joint changes by w - r x w / 2 + ..., w its angular velocity (Bortz).
         """
-        found = velocities.copy()
+        rates = velocities.copy()
         for first in self.turns.tolist():
             turn = slice(first, first + 3)
-            found[turn] -= 0.5 * cross(by[turn], velocities[turn])
-        return found
+            rates[turn] -= 0.5 * cross_vectors(displacement[turn], velocities[turn])
+        return rates
 
-    def accelerations(self, at: Recovered) -> Array:
-        """Accelerations of the coordinates, (k, n)."""
-        return self.along(at.bodies["alpha"], at.freedoms["udot"])
+    def accelerations(self, evaluation: Evaluation) -> Array:
+        """Return the accelerations of the coordinates, (k, n)."""
+        return self.collect(evaluation.bodies["alpha"], evaluation.freedoms["udot"])
 
-    def terms(self, at: Recovered) -> Array:
-        """What the accelerations of one instant are the sum of, each cause alone, (n,)."""
-        assert at.causes is not None
-        found = self.along(at.causes.bodies["alpha"][0], at.causes.freedoms["udot"][0])
-        return np.asarray(np.abs(found).sum(axis=0))
+    def acceleration_terms(self, evaluation: Evaluation) -> Array:
+        """Return the sum of the magnitudes of each cause's accelerations at one instant, (n,)."""
+        assert evaluation.causes is not None
+        by_cause = self.collect(evaluation.causes.bodies["alpha"][0], evaluation.causes.freedoms["udot"][0])
+        return np.asarray(np.abs(by_cause).sum(axis=0))
 
-    def along(self, alpha: Array, udot: Array) -> Array:
-        """Angular accelerations of bodies (k, n_b, 3) and accelerations of freedoms (k, n_f) by coordinates, (k, n)."""
-        found = np.zeros((len(alpha), self.count))
+    def collect(self, alpha: Array, udot: Array) -> Array:
+        """Collect angular accelerations of bodies (k, n_b, 3) and accelerations of freedoms (k, n_f) by coordinate, (k,
+        n).
+        """
+        collected = np.zeros((len(alpha), self.count))
         for place, first in zip(self.balls.tolist(), self.turns.tolist(), strict=True):
-            found[:, first : first + 3] = alpha[:, place]
-        found[:, self.numbers] = udot[:, self.freedoms]
-        return found
+            collected[:, first : first + 3] = alpha[:, place]
+        collected[:, self.numbers] = udot[:, self.freedoms]
+        return collected
 
-    def size(self, by: Array) -> float:
-        """The largest of some displacements (n,): of turns in rad, of shifts by the scene's size."""
-        return float(np.abs(by * self.weights).max(initial=0.0))
+    def max_magnitude(self, displacement: Array) -> float:
+        """Return the largest component of a displacement (n,): rotations in rad, shifts relative to the scene's
+        size.
+        """
+        return float(np.abs(displacement * self.weights).max(initial=0.0))
 
-    def owner(self, number: int) -> tuple[str, bool]:
-        """The joint or body of a coordinate, as it is named in the spec, and whether the coordinate is a turn."""
+    def find_owner(self, number: int) -> tuple[str, bool]:
+        """Return the joint or body of a coordinate, as named in the spec, and whether the coordinate is a rotation."""
         layout = self.layout
-        place = int(np.searchsorted(layout.bodies["answer_at"], self.answers[number], side="right")) - 1
-        hang = layout.spanning.hangs[place]
+        place = int(np.searchsorted(layout.bodies["answer_at"], self.result_indices[number], side="right")) - 1
+        link = layout.spanning.links[place]
         turns = not self.shifts[number]
-        if hang.joint >= 0 and not layout.bodies["ball"][place]:
-            return f"joints.{layout.mechanism.joints[hang.joint].name}", turns
-        return f"bodies.{layout.mechanism.bodies[hang.body].name}", turns
+        if link.joint >= 0 and not layout.bodies["ball"][place]:
+            return f"joints.{layout.mechanism.joints[link.joint].name}", turns
+        return f"bodies.{layout.mechanism.bodies[link.body].name}", turns
 
 
-def coordinates_of(layout: Layout) -> Coordinates:
-    """The undriven coordinates of a scene."""
+def make_coordinates(layout: Layout) -> Coordinates:
+    """Make the undriven coordinates of a scene."""
     bodies, freedoms = layout.bodies, layout.tables["freedoms"]
     balls = np.flatnonzero(bodies["ball"])
-    own = np.flatnonzero(freedoms["driven"] == 0)
+    undriven = np.flatnonzero(freedoms["driven"] == 0)
     places = {int(a) + k: (int(r) + k) for a, r in bodies[["answer_at", "rate_at"]][balls].tolist() for k in range(3)}
-    places |= dict(freedoms[["answer_at", "u_at"]][own].tolist())
+    places |= dict(freedoms[["answer_at", "u_at"]][undriven].tolist())
     answers = np.array(sorted(places), dtype=int)
     rates = np.array([places[a] for a in answers.tolist()], dtype=int)
-    numbers = np.searchsorted(answers, freedoms["answer_at"][own])
+    numbers = np.searchsorted(answers, freedoms["answer_at"][undriven])
     shifts = np.zeros(len(answers), dtype=bool)
-    shifts[numbers] = freedoms["kind"][own] == kernel.SHIFT
+    shifts[numbers] = freedoms["kind"][undriven] == kernel.SHIFT
     return Coordinates(
-        layout=layout, shifts=shifts, weights=layout.weights[rates], answers=answers, rates=rates, balls=balls,
-        turns=np.searchsorted(answers, bodies["answer_at"][balls]), freedoms=own,
+        layout=layout, shifts=shifts, weights=layout.weights[rates], result_indices=answers, rates=rates, balls=balls,
+        turns=np.searchsorted(answers, bodies["answer_at"][balls]), freedoms=undriven,
         numbers=numbers,
     )  # fmt: skip
 
 
-def at_rest(evaluator: Evaluator, t: float, states: Array, holding: Array) -> Array:
-    """States (k, n_state) whose coordinates rest: rates of nothing but what drives turn and shift.
+def set_to_rest(evaluator: Evaluator, t: float, states: Array, holding: Array) -> Array:
+    """Return states (k, n_state) whose coordinates rest: the only rates are those of what drives turn and shift.
 
-    The body on a ball turns with what it hangs on.
+    A body on a ball joint turns with its parent.
     """
     layout = evaluator.layout
-    still = states.copy()
+    resting_states = states.copy()
     for group in layout.tables["groups"]:
-        still[:, group["rates"] : group["end"]] = 0.0
-    if turns(layout) and layout.bodies["ball"].any():
-        at = evaluator.recovered(np.full(len(states), t), still, hold_rows=True, holding=holding)
-        turn_along(layout, still, at.bodies, at.freedoms)
-    return still
+        resting_states[:, group["rates"] : group["end"]] = 0.0
+    if has_driven_rotation(layout) and layout.bodies["ball"].any():
+        evaluation = evaluator.evaluate(np.full(len(states), t), resting_states, hold_rows=True, holding=holding)
+        set_parent_rotation(layout, resting_states, evaluation.bodies, evaluation.freedoms)
+    return resting_states
 
 
-def resting(evaluator: Evaluator, t: float, states: Array, holding: Array, *, causes: bool = False) -> Recovered:
-    """The kernel's answers at states whose coordinates rest."""
-    still = at_rest(evaluator, t, states, holding)
-    return evaluator.recovered(np.full(len(states), t), still, hold_rows=True, holding=holding, causes=causes)
+def evaluate_at_rest(
+    evaluator: Evaluator, t: float, states: Array, holding: Array, *, causes: bool = False
+) -> Evaluation:
+    """Evaluate states whose coordinates rest."""
+    resting_states = set_to_rest(evaluator, t, states, holding)
+    return evaluator.evaluate(np.full(len(states), t), resting_states, hold_rows=True, holding=holding, causes=causes)
 
 
-def turns(layout: Layout) -> bool:
-    """Whether a drive turns what hangs on it."""
+def has_driven_rotation(layout: Layout) -> bool:
+    """Return whether a drive turns what is attached to it."""
     freedoms = layout.tables["freedoms"]
     return bool(((freedoms["driven"] == 1) & (freedoms["kind"] != kernel.SHIFT)).any())
 
 
-def turn_along(layout: Layout, states: Array, bodies: Table, freedoms: Table) -> None:
-    """Give bodies on balls the angular velocity of what they hang on, in place; bodies, freedoms: of those states."""
-    omega = angular_velocities(layout, bodies, freedoms)
+def set_parent_rotation(layout: Layout, states: Array, bodies: Table, freedoms: Table) -> None:
+    """Give bodies on ball joints the angular velocity of their parents, in place; bodies, freedoms: results at those
+    states.
+    """
+    omega = driven_angular_velocities(layout, bodies, freedoms)
     for place, body in enumerate(layout.bodies):
         if body["ball"]:
             states[:, body["rate_at"] : body["rate_at"] + 3] = omega[:, place]
 
 
-def angular_velocities(layout: Layout, bodies: Table, freedoms: Table) -> Array:
-    """Of the bodies where drives alone turn them, (k, n_b, 3), tree order."""
-    found = np.zeros(bodies["omega"].shape)
+def driven_angular_velocities(layout: Layout, bodies: Table, freedoms: Table) -> Array:
+    """Return the angular velocities of the bodies where drives alone turn them, (k, n_b, 3), tree order."""
+    omegas = np.zeros(bodies["omega"].shape)
     for place, body in enumerate(layout.bodies):
         parent = int(body["parent"])
         if parent >= 0:
-            found[:, place] = found[:, parent]
-        for k, axis in driven_turns(layout, place):
+            omegas[:, place] = omegas[:, parent]
+        for k, axis in find_driven_rotations(layout, place):
             s = axis if parent < 0 else bodies["R"][:, parent] @ axis
-            found[:, place] += freedoms["u"][:, k, None] * s
-    return found
+            omegas[:, place] += freedoms["u"][:, k, None] * s
+    return omegas
 
 
-def driven_turns(layout: Layout, place: int) -> list[tuple[int, Array]]:
-    """The driven turns of a body on its joint: which freedoms, about which axes of the body it hangs on."""
+def find_driven_rotations(layout: Layout, place: int) -> list[tuple[int, Array]]:
+    """Return the driven rotations of a body on its joint: the freedoms, and their axes in the parent."""
     body, freedoms = layout.bodies[place], layout.tables["freedoms"]
-    own = range(int(body["first_freedom"]), int(body["end_freedom"]))
+    joint_freedoms = range(int(body["first_freedom"]), int(body["end_freedom"]))
     return [
         (k, np.array(freedoms["direction"][k].tolist()))
-        for k in own
+        for k in joint_freedoms
         if freedoms["driven"][k] and freedoms["kind"][k] != kernel.SHIFT
     ]
 
 
-def rounding_of(coordinates: Coordinates, state: Array, number: int) -> Array:
-    """A displacement by the rounding of the coordinates, (n,); of several numbers in several directions."""
+def rounding_displacement(coordinates: Coordinates, state: Array, number: int) -> Array:
+    """Return a displacement by the rounding of the coordinates, (n,); each number gives another direction."""
     n = coordinates.count
-    share = np.modf(0.6180339887498949 * (np.arange(1, n + 1) + number * (n + 1)))[0]
-    direction = np.where(share < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * share)[0] / 2.0)
-    large = np.ones(n)
+    fraction = np.modf(0.6180339887498949 * (np.arange(1, n + 1) + number * (n + 1)))[0]
+    direction = np.where(fraction < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * fraction)[0] / 2.0)
+    scale = np.ones(n)
     q = state[coordinates.layout.tables["freedoms"]["q_at"][coordinates.freedoms]]
-    large[coordinates.numbers] = np.maximum(1.0, np.abs(q) * coordinates.weights[coordinates.numbers])
-    return np.asarray(tolerances.START_ROUNDING * direction * large / coordinates.weights)
+    scale[coordinates.numbers] = np.maximum(1.0, np.abs(q) * coordinates.weights[coordinates.numbers])
+    return np.asarray(tolerances.START_ROUNDING * direction * scale / coordinates.weights)

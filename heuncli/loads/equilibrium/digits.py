@@ -1,9 +1,9 @@
-"""How well a rest pose is known: poses beside it that rounding does not tell from it.
+"""Estimate the error of a rest pose: find neighbouring poses that rounding cannot distinguish from it.
 
-Each is found as the pose itself is, by Newton's step from a pose moved by rounding; or as far off as rounding of the
-sums pushes a soft direction; or as far across the closures as these are left open, which near a dead centre is far; and
-where a direction is held by no stiffness but by what bends (a quartic potential), as far out along it as the
-accelerations are still rounding.
+Each is found like the pose itself, by Newton's step from a pose moved by rounding. Others are as far off as rounding of
+the sums pushes a soft direction; or as far across the closures as these are left open, which is far near a dead centre;
+and, where only bending (a quartic potential) and no stiffness holds a direction, as far along it as the accelerations
+are still rounding.
 """
 
 from __future__ import annotations
@@ -11,94 +11,124 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.loads.equilibrium.coordinates import resting, rounding_of
-from heuncli.loads.equilibrium.search import FoundPose
+from heuncli.loads.equilibrium.coordinates import evaluate_at_rest, rounding_displacement
+from heuncli.loads.equilibrium.search import RestPose
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.linearisation.indifference import SCENES, Indifference
-from heuncli.motion.linearisation.rounded_scenes import rounded_scene
+from heuncli.motion.linearisation.indifference import ROUNDED_SCENES, Indifference
+from heuncli.motion.linearisation.rounded_scenes import make_rounded_scene
 from heuncli.results.results import Array, Mask
 
-BESIDE = 2  # poses moved by rounding
-REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or of the size: how far out directions without stiffness are tried
-THRICE = 3.0  # of Newton's steps: so far away is the rest of what is held by a cubic force alone
-LEVERS = 10.0  # how far a motion turns on a way, at most, of what the way is
-BACK = 6  # of Newton's steps by the slopes of the pose itself: beside it each errs by as much as that is away
+PERTURBED_POSES = 2  # poses moved by rounding
+REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or relative to the size: tried displacements
+CUBIC_FACTOR = 3.0  # times Newton's step: distance to the rest pose under a purely cubic force
+MAX_ROTATION_RATIO = 10.0  # largest rotation of a motion's direction over its displacement
+NEWTON_STEPS = 6  # Newton's steps with the slopes at the pose itself; their error grows with the distance from it
 
 
-def beside(evaluator: Evaluator, found: FoundPose, what: Indifference) -> tuple[list[Array], Mask]:
-    """States (n_state,) of such poses; which motions (g,) without stiffness are held, or pushed, by what bends."""
-    at, own, coordinates = found.pose, found.slopes, found.coordinates
-    by = np.array([rounding_of(coordinates, at.state, k) for k in range(BESIDE)])
-    states = coordinates.displaced(np.repeat(at.state[None, :], BESIDE, axis=0), by)
-    there = resting(evaluator, at.t, states, at.holding)
-    back = np.array([own.newton(a) for a in coordinates.accelerations(there)])
-    again = resting(evaluator, at.t, coordinates.displaced(there.states, back), at.holding)
-    sums = coordinates.displaced(at.state[None, :], rounding_of_sums(found)[None, :])
-    far, bends = bent(evaluator, found, what)
-    open_ = coordinates.displaced(at.state[None, :], left_open(evaluator, found)[None, :])
-    return [*again.states, *resting(evaluator, at.t, sums, at.holding).states, *open_, *far], bends
+def find_neighbour_poses(
+    evaluator: Evaluator, rest_pose: RestPose, indifference: Indifference
+) -> tuple[list[Array], Mask]:
+    """Return the states (n_state,) of such poses, and which motions (g,) without stiffness are held, or pushed, by
+    bending.
+    """
+    pose, slopes, coordinates = rest_pose.pose, rest_pose.slopes, rest_pose.coordinates
+    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
+    states = coordinates.displace(np.repeat(pose.state[None, :], PERTURBED_POSES, axis=0), displacements)
+    perturbed = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+    newton_steps = np.array([slopes.newton_step(a) for a in coordinates.accelerations(perturbed)])
+    corrected = evaluate_at_rest(evaluator, pose.t, coordinates.displace(perturbed.states, newton_steps), pose.holding)
+    sum_states = coordinates.displace(pose.state[None, :], rounding_in_sums(rest_pose)[None, :])
+    far_states, bends = find_bending_poses(evaluator, rest_pose, indifference)
+    open_states = coordinates.displace(pose.state[None, :], closure_displacement(evaluator, rest_pose)[None, :])
+    return [
+        *corrected.states,
+        *evaluate_at_rest(evaluator, pose.t, sum_states, pose.holding).states,
+        *open_states,
+        *far_states,
+    ], bends
 
 
-def left_open(evaluator: Evaluator, found: FoundPose) -> Array:
-    """A displacement (n,) across the closures, each open by what closing leaves, so that it is largest somewhere."""
-    across = found.slopes.law.across
+def closure_displacement(evaluator: Evaluator, rest_pose: RestPose) -> Array:
+    """Return a displacement (n,) across the closures, each open by its closing tolerance, so that it is largest
+    somewhere.
+    """
+    across = rest_pose.slopes.law.opening_directions
     if not across.size:
         return np.zeros(len(across))
-    size = found.coordinates.weights * np.abs(across).sum(axis=1)
+    size = rest_pose.coordinates.weights * np.abs(across).sum(axis=1)
     return np.asarray(tolerances.CLOSED * evaluator.size * (across @ np.sign(across[int(np.argmax(size))])))
 
 
-def rounding_of_sums(found: FoundPose) -> Array:
-    """How far each direction gives way to what rounding leaves of its accelerations' sums, all together, (n,)."""
-    own = found.slopes
-    push = THRICE * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * own.summed
-    give = np.abs(own.directions.softened(push, own.known))
-    way = np.asarray((own.T @ (own.V @ give)).real)
-    return way / max(1.0, found.coordinates.size(way))  # a radian, or the size: nothing is known beyond that
+def rounding_in_sums(rest_pose: RestPose) -> Array:
+    """Return how far all directions together yield to the rounding in the sums of their accelerations, (n,)."""
+    slopes = rest_pose.slopes
+    push = CUBIC_FACTOR * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * slopes.sum_rounding
+    compliance = np.abs(slopes.directions.solve_compliance(push, slopes.eigenvalue_errors))
+    displacement = np.asarray((slopes.T @ (slopes.V @ compliance)).real)
+    return displacement / max(1.0, rest_pose.coordinates.max_magnitude(displacement))  # at most a radian, or the size
 
 
-def bent(evaluator: Evaluator, found: FoundPose, what: Indifference) -> tuple[list[Array], Mask]:
-    """The farthest poses along motions without stiffness at which nothing pushes, where it does farther out.
+def find_bending_poses(
+    evaluator: Evaluator, rest_pose: RestPose, indifference: Indifference
+) -> tuple[list[Array], Mask]:
+    """Return the farthest poses along motions without stiffness at which nothing pushes, where something does farther
+    out.
 
-    And in which motions (g,) it does: by more than in scenes that rounding does not tell from this one.
+    Also returns in which motions (g,) it does: by more than in scenes that rounding cannot distinguish from this one.
     """
-    states, shapes = [], what.free
+    states, shapes = [], indifference.free_motions
     bends = np.zeros(shapes.shape[1], dtype=bool)
-    others = [Runner(rounded_scene(evaluator.layout, number)) for number in range(SCENES)] if len(bends) else []
+    others = (
+        [Runner(make_rounded_scene(evaluator.layout, number)) for number in range(ROUNDED_SCENES)] if len(bends) else []
+    )
     for k, shape in enumerate(shapes.T):
-        size = found.coordinates.size(shape)
+        size = rest_pose.coordinates.max_magnitude(shape)
         for sign in (1.0, -1.0) if size > 0.0 else ():
-            out, a = beyond(evaluator, found, sign * REACHES[:, None] * shape / size)
-            pushes = [along(found, shapes, b) for b in (a, *(accelerations(other, found, out) for other in others))]
-            unsure = tolerances.HELD * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
-            # a push along what is held shows in them by as much as the motion has turned there
-            turned = LEVERS * REACHES[:, None] * (np.abs(a) @ np.abs(found.slopes.law.mass) @ np.abs(shapes))
-            seen = np.flatnonzero((np.abs(pushes[0]) > unsure + turned).any(axis=1))
-            if len(seen):
-                states.append(out[max(seen[0] - 1, 0)])
+            displaced_states, accelerations_there = relax_displaced(
+                evaluator, rest_pose, sign * REACHES[:, None] * shape / size
+            )
+            pushes = [
+                project_on_motions(rest_pose, shapes, b)
+                for b in (
+                    accelerations_there,
+                    *(rest_accelerations(other, rest_pose, displaced_states) for other in others),
+                )
+            ]
+            uncertainty = tolerances.HELD * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
+            # the rotation of the motion's direction adds a part of the push along held directions
+            rotation_effect = (
+                MAX_ROTATION_RATIO
+                * REACHES[:, None]
+                * (np.abs(accelerations_there) @ np.abs(rest_pose.slopes.law.mass) @ np.abs(shapes))
+            )
+            significant = np.flatnonzero((np.abs(pushes[0]) > uncertainty + rotation_effect).any(axis=1))
+            if len(significant):
+                states.append(displaced_states[max(significant[0] - 1, 0)])
                 bends[k] = True
     return states, bends
 
 
-def along(found: FoundPose, shapes: Array, accelerations: Array) -> Array:
-    """What accelerations (k, n) push along motions (n, g), (k, g)."""
-    return np.asarray(accelerations @ found.slopes.law.mass @ shapes)
+def project_on_motions(rest_pose: RestPose, shapes: Array, accelerations: Array) -> Array:
+    """Return the components of accelerations (k, n) along motions (n, g), (k, g)."""
+    return np.asarray(accelerations @ rest_pose.slopes.law.mass @ shapes)
 
 
-def accelerations(evaluator: Evaluator, found: FoundPose, states: Array) -> Array:
-    """Those of states at rest, (k, n)."""
-    return found.coordinates.accelerations(resting(evaluator, found.pose.t, states, found.pose.holding))
+def rest_accelerations(evaluator: Evaluator, rest_pose: RestPose, states: Array) -> Array:
+    """Return the accelerations of states at rest, (k, n)."""
+    return rest_pose.coordinates.accelerations(
+        evaluate_at_rest(evaluator, rest_pose.pose.t, states, rest_pose.pose.holding)
+    )
 
 
-def beyond(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, Array]:
-    """States displaced by ways (k, n) at which all that is held rests, and the accelerations there, (k, n)."""
-    at, own, coordinates = found.pose, found.slopes, found.coordinates
-    states = coordinates.displaced(np.repeat(at.state[None, :], len(way), axis=0), way)
-    for _ in range(BACK):
-        there = resting(evaluator, at.t, states, at.holding)
-        states = coordinates.displaced(
-            there.states, np.array([own.newton(a) for a in coordinates.accelerations(there)])
+def relax_displaced(evaluator: Evaluator, rest_pose: RestPose, displacements: Array) -> tuple[Array, Array]:
+    """Displace the pose by (k, n) and let all that is held relax; return the states and their accelerations, (k, n)."""
+    pose, slopes, coordinates = rest_pose.pose, rest_pose.slopes, rest_pose.coordinates
+    states = coordinates.displace(np.repeat(pose.state[None, :], len(displacements), axis=0), displacements)
+    for _ in range(NEWTON_STEPS):
+        evaluation = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+        states = coordinates.displace(
+            evaluation.states, np.array([slopes.newton_step(a) for a in coordinates.accelerations(evaluation)])
         )
-    there = resting(evaluator, at.t, states, at.holding)
-    return there.states, coordinates.accelerations(there)
+    evaluation = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+    return evaluation.states, coordinates.accelerations(evaluation)

@@ -1,10 +1,12 @@
-"""A rest pose whose search is checked as a motion is: a ten times finer one has to end there, else a finer one still.
+"""Verify an equilibrium by searching for it again, ten times finer, until two searches agree.
 
-Where nothing is indifferent both end in the same pose to its digits, or elsewhere. What nothing holds is where the way
-left it: there two are apart by the error of the coarser one, which bounds that of the finer. By accident both may err
-alike (in one scene of some thousands): so a third is made there, and a tenth of how far the first two are apart counts,
-too. Two searches that go on to different poses pass a ridge between them. Where the finest ones still do, the way
-depends on less than they tell.
+`RestSearch` relaxes the mechanism along a heavily damped motion, so its end point carries the error of the path. Where
+nothing is indifferent, two searches end in the same pose to its digits, or elsewhere. Along an indifferent direction
+(zero stiffness), two searches whose tolerances differ by ten end at points whose distance is the error of the coarser
+one, which bounds that of the finer one. By accident both may err alike (in one scene of some thousands), so a third
+search is made there, and a tenth of the distance of the first two counts, too. Two searches that end in different
+equilibria pass a ridge between them. If the finest two still do, the path depends on less than they resolve, and both
+are reported.
 """
 
 from __future__ import annotations
@@ -14,119 +16,150 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.records import record
-from heuncli.loads.equilibrium.coordinates import resting
-from heuncli.loads.equilibrium.search import FoundPose, RestSearch
+from heuncli.loads.equilibrium.coordinates import evaluate_at_rest
+from heuncli.loads.equilibrium.search import RestPose, RestSearch
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
-ACROSS = 10.0 ** np.arange(-7.0, -1.0)  # rad, or of the size: so far beside a way one looks for another
-SEARCHES = 4  # each ten times finer than the one before
-FEWEST_OF_THE_LOOSE = 2  # finer ones than the first, where something is indifferent
+PERTURBATIONS = 10.0 ** np.arange(
+    -7.0, -1.0
+)  # rad, or relative to the size: distances from a path at which others are tried
+MAX_SEARCHES = 4  # each ten times finer than the one before
+MIN_INDIFFERENT_SEARCHES = 2  # additional ones, where a direction is indifferent
 
 
 @record
-class CheckedPose:
-    """What the finest search found; way (n,): to where the one before ended; elsewhere: another pose to which the start
-    may lead as well; steps and evaluations of all."""
+class VerifiedPose:
+    """The equilibrium of the finest search.
 
-    found: FoundPose
+    displacement (n,): to the end of the search before
+    alternative: another equilibrium to which the same start may lead, or None
+    steps, evaluations: totals over all searches
+    """
+
+    found: RestPose
     way: Array
-    elsewhere: FoundPose | None
+    elsewhere: RestPose | None
     steps: int
     evaluations: int
 
 
-def checked(scene: PreparedScene, evaluator: Evaluator, t: float) -> CheckedPose:
-    """The rest pose that the start leads to. Raises SolveError [no-rest-pose]."""
-    all_found: list[FoundPose] = []
-    ways: list[Array] = []
-    for number in range(SEARCHES):
-        off = tolerances.REST_BENT * tolerances.REST_FINER**number
-        new = RestSearch(scene, evaluator, t, off).found()
+def find_verified_pose(scene: PreparedScene, evaluator: Evaluator, t: float) -> VerifiedPose:
+    """Find the rest pose that the start leads to. Raises SolveError [no-rest-pose]."""
+    all_found: list[RestPose] = []
+    displacements: list[Array] = []
+    for number in range(MAX_SEARCHES):
+        tolerance = tolerances.REST_BENT * tolerances.REST_FINER**number
+        new = RestSearch(scene, evaluator, t, tolerance).find()
         all_found.append(new)
         if new.steps == 0:
-            return told(all_found, np.zeros(new.coordinates.count), None)
+            return make_verified_pose(all_found, np.zeros(new.coordinates.count), None)
         if number == 0:
             continue
-        ways.append(new.coordinates.between(new.pose.state, all_found[-2].pose.state))
-        held, loose = parts(new, ways[-1])
-        same, apart = is_same(new, held, loose), new.coordinates.size(loose)
-        enough = number >= FEWEST_OF_THE_LOOSE or not has_loose(new)
-        if same and enough and is_certain(new) and apart <= tolerances.REST_WAY:
+        displacements.append(new.coordinates.find_displacement(new.pose.state, all_found[-2].pose.state))
+        stiff_part, indifferent_part = split_displacement(new, displacements[-1])
+        agrees, distance = (
+            is_same_pose(new, stiff_part, indifferent_part),
+            new.coordinates.max_magnitude(indifferent_part),
+        )
+        has_enough_searches = number >= MIN_INDIFFERENT_SEARCHES or not has_indifferent_direction(new)
+        if agrees and has_enough_searches and is_certain(new) and distance <= tolerances.REST_WAY:
             break
-    other = None if same else all_found[-2]
-    if other is None and not is_certain(new):
-        other = beyond_the_ridge(scene, evaluator, t, new)
-    return told(all_found, error_of(new, ways) if same else np.zeros(len(ways[-1])), other)
+    alternative = None if agrees else all_found[-2]
+    if alternative is None and not is_certain(new):
+        alternative = find_neighbour_pose(scene, evaluator, t, new)
+    return make_verified_pose(
+        all_found, estimate_error(new, displacements) if agrees else np.zeros(len(displacements[-1])), alternative
+    )
 
 
-def error_of(last: FoundPose, ways: list[Array]) -> Array:
-    """How far the last search may be off, (n,): the way to the one before, or a share of the way before that one."""
-    shares = [way * tolerances.REST_FINER**back for back, way in enumerate(reversed(ways[-2:]))]
-    return max(shares, key=last.coordinates.size)
+def estimate_error(last: RestPose, displacements: list[Array]) -> Array:
+    """Estimate the error of the last search, (n,): the distance to the one before, or a share of the distance before
+    that.
+    """
+    shares = [
+        displacement * tolerances.REST_FINER**steps_back
+        for steps_back, displacement in enumerate(reversed(displacements[-2:]))
+    ]
+    return max(shares, key=last.coordinates.max_magnitude)
 
 
-def left_by_the_way(evaluator: Evaluator, found: FoundPose, way: Array) -> tuple[Array, ...]:
-    """The states displaced by a way (n,) to another search's pose, either way, with what is held at rest there."""
-    if not way.any():
+def perturbed_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Array) -> tuple[Array, ...]:
+    """Return the states displaced by (n,) towards another search's pose, in both directions, with what is held at rest
+    there.
+    """
+    if not displacement.any():
         return ()
-    at, coordinates = found.pose, found.coordinates
-    states = coordinates.displaced(np.repeat(at.state[None, :], 2, axis=0), np.array([way, -way]))
-    there = resting(evaluator, at.t, states, at.holding)
-    back = np.array([found.slopes.newton(a) for a in coordinates.accelerations(there)])
-    return tuple(resting(evaluator, at.t, coordinates.displaced(there.states, back), at.holding).states)
+    pose, coordinates = rest_pose.pose, rest_pose.coordinates
+    states = coordinates.displace(np.repeat(pose.state[None, :], 2, axis=0), np.array([displacement, -displacement]))
+    perturbed = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+    newton_steps = np.array([rest_pose.slopes.newton_step(a) for a in coordinates.accelerations(perturbed)])
+    return tuple(
+        evaluate_at_rest(evaluator, pose.t, coordinates.displace(perturbed.states, newton_steps), pose.holding).states
+    )
 
 
-def is_certain(found: FoundPose) -> bool:
-    """Whether the way has kept away from ridges by more than it is off; what is told unstable stands on one."""
-    values, known = found.slopes.eigenvalues, found.slopes.known
-    return bool(found.doubt <= tolerances.REST_DOUBT or (values.real > known).any())
+def is_certain(rest_pose: RestPose) -> bool:
+    """Return whether the path stayed farther from ridges than its error; an unstable pose is on a ridge itself."""
+    values, eigenvalue_errors = rest_pose.slopes.eigenvalues, rest_pose.slopes.eigenvalue_errors
+    return bool(rest_pose.doubt <= tolerances.REST_DOUBT or (values.real > eigenvalue_errors).any())
 
 
-def beyond_the_ridge(scene: PreparedScene, evaluator: Evaluator, t: float, found: FoundPose) -> FoundPose | None:
-    """Where a way goes on that is beside the one found where that is slowest; None: to the same pose."""
-    astray, size = found.turn.astray, found.coordinates.size(found.turn.astray)
-    for far in ACROSS if size > 0.0 else ():
+def find_neighbour_pose(scene: PreparedScene, evaluator: Evaluator, t: float, rest_pose: RestPose) -> RestPose | None:
+    """Search again from both sides of the point where the path was slowest.
+
+    Returns the first rest pose that differs from the one found, or None if all searches return to it.
+    """
+    deviation, size = rest_pose.slowest.deviation, rest_pose.coordinates.max_magnitude(rest_pose.slowest.deviation)
+    for distance in PERTURBATIONS if size > 0.0 else ():
         for sign in (1.0, -1.0):
-            start = found.coordinates.displaced(found.turn.state[None, :], sign * far / size * astray[None, :])[0]
+            start = rest_pose.coordinates.displace(
+                rest_pose.slowest.state[None, :], sign * distance / size * deviation[None, :]
+            )[0]
             try:
-                other = RestSearch(scene, evaluator, t, tolerances.REST_BENT, start).found()
+                other = RestSearch(scene, evaluator, t, tolerances.REST_BENT, start).find()
             except SolveError:
                 continue
-            way = found.coordinates.between(found.pose.state, other.pose.state)
-            if not is_same(found, *parts(found, way)):
+            displacement = rest_pose.coordinates.find_displacement(rest_pose.pose.state, other.pose.state)
+            if not is_same_pose(rest_pose, *split_displacement(rest_pose, displacement)):
                 return other
     return None
 
 
-def told(all_found: list[FoundPose], way: Array, elsewhere: FoundPose | None) -> CheckedPose:
-    """What the last search found, and what all took."""
+def make_verified_pose(all_found: list[RestPose], displacement: Array, alternative: RestPose | None) -> VerifiedPose:
+    """Combine the result of the last search with the totals of all."""
     steps, evaluations = sum(found.steps for found in all_found), sum(found.evaluations for found in all_found)
-    return CheckedPose(all_found[-1], way, elsewhere, steps, evaluations)
+    return VerifiedPose(all_found[-1], displacement, alternative, steps, evaluations)
 
 
-def parts(found: FoundPose, way: Array) -> tuple[Array, Array]:
-    """Of a displacement (n,) from a rest pose, what leads along all that is held, and along what is indifferent.
+def split_displacement(rest_pose: RestPose, displacement: Array) -> tuple[Array, Array]:
+    """Split a displacement (n,) from a rest pose into its parts along stiff and along indifferent directions.
 
-    Spins without inertia are neither.
+    Massless spins are in neither.
     """
-    own = found.slopes
-    z, idle = own.inverse @ (own.back @ way), np.isinf(own.known)
-    loose, spun = ((own.T @ (own.V @ np.where(which, z, 0.0))).real for which in (~own.decided & ~idle, idle))
-    return way - loose - spun, loose
+    slopes = rest_pose.slopes
+    z, is_massless = slopes.inverse @ (slopes.T_inverse @ displacement), np.isinf(slopes.eigenvalue_errors)
+    indifferent_part, massless_part = (
+        (slopes.T @ (slopes.V @ np.where(is_selected, z, 0.0))).real
+        for is_selected in (~slopes.is_decided & ~is_massless, is_massless)
+    )
+    return displacement - indifferent_part - massless_part, indifferent_part
 
 
-def has_loose(found: FoundPose) -> bool:
-    """Whether something is indifferent, spins without inertia aside."""
-    return bool((~found.slopes.decided & ~np.isinf(found.slopes.known)).any())
+def has_indifferent_direction(rest_pose: RestPose) -> bool:
+    """Return whether a direction is indifferent, massless spins aside."""
+    return bool((~rest_pose.slopes.is_decided & ~np.isinf(rest_pose.slopes.eigenvalue_errors)).any())
 
 
-def is_same(found: FoundPose, held: Array, loose: Array) -> bool:
-    """Whether two searches ended in one pose, or along what is indifferent beside each other."""
-    own, size = found.slopes, found.coordinates.size
-    give = np.abs(own.directions.softened(own.noise, own.known))
-    soft = size(np.abs(own.T) @ (np.abs(own.V) @ give))
-    near = size(loose)
-    # poses beside each other along what nothing holds are as far apart along the rest as that bends, or less
-    return size(held) <= max(tolerances.REST_SAME, soft, near) and near <= tolerances.REST_BESIDE
+def is_same_pose(rest_pose: RestPose, stiff_part: Array, indifferent_part: Array) -> bool:
+    """Return whether two searches ended in one pose, or close to each other along indifferent directions."""
+    slopes, size = rest_pose.slopes, rest_pose.coordinates.max_magnitude
+    compliance = np.abs(slopes.directions.solve_compliance(slopes.noise, slopes.eigenvalue_errors))
+    soft_size = size(np.abs(slopes.T) @ (np.abs(slopes.V) @ compliance))
+    indifferent_size = size(indifferent_part)
+    # poses that differ along indifferent directions differ in the others by their curvature at most
+    return (
+        size(stiff_part) <= max(tolerances.REST_SAME, soft_size, indifferent_size)
+        and indifferent_size <= tolerances.REST_BESIDE
+    )

@@ -1,4 +1,4 @@
-"""A pose at which all coordinates rest, with what would accelerate them there, and the contacts that bear."""
+"""A pose at which all coordinates rest, with its remaining accelerations and the contacts that bear."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.base.records import record
-from heuncli.loads.equilibrium.coordinates import Coordinates, resting
-from heuncli.motion.integration.evaluator import Evaluator, Recovered
+from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.results.results import Array
 
 if TYPE_CHECKING:
@@ -17,54 +17,55 @@ if TYPE_CHECKING:
 
 @record
 class Pose:
-    """A settled state (n_state,) at rest, the kernel's answers there, accelerations (n,), closed contacts (n_c,)."""
+    """A projected state (n_state,) at rest, the results there, accelerations (n,), closed contacts (n_c,)."""
 
     t: float
     state: Array
-    recovered: Recovered
+    recovered: Evaluation
     accelerations: Array
     holding: Array
 
     @property
-    def is_sound(self) -> bool:
-        """Whether there are accelerations, of coordinates that close."""
-        return bool(np.isfinite(self.accelerations).all() and np.isfinite(self.recovered.gap).all())
+    def is_finite(self) -> bool:
+        """Whether the accelerations and the closure gaps are finite."""
+        return bool(np.isfinite(self.accelerations).all() and np.isfinite(self.evaluation.gap).all())
 
 
-def pose_at(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array, holding: Array) -> Pose:
-    """The pose of a state whose rates are let go; holding: the contacts that are closed."""
-    at = resting(evaluator, t, state[None, :], holding)
-    return Pose(t, at.states[0], at, coordinates.accelerations(at)[0], holding)
+def make_pose(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array, holding: Array) -> Pose:
+    """Make the pose of a state without its rates; holding: the closed contacts."""
+    evaluation = evaluate_at_rest(evaluator, t, state[None, :], holding)
+    return Pose(t, evaluation.states[0], evaluation, coordinates.accelerations(evaluation)[0], holding)
 
 
-def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array) -> Pose:
-    """The pose at a state, its contacts closed where they touch and bear, open elsewhere.
+def make_bearing_pose(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Array) -> Pose:
+    """Make the pose at a state with contacts closed where they touch and bear, open elsewhere.
 
-    What others keep closed bears nothing: of two ropes that hold a mast between them one does, by where it is pushed.
+    A contact that others keep closed bears nothing: of two ropes that hold a mast between them, one bears, depending on
+    where the mast is pushed.
     """
-    none = evaluator.layout.all_open
-    if not len(none):
-        return pose_at(evaluator, coordinates, t, state, none)
-    from heuncli.motion.integration.contacts.contact_events import held_at  # few scenes have them
-    from heuncli.motion.integration.contacts.touching import LEANS
+    all_open = evaluator.layout.open_contacts
+    if not len(all_open):
+        return make_pose(evaluator, coordinates, t, state, all_open)
+    from heuncli.motion.integration.contacts.contact_events import find_held_contacts  # few scenes have them
+    from heuncli.motion.integration.contacts.touching import CLOSED_BY_OTHERS
 
-    still = pose_at(evaluator, coordinates, t, state, none).state
-    holding, own = held_at(evaluator, t, still), slice(len(evaluator.layout.contacts))
-    holding[own][holding[own] == LEANS] = 0.0
-    return pose_at(evaluator, coordinates, t, state, holding)
-
-
-def opening(contact: Contact, at: Pose) -> float:
-    """How far a contact is open [m or rad]."""
-    return -contact.sense * float(at.recovered.rows["gap"][0, contact.row])
+    open_state = make_pose(evaluator, coordinates, t, state, all_open).state
+    holding, contacts = find_held_contacts(evaluator, t, open_state), slice(len(evaluator.layout.contacts))
+    holding[contacts][holding[contacts] == CLOSED_BY_OTHERS] = 0.0
+    return make_pose(evaluator, coordinates, t, state, holding)
 
 
-def carried(contact: Contact, at: Pose) -> float:
-    """What a closed contact puts on what it keeps from passing [N or N m]; one that would have to pull: negative."""
-    return -contact.sense * float(at.recovered.rows["multiplier"][0, contact.row])
+def contact_opening(contact: Contact, pose: Pose) -> float:
+    """Return how far a contact is open [m or rad]."""
+    return -contact.sense * float(pose.evaluation.rows["gap"][0, contact.row])
 
 
-def dependent(at: Pose) -> int:
-    """How many of the closed rows depend on the others."""
-    rows = at.recovered.rows
+def contact_force(contact: Contact, pose: Pose) -> float:
+    """Return the load of a closed contact [N or N m]; negative if it would have to pull."""
+    return -contact.sense * float(pose.evaluation.rows["multiplier"][0, contact.row])
+
+
+def count_dependent_rows(pose: Pose) -> int:
+    """Count the closed rows that depend on others."""
+    rows = pose.evaluation.rows
     return int(np.count_nonzero(rows["closed"][0])) - int(np.count_nonzero(rows["chosen"][0]))

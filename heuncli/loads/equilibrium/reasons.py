@@ -1,4 +1,4 @@
-"""Why a scene has no rest pose, in the words of an error."""
+"""Explain in the words of an error why a scene has no rest pose."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import numpy as np
 from heuncli.base.errors import Problem
 from heuncli.loads.equilibrium.coordinates import Coordinates
 from heuncli.loads.equilibrium.pose import Pose
-from heuncli.loads.kinetostatics.bodies import body_states
-from heuncli.multibody.mechanism.model import ThreadLoad, path_of_load
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.multibody.mechanism.model import ThreadLoad, load_path
 from heuncli.results.results import Array
 
 CODE = "no-rest-pose"
@@ -16,79 +16,89 @@ MOST_NAMES = 3
 HOLDS = "hold it by a joint, a spring or a stop, or leave it out"
 
 
-def no_rest(message: str, hint: str) -> Problem:
-    """A problem of this kind."""
+def no_rest_problem(message: str, hint: str) -> Problem:
+    """Make a problem of this kind."""
     return Problem(CODE, f"no rest pose: {message}", hint=hint)
 
 
-def run_away(coordinates: Coordinates, passed: Array, far: Array) -> Problem:
-    """The problem of coordinates that go on without end; passed (n,): how far they came; far (n,): against the rest."""
+def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Array) -> Problem:
+    """Make the problem of coordinates that move without end.
+
+    displacement (n,): how far they came
+    distances (n,): relative to the limits
+    """
     gravity = coordinates.layout.mechanism.gravity
     sentences: dict[str, None] = {}
-    for k in np.flatnonzero(far >= 0.5 * far.max()).tolist():
-        name, turns = coordinates.owner(k)
+    for k in np.flatnonzero(distances >= 0.5 * distances.max()).tolist():
+        name, turns = coordinates.find_owner(k)
         if turns:
             sentences[f"{name} turns on and on"] = None
         elif name.startswith("bodies."):
-            falls = passed[free_shifts(coordinates, k)] @ gravity > 0.0
+            falls = displacement[find_free_shifts(coordinates, k)] @ gravity > 0.0
             sentences[f"{name} {'falls' if falls else 'moves on and on'}"] = None
         else:
             sentences[f"{name} slides on and on"] = None
-    told = list(sentences)
-    more = f" and {len(told) - MOST_NAMES} more" if len(told) > MOST_NAMES else ""
-    rubs = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
-    hint = f"{HOLDS}; a self-locking thread creeps, and holds nothing at rest" if rubs else HOLDS
-    return no_rest(f"{', '.join(told[:MOST_NAMES])}{more}: nothing holds it", hint)
+    clauses = list(sentences)
+    more = f" and {len(clauses) - MOST_NAMES} more" if len(clauses) > MOST_NAMES else ""
+    has_thread_friction = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
+    hint = f"{HOLDS}; a self-locking thread creeps, and holds nothing at rest" if has_thread_friction else HOLDS
+    return no_rest_problem(f"{', '.join(clauses[:MOST_NAMES])}{more}: nothing holds it", hint)
 
 
-def free_shifts(coordinates: Coordinates, number: int) -> Array:
-    """The numbers of the three shifts of a body that nothing carries, one of which this is; else of that one thrice."""
-    name, _ = coordinates.owner(number)
-    own = [k for k in range(coordinates.count) if coordinates.owner(k)[0] == name and coordinates.shifts[k]]
-    return np.array(own if len(own) == 3 else [number] * 3)
+def find_free_shifts(coordinates: Coordinates, number: int) -> Array:
+    """Return the numbers of the three shifts of a free body, one of which this is; otherwise three times the given
+    one.
+    """
+    name, _ = coordinates.find_owner(number)
+    body_shifts = [
+        k for k in range(coordinates.count) if coordinates.find_owner(k)[0] == name and coordinates.shifts[k]
+    ]
+    return np.array(body_shifts if len(body_shifts) == 3 else [number] * 3)
 
 
-def endless(coordinates: Coordinates, at: Pose, steps: int) -> Problem:
-    """The problem of a search that does not come to an end: where it was, and the largest force left."""
+def endless_search_problem(coordinates: Coordinates, pose: Pose, steps: int) -> Problem:
+    """Make the problem of a search that does not end: where it was, and the largest remaining force."""
     layout = coordinates.layout
-    states = body_states(layout, at.recovered)
+    states = make_body_states(layout, pose.evaluation)
     mass = np.array([body.mass for body in layout.mechanism.bodies])
-    left = mass * np.sqrt(np.sum(states.a_centre[0] ** 2, axis=1))
-    k = int(np.argmax(left))
+    remaining_forces = mass * np.sqrt(np.sum(states.a_centre[0] ** 2, axis=1))
+    k = int(np.argmax(remaining_forces))
     x, y, z = states.centre[0, k]
     name = layout.mechanism.bodies[k].name
     message = (
         f"the search did not end in {steps} steps; it was where the centre of bodies.{name} is at "
-        f"({x:.6g}, {y:.6g}, {z:.6g}) m, with {left[k]:.3g} N left there"
+        f"({x:.6g}, {y:.6g}, {z:.6g}) m, with {remaining_forces[k]:.3g} N left there"
     )
     hint = "loads that jump where they should hold (sign, step)? start nearer to the pose, or run a motion with dampers"
-    return no_rest(message, hint)
+    return no_rest_problem(message, hint)
 
 
-def jumps(coordinates: Coordinates, at: Pose, shape: Array) -> Problem:
-    """The problem of loads that push to where they change their sign at a jump; shape (n,): what they move."""
-    name, _ = coordinates.owner(int(np.argmax(np.abs(shape) * coordinates.weights)))
-    left = float(np.abs(at.accelerations * coordinates.weights).max())
+def jumping_load_problem(coordinates: Coordinates, pose: Pose, shape: Array) -> Problem:
+    """Make the problem of loads that push towards a jump where they change sign; shape (n,): the motion that they
+    drive.
+    """
+    name, _ = coordinates.find_owner(int(np.argmax(np.abs(shape) * coordinates.weights)))
+    remaining = float(np.abs(pose.accelerations * coordinates.weights).max())
     message = f"{name} is driven to where a load jumps, from both sides; nothing holds it there by itself"
-    hint = f"give the jump a width, tanh(x/0.001) in place of sign(x); {left:.3g} 1/s² is left there"
-    return no_rest(message, hint)
+    hint = f"give the jump a width, tanh(x/0.001) in place of sign(x); {remaining:.3g} 1/s² is left there"
+    return no_rest_problem(message, hint)
 
 
-def singular(coordinates: Coordinates, at: Pose) -> Problem:
-    """The problem of a way that ends in a singular pose: what moves there moves on in more than one way."""
-    layout, rows = coordinates.layout, at.recovered.rows
+def singular_pose_problem(coordinates: Coordinates, pose: Pose) -> Problem:
+    """Make the problem of a path that ends in a singular position, from which several motions are possible."""
+    layout, rows = coordinates.layout, pose.evaluation.rows
     left_out = [r for r in range(len(layout.rows)) if rows["closed"][0, r] > rows["chosen"][0, r]]
-    names = dict.fromkeys(layout.mechanism.owner(layout.rows[r]) for r in left_out)
+    names = dict.fromkeys(layout.mechanism.owner_path(layout.rows[r]) for r in left_out)
     through = f" through {' and '.join(names)}" if names else ""
     message = f"the way there ends where the closed chain{through} is stretched, folded or flat: a singular pose"
-    return no_rest(message, "from there it may go on in more than one way: limit it by a stop before that pose")
+    return no_rest_problem(message, "from there it may go on in more than one way: limit it by a stop before that pose")
 
 
-def no_value(coordinates: Coordinates, change: Array) -> Problem:
-    """The problem of loads without a value, or a slope, where the search has come; change (k, f): beside the pose."""
+def no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
+    """Make the problem of loads without a value, or a slope, where the search is; change (k, f): near the pose."""
     what = "value" if not np.isfinite(change).all() else "slope"
     layout = coordinates.layout
-    loads = [path_of_load(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
+    loads = [load_path(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
     which = f" ({', '.join(loads[:MOST_NAMES])})" if loads else ""
     message = f"the search came to where a load{which} has no {what}: a root, a logarithm, points that coincide"
-    return no_rest(message, "start nearer to the pose, or give the load a value on both sides")
+    return no_rest_problem(message, "start nearer to the pose, or give the load a value on both sides")

@@ -1,12 +1,13 @@
-"""The rest pose that a heavily damped motion from the start comes to.
+"""Search for the rest pose that a heavily damped motion from the start reaches.
 
     dq/ds = a(q, rates 0)
-is that motion: damped in proportion to its mass a scene goes as slowly as one likes along the accelerations it would
-have at rest. A step follows the linear law about its pose exactly (slopes.py), stiff directions to their end and soft
-ones as far as s goes, with what that law leaves out to third order (way.py); it counts if that is little of it, else a
-shorter one does. Where all directions are near their end s grows without bound, and the step is Newton's. An unstable
-direction that nothing pushes is left alone, as that motion leaves it alone. Contacts close where their gap closes, open
-where they would pull. How far a search can be trusted a finer one tells (finer.py).
+
+is that motion: damped in proportion to its mass, a scene moves arbitrarily slowly along the accelerations it would have
+at rest. A step follows the linear law about its pose exactly (slopes.py), stiff directions to their end and soft ones
+as far as s goes, with a third-order correction (rosenbrock_step.py); it is accepted if the correction is a small part
+of it, else a shorter one is tried. Where all directions are near their end, s grows without bound, and the step is
+Newton's. An unstable direction that nothing pushes stays as it is, as in that motion. Contacts close where their gap
+closes, and open where they would pull. A finer search shows how far a search can be trusted (verification.py).
 """
 
 from __future__ import annotations
@@ -16,47 +17,60 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.coordinates import Coordinates, coordinates_of
-from heuncli.loads.equilibrium.geared import tied
-from heuncli.loads.equilibrium.pose import Pose, bearing, carried, dependent, opening, pose_at
-from heuncli.loads.equilibrium.reasons import endless, jumps, run_away, singular
-from heuncli.loads.equilibrium.slopes import SAMPLES, Slopes, decided_by, slopes
-from heuncli.loads.equilibrium.way import Way, straight
-from heuncli.loads.kinetostatics.bodies import body_states
-from heuncli.loads.kinetostatics.coordinates import coordinates as joint_coordinates
+from heuncli.loads.equilibrium.coordinates import Coordinates, make_coordinates
+from heuncli.loads.equilibrium.geared import find_coupled_pairs
+from heuncli.loads.equilibrium.pose import (
+    Pose,
+    contact_force,
+    contact_opening,
+    count_dependent_rows,
+    make_bearing_pose,
+    make_pose,
+)
+from heuncli.loads.equilibrium.reasons import (
+    endless_search_problem,
+    jumping_load_problem,
+    runaway_problem,
+    singular_pose_problem,
+)
+from heuncli.loads.equilibrium.slopes import PERTURBED_POSES, RestLaw, make_rest_law, separate_indifferent
+from heuncli.loads.equilibrium.way import RosenbrockStep, uncorrected_step
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates as joint_coordinates
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.motion.linearisation.indifference import indifference
+from heuncli.motion.linearisation.indifference import find_indifference
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
-MOST_STEPS = 2_000
-FASTER, SLOWER = 10.0, 0.2  # by how much s grows or shrinks from step to step at most
-SHORTER = 0.5
-MOST_TRIES = 60  # of one step
-CLOSINGS = 8  # of a displaced pose: each misses by a tenth of the one before, or the step is too long
+MAX_STEPS = 2_000
+MAX_GROWTH, MIN_GROWTH = 10.0, 0.2  # limits of the growth of s from step to step
+RETRY_FACTOR = 0.5
+MAX_TRIES = 60  # of one step
+MAX_CLOSURE_STEPS = 8  # of a displaced pose; each must reduce the miss to a tenth, or the step is too long
 HALVINGS = 60  # of a step, to find where in it a contact closes or opens
-LOOKED_AT = (0.25, 0.5, 0.75, 1.0)  # where in a step contacts are looked at
+CONTACT_SAMPLES = (0.25, 0.5, 0.75, 1.0)  # fractions of a step at which contacts are checked
 
 
 @record
-class FoundPose:
-    """A rest pose, with the linear law about it, and what it took.
+class RestPose:
+    """A rest pose, with the linear law about it, and the cost of the search.
 
-    doubt: how far the way may have gone astray [rad, or of the size]; turn: where on it that began to grow.
+    doubt: how far the path may have deviated [rad, or relative to the size]
+    turn: where on the path that began to grow
     """
 
     pose: Pose
-    slopes: Slopes
+    slopes: RestLaw
     coordinates: Coordinates
     steps: int
     evaluations: int
     doubt: float
-    turn: Slowest
+    turn: SlowestPoint
 
 
 @record
-class Slowest:
-    """Where a way is slowest before it may go astray: its state (n_state,), and how far off that may be, (n,)."""
+class SlowestPoint:
+    """The slowest point of a path before it may deviate: its state (n_state,), and the possible deviation, (n,)."""
 
     state: Array
     astray: Array
@@ -64,237 +78,263 @@ class Slowest:
 
 
 class RestSearch:
-    """A search under way. Changes with every step."""
+    """A running search. Changes with every step."""
 
     def __init__(
-        self, scene: PreparedScene, evaluator: Evaluator, t: float, off: float, start: Array | None = None
+        self, scene: PreparedScene, evaluator: Evaluator, t: float, tolerance: float, start: Array | None = None
     ) -> None:
-        """off: of a step, what the linear law may leave out; start (n_state,): in place of the layout's."""
-        self.scene, self.evaluator, self.t, self.off = scene, evaluator, t, off
-        self.coordinates = coordinates_of(evaluator.layout)
-        self.tied = tied(evaluator.layout, self.coordinates.freedoms, self.coordinates.numbers)
+        """tolerance: part of a step that the linear law may miss
+        start (n_state,): used instead of the layout's
+        """
+        self.scene, self.evaluator, self.t, self.tolerance = scene, evaluator, t, tolerance
+        self.coordinates = make_coordinates(evaluator.layout)
+        self.coupled_pairs = find_coupled_pairs(evaluator.layout, self.coordinates.freedoms, self.coordinates.numbers)
         self.start = evaluator.layout.y0 if start is None else start
-        self.astray = np.zeros(self.coordinates.count)
-        self.turn = Slowest(self.start, self.astray, np.inf)
-        self.doubt = self.late = 0.0
-        self.passed = np.zeros(self.coordinates.count)
+        self.deviation = np.zeros(self.coordinates.count)
+        self.slowest = SlowestPoint(self.start, self.deviation, np.inf)
+        self.doubt = self.relative_delay = 0.0
+        self.total_displacement = np.zeros(self.coordinates.count)
         self.steps = self.evaluations = 0
-        self.h = self.most = 0.0
+        self.step_size = self.largest_terms = 0.0
 
-    def found(self) -> FoundPose:
-        """The rest pose. Raises SolveError [no-rest-pose]."""
-        at = self.begun()
+    def find(self) -> RestPose:
+        """Find the rest pose. Raises SolveError [no-rest-pose]."""
+        current = self.start_pose()
         while True:
-            own = slopes(self.evaluator, self.coordinates, at)
-            self.evaluations += 3 + SAMPLES
-            if not own.left.any():
-                self.require_held(at, own)
-                pose, own = self.polished(at, own)
-                taken = self.steps, self.evaluations
-                return FoundPose(pose, own, self.coordinates, *taken, self.doubt, self.turn)
-            self.check(at, own)
-            at = self.advanced(at, own)
+            law = make_rest_law(self.evaluator, self.coordinates, current)
+            self.evaluations += 3 + PERTURBED_POSES
+            if not law.significant_c.any():
+                self.require_held(current, law)
+                pose, law = self.polish(current, law)
+                cost = self.steps, self.evaluations
+                return RestPose(pose, law, self.coordinates, *cost, self.doubt, self.slowest)
+            self.require_bounded(current, law)
+            current = self.advance(current, law)
             self.steps += 1
 
-    def begun(self) -> Pose:
-        """The start, at rest."""
-        return bearing(self.evaluator, self.coordinates, self.t, self.start)
+    def start_pose(self) -> Pose:
+        """Return the start, at rest."""
+        return make_bearing_pose(self.evaluator, self.coordinates, self.t, self.start)
 
-    def require_held(self, at: Pose, own: Slopes) -> None:
-        """Raise SolveError [no-rest-pose] where what is left is no rounding of what acts: a load jumps just there."""
-        terms = own.summed / tolerances.SUM_ROUNDING
-        self.most = max(self.most, float(terms.max(initial=0.0)))
-        left = np.where(np.abs(own.c) > tolerances.NOT_HELD**2 * self.most, np.abs(own.c), 0.0)
-        most = tolerances.NOT_HELD * terms + own.rough
-        driven = np.where((left > most) & (own.bent > 0.5 * left), left, 0.0)
-        if driven.any():
-            shape = (own.T @ own.V[:, int(np.argmax(driven))]).real
-            raise SolveError(self.lost_rank(at) or jumps(self.coordinates, at, shape))
+    def require_held(self, pose: Pose, law: RestLaw) -> None:
+        """Raise SolveError [no-rest-pose] if the remaining acceleration is no rounding: a load jumps just there."""
+        terms = law.sum_rounding / tolerances.SUM_ROUNDING
+        self.largest_terms = max(self.largest_terms, float(terms.max(initial=0.0)))
+        remaining = np.where(np.abs(law.c) > tolerances.NOT_HELD**2 * self.largest_terms, np.abs(law.c), 0.0)
+        allowed = tolerances.NOT_HELD * terms + law.pose_rounding
+        is_driven = np.where((remaining > allowed) & (law.nonlinearity > 0.5 * remaining), remaining, 0.0)
+        if is_driven.any():
+            shape = (law.T @ law.V[:, int(np.argmax(is_driven))]).real
+            raise SolveError(self.find_singularity(pose) or jumping_load_problem(self.coordinates, pose, shape))
 
-    def check(self, at: Pose, own: Slopes) -> None:
-        """Raise what ends a search: something runs away, the steps are used up."""
-        self.most = max(self.most, float(own.summed.max(initial=0.0)) / tolerances.SUM_ROUNDING)
-        far = np.abs(self.passed) * self.coordinates.weights
+    def require_bounded(self, pose: Pose, law: RestLaw) -> None:
+        """Raise SolveError where something runs away or the steps are used up."""
+        self.largest_terms = max(self.largest_terms, float(law.sum_rounding.max(initial=0.0)) / tolerances.SUM_ROUNDING)
+        distances = np.abs(self.total_displacement) * self.coordinates.weights
         limit = np.where(self.coordinates.shifts, tolerances.RUN_AWAY, tolerances.TURNS_ON)
-        beyond = self.tied.least(far / limit)
-        if (beyond > 1.0).any():
-            raise SolveError(run_away(self.coordinates, self.passed, beyond))
-        if self.steps >= MOST_STEPS * np.sqrt(tolerances.REST_BENT / self.off):
-            raise SolveError(self.lost_rank(at) or endless(self.coordinates, at, self.steps))
+        relative_distances = self.coupled_pairs.take_minimum(distances / limit)
+        if (relative_distances > 1.0).any():
+            raise SolveError(runaway_problem(self.coordinates, self.total_displacement, relative_distances))
+        if self.steps >= MAX_STEPS * np.sqrt(tolerances.REST_BENT / self.tolerance):
+            raise SolveError(self.find_singularity(pose) or endless_search_problem(self.coordinates, pose, self.steps))
 
-    def advanced(self, at: Pose, own: Slopes) -> Pose:
-        """One step further."""
-        if self.h == 0.0:
-            first = self.coordinates.size(own.T @ (own.V @ own.left).real)
-            self.h = tolerances.REST_FIRST / first if first > 0.0 else 1.0
-        for _ in range(MOST_TRIES):
-            way = straight(own, self.h)
-            by = way.by(self.h)
-            if not np.isfinite(by).all():
-                self.h *= SHORTER
+    def advance(self, pose: Pose, law: RestLaw) -> Pose:
+        """Take one step."""
+        if self.step_size == 0.0:
+            first = self.coordinates.max_magnitude(law.T @ (law.V @ law.significant_c).real)
+            self.step_size = tolerances.REST_FIRST / first if first > 0.0 else 1.0
+        for _ in range(MAX_TRIES):
+            step = uncorrected_step(law, self.step_size)
+            displacement = step.displacement_at(self.step_size)
+            if not np.isfinite(displacement).all():
+                self.step_size *= RETRY_FACTOR
                 continue
-            size = self.coordinates.size(by)
-            way, new = self.corrected(at, way, by)
-            off = self.coordinates.size(way.correction(self.h)) if new is not None else np.inf
-            most = tolerances.REST_STRAIGHT if size > tolerances.REST_FARTHEST else self.off
-            if off > most * size or new is None:
-                shorter = np.sqrt(self.off * size / off) if np.isfinite(off) else SHORTER
-                self.h *= float(np.clip(0.9 * shorter, SLOWER, 0.9))
+            size = self.coordinates.max_magnitude(displacement)
+            step, new_pose = self.correct(pose, step, displacement)
+            correction_size = (
+                self.coordinates.max_magnitude(step.correction_at(self.step_size)) if new_pose is not None else np.inf
+            )
+            allowed = tolerances.REST_STRAIGHT if size > tolerances.REST_FARTHEST else self.tolerance
+            if correction_size > allowed * size or new_pose is None:
+                shorter = (
+                    np.sqrt(self.tolerance * size / correction_size) if np.isfinite(correction_size) else RETRY_FACTOR
+                )
+                self.step_size *= float(np.clip(0.9 * shorter, MIN_GROWTH, 0.9))
                 continue
-            return self.accepted(at, way, new, off / size if size > 0.0 else 0.0)
-        raise SolveError(self.lost_rank(at) or endless(self.coordinates, at, self.steps))
+            return self.accept(pose, step, new_pose, correction_size / size if size > 0.0 else 0.0)
+        raise SolveError(self.find_singularity(pose) or endless_search_problem(self.coordinates, pose, self.steps))
 
-    def corrected(self, at: Pose, way: Way, by: Array) -> tuple[Way, Pose | None]:
-        """The way with what the law leaves out at its end, and the pose there; none where it cannot be closed."""
-        straight_on = self.closed(at, way, by)
-        if straight_on is None:
-            return way, None
-        went = self.coordinates.between(at.state, straight_on.state)
-        way = way.bent(self.coordinates.followed(went, straight_on.accelerations), went, at.accelerations)
-        more = way.correction(self.h)
-        if not np.isfinite(more).all():
-            return way, None
-        return way, self.closed(at, way, by + more) if more.any() else straight_on
-
-    def closed(self, at: Pose, way: Way, by: Array) -> Pose | None:
-        """The pose displaced, along what closures admit by just that; none where they close on another branch.
-
-        Closing leads across the tangent T, and a bit along it: that is taken back.
+    def correct(self, pose: Pose, step: RosenbrockStep, displacement: Array) -> tuple[RosenbrockStep, Pose | None]:
+        """Return the step with its third-order correction, and the pose at its end, or None where it cannot be
+        closed.
         """
-        own, trial, size = way.own, by, self.coordinates.size(by)
+        uncorrected = self.close(pose, step, displacement)
+        if uncorrected is None:
+            return step, None
+        actual = self.coordinates.find_displacement(pose.state, uncorrected.state)
+        step = step.with_correction(
+            self.coordinates.transport_velocities(actual, uncorrected.accelerations), actual, pose.accelerations
+        )
+        correction = step.correction_at(self.step_size)
+        if not np.isfinite(correction).all():
+            return step, None
+        return step, self.close(pose, step, displacement + correction) if correction.any() else uncorrected
+
+    def close(self, pose: Pose, step: RosenbrockStep, displacement: Array) -> Pose | None:
+        """Return the pose displaced by just that within the closures; None where they close on another branch.
+
+        Closing leads across the tangent T, and slightly along it: the latter is compensated.
+        """
+        law, trial, size = step.law, displacement, self.coordinates.max_magnitude(displacement)
         rounding = tolerances.PUSHED_BY_ROUNDING * tolerances.START_ROUNDING
-        for _ in range(CLOSINGS):
-            new = self.moved(at, trial)
-            if new is None:
+        for _ in range(MAX_CLOSURE_STEPS):
+            new_pose = self.move(pose, trial)
+            if new_pose is None:
                 return None
-            went = self.coordinates.between(at.state, new.state)
-            if self.coordinates.size(went - by) > np.sqrt(self.off) * size + rounding:
+            actual = self.coordinates.find_displacement(pose.state, new_pose.state)
+            if self.coordinates.max_magnitude(actual - displacement) > np.sqrt(self.tolerance) * size + rounding:
                 return None
-            missed = own.T @ (own.back @ (by - went))
-            if self.coordinates.size(missed) <= tolerances.REST_MISSED * self.off * size + rounding:
-                return new
+            missed = law.T @ (law.T_inverse @ (displacement - actual))
+            if self.coordinates.max_magnitude(missed) <= tolerances.REST_MISSED * self.tolerance * size + rounding:
+                return new_pose
             trial = trial + missed
         return None
 
-    def lost_rank(self, at: Pose) -> Problem | None:
-        """The problem of a singular pose, if it is one to which the search came: the start was none."""
-        if dependent(at) <= dependent(self.begun()):
+    def find_singularity(self, pose: Pose) -> Problem | None:
+        """Return the problem of a singular position if the search has come to one and did not start in one."""
+        if count_dependent_rows(pose) <= count_dependent_rows(self.start_pose()):
             return None
-        return singular(self.coordinates, at)
+        return singular_pose_problem(self.coordinates, pose)
 
-    def moved(self, at: Pose, by: Array) -> Pose | None:
-        """The pose displaced, with the same contacts; None where it cannot be closed."""
-        state = self.coordinates.displaced(at.state[None, :], by[None, :])[0]
-        new = pose_at(self.evaluator, self.coordinates, self.t, state, at.holding)
+    def move(self, pose: Pose, displacement: Array) -> Pose | None:
+        """Return the displaced pose, with the same contacts; None where it cannot be closed."""
+        state = self.coordinates.displace(pose.state[None, :], displacement[None, :])[0]
+        new_pose = make_pose(self.evaluator, self.coordinates, self.t, state, pose.holding)
         self.evaluations += 1
-        closed = new.recovered.gap[0] <= tolerances.OPEN_GAP * self.evaluator.size
-        return new if new.is_sound and closed else None
+        is_closed = new_pose.evaluation.gap[0] <= tolerances.OPEN_GAP * self.evaluator.size
+        return new_pose if new_pose.is_finite and is_closed else None
 
-    def accepted(self, at: Pose, way: Way, new: Pose, off: float) -> Pose:
-        """The pose behind a step, or that within it at which the first contact closes or opens; s for the next one."""
-        self.go_astray(at, way, off)
-        event = self.where_contacts_change(at, way) if self.evaluator.layout.contacts else None
+    def accept(self, pose: Pose, step: RosenbrockStep, new_pose: Pose, relative_error: float) -> Pose:
+        """Return the pose after a step, or that within it where the first contact changes; set s for the next step."""
+        self.update_deviation(pose, step, relative_error)
+        event = self.find_contact_change(pose, step) if self.evaluator.layout.contacts else None
         if event is None:
-            self.h *= float(np.clip(0.9 * np.sqrt(self.off / max(off, 1e-9)), SLOWER, FASTER))
+            self.step_size *= float(
+                np.clip(0.9 * np.sqrt(self.tolerance / max(relative_error, 1e-9)), MIN_GROWTH, MAX_GROWTH)
+            )
         else:
-            new = event
-        self.passed = self.passed + self.coordinates.between(at.state, new.state)
+            new_pose = event
+        self.total_displacement = self.total_displacement + self.coordinates.find_displacement(
+            pose.state, new_pose.state
+        )
         if not self.evaluator.layout.contacts:
-            return self.counted(at, new)
-        return self.counted(at, bearing(self.evaluator, self.coordinates, self.t, new.state))
+            return self.count_turns(pose, new_pose)
+        return self.count_turns(pose, make_bearing_pose(self.evaluator, self.coordinates, self.t, new_pose.state))
 
-    def go_astray(self, at: Pose, way: Way, off: float) -> None:
-        """Follow how far the way is off: by what each step adds, and by what the linear law makes of it from then on.
+    def update_deviation(self, pose: Pose, step: RosenbrockStep, relative_error: float) -> None:
+        """Update the possible deviation of the path: each step adds to it, and the linear law carries it on.
 
-        A step is off by about sqrt(off) of its correction, the next order. What is off along the way itself comes to
-        the same pose, sooner or later; but a way that leaves a ridge may have left it for the other side.
+        The error of a step is about sqrt(relative_error) times its correction, the next order. A deviation along the
+        path itself leads to the same pose, sooner or later; but a path that leaves a ridge may have left it for the
+        other side.
         """
-        own, push = way.own, self.push(at)
-        if self.doubt <= tolerances.REST_DOUBT and push <= self.turn.push:
-            self.turn = Slowest(at.state, self.astray, push)
-        grown = own.directions.led(way.h, own.inverse @ (own.A @ (own.back @ self.astray)))
-        astray = self.astray + own.by_directions(grown) + np.sqrt(off) * way.correction(way.h)
-        if not np.isfinite(astray).all():
-            self.doubt = float(np.fmax(self.doubt, self.coordinates.size(astray)))
+        law, acceleration = step.law, self.max_acceleration(pose)
+        if self.doubt <= tolerances.REST_DOUBT and acceleration <= self.slowest.push:
+            self.slowest = SlowestPoint(pose.state, self.deviation, acceleration)
+        growth = law.directions.integrate(step.h, law.inverse @ (law.A @ (law.T_inverse @ self.deviation)))
+        deviation = self.deviation + law.to_displacement(growth) + np.sqrt(relative_error) * step.correction_at(step.h)
+        if not np.isfinite(deviation).all():
+            self.doubt = float(np.fmax(self.doubt, self.coordinates.max_magnitude(deviation)))
             return
         weights = self.coordinates.weights
-        along, grows = at.accelerations * weights, own.T @ (own.A @ (own.back @ at.accelerations)) * weights
-        later = float((astray * weights) @ along / (along @ along))
-        # what is off along a way that grows as e^(m s) is so by m * later of how far it came from a pose of rest
-        self.late += abs(later) * max(0.0, float(grows @ along / (along @ along)))
-        self.astray = astray - later * at.accelerations
-        self.doubt = float(np.fmax(self.doubt, max(self.late, self.coordinates.size(self.astray))))
+        direction, grows = (
+            pose.accelerations * weights,
+            law.T @ (law.A @ (law.T_inverse @ pose.accelerations)) * weights,
+        )
+        delay = float((deviation * weights) @ direction / (direction @ direction))
+        # on a path that grows as e^(m s), a delay is a fraction m * delay of the distance from the rest pose
+        self.relative_delay += abs(delay) * max(0.0, float(grows @ direction / (direction @ direction)))
+        self.deviation = deviation - delay * pose.accelerations
+        self.doubt = float(
+            np.fmax(self.doubt, max(self.relative_delay, self.coordinates.max_magnitude(self.deviation)))
+        )
 
-    def where_contacts_change(self, at: Pose, way: Way) -> Pose | None:
-        """The pose at which the first contact closes or opens on a way; None where none does. Halving."""
+    def find_contact_change(self, start: Pose, step: RosenbrockStep) -> Pose | None:
+        """Find by halving the pose at which the first contact closes or opens on a step; None if none does."""
         low = high = 0.0
-        for share in LOOKED_AT:
-            pose = self.closed(at, way, way.by(share * way.h))
-            if pose is None or self.is_broken(at, pose):
-                high = share * way.h
+        for share in CONTACT_SAMPLES:
+            pose = self.close(start, step, step.displacement_at(share * step.h))
+            if pose is None or self.has_contact_change(start, pose):
+                high = share * step.h
                 break
-            low = share * way.h
+            low = share * step.h
         if high == 0.0:
             return None
-        new = None
+        new_pose = None
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            pose = self.closed(at, way, way.by(middle))
-            if pose is None or self.is_broken(at, pose):
-                high, new = middle, pose or new
+            pose = self.close(start, step, step.displacement_at(middle))
+            if pose is None or self.has_contact_change(start, pose):
+                high, new_pose = middle, pose or new_pose
             else:
                 low = middle
-        return new
+        return new_pose
 
-    def is_broken(self, at: Pose, pose: Pose) -> bool:
-        """Whether on the way from one pose to another a contact was passed, or would have to pull."""
-        for contact, held in zip(self.evaluator.layout.contacts, at.holding, strict=False):  # latches' places behind
-            if held > 0.0 and carried(contact, pose) < min(0.0, carried(contact, at)):
+    def has_contact_change(self, from_pose: Pose, to_pose: Pose) -> bool:
+        """Return whether between two poses a contact was passed, or would have to pull."""
+        for contact, holding in zip(self.evaluator.layout.contacts, from_pose.holding, strict=False):  # without latches
+            if holding > 0.0 and contact_force(contact, to_pose) < min(0.0, contact_force(contact, from_pose)):
                 return True
-            if not held > 0.0 and opening(contact, pose) < min(0.0, opening(contact, at)) - self.near:
+            if (
+                not holding > 0.0
+                and contact_opening(contact, to_pose)
+                < min(0.0, contact_opening(contact, from_pose)) - self.gap_tolerance
+            ):
                 return True
         return False
 
     @property
-    def near(self) -> float:
-        """A gap as good as none [m or rad]."""
+    def gap_tolerance(self) -> float:
+        """A gap that counts as closed [m or rad]."""
         return tolerances.OPEN_GAP * max(self.evaluator.size, 1.0)
 
-    def counted(self, before: Pose, new: Pose) -> Pose:
-        """The new pose with the angles of cut pins counted on from where they stood before, over half turns."""
+    def count_turns(self, previous: Pose, pose: Pose) -> Pose:
+        """Return the pose with the angles of cut pins counted on from the previous pose, over half turns."""
         layout = self.evaluator.layout
         if not layout.counters:
-            return new
-        state = new.state.copy()
+            return pose
+        state = pose.state.copy()
         for place in layout.counters.values():
-            state[place] = before.state[place]
-        recovered = replace(new.recovered, states=state[None, :])
-        told = joint_coordinates(layout, recovered, body_states(layout, recovered))
+            state[place] = previous.state[place]
+        recovered = replace(pose.evaluation, states=state[None, :])
+        joint_values = joint_coordinates(layout, recovered, make_body_states(layout, recovered))
         for joint, place in layout.counters.items():
-            state[place] = told[(own := layout.mechanism.joints[joint]).name][
+            state[place] = joint_values[(own := layout.mechanism.joints[joint]).name][
                 "angle" if own.path is None else "travel"
             ][0]
-        return replace(new, state=state, recovered=replace(recovered, states=state[None, :]))
+        return replace(pose, state=state, evaluation=replace(recovered, states=state[None, :]))
 
-    def polished(self, at: Pose, own: Slopes) -> tuple[Pose, Slopes]:
-        """The pose behind Newton's steps along all directions that are not indifferent, as long as they better it."""
-        own = self.decided(at, own)
-        while own.decided.any():
-            by = own.newton(at.accelerations)
-            new = self.moved(at, by)
-            if new is None or self.coordinates.size(own.newton(new.accelerations)) >= 0.5 * self.coordinates.size(by):
+    def polish(self, pose: Pose, law: RestLaw) -> tuple[Pose, RestLaw]:
+        """Take Newton's steps along all directions that are not indifferent, as long as they improve the pose."""
+        law = self.decide(pose, law)
+        while law.is_decided.any():
+            displacement = law.newton_step(pose.accelerations)
+            new_pose = self.move(pose, displacement)
+            if new_pose is None or self.coordinates.max_magnitude(
+                law.newton_step(new_pose.accelerations)
+            ) >= 0.5 * self.coordinates.max_magnitude(displacement):
                 break
-            at = self.counted(at, new)
-            own = self.decided(at, slopes(self.evaluator, self.coordinates, at))
-            self.evaluations += 3 + SAMPLES
-            if self.coordinates.size(by) <= tolerances.PLACE_ROUNDING:
-                break  # a force that bends alone leads on through all the numbers below
-        return at, own
+            pose = self.count_turns(pose, new_pose)
+            law = self.decide(pose, make_rest_law(self.evaluator, self.coordinates, pose))
+            self.evaluations += 3 + PERTURBED_POSES
+            if self.coordinates.max_magnitude(displacement) <= tolerances.PLACE_ROUNDING:
+                break  # a force without a linear term would continue endlessly
+        return pose, law
 
-    def decided(self, at: Pose, own: Slopes) -> Slopes:
-        """The slopes at a pose, by what is held there by more than rounding."""
-        return decided_by(own, indifference(self.scene, self.t, at.holding, own.law, rests=False))
+    def decide(self, pose: Pose, law: RestLaw) -> RestLaw:
+        """Return the slopes at a pose, separated by what is held there by more than rounding."""
+        return separate_indifferent(law, find_indifference(self.scene, self.t, pose.holding, law.law, is_at_rest=False))
 
-    def push(self, at: Pose) -> float:
-        """The largest acceleration left [rad/s^2, or sizes a s^2]."""
-        return self.coordinates.size(at.accelerations)
+    def max_acceleration(self, pose: Pose) -> float:
+        """Return the largest remaining acceleration [rad/s^2, or relative to the size 1/s^2]."""
+        return self.coordinates.max_magnitude(pose.accelerations)

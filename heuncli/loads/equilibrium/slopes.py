@@ -1,9 +1,10 @@
-"""How the accelerations at rest change with the pose: their linear law about it, and its own directions.
+"""Linearise the accelerations at rest about a pose, and decompose the linear law.
 
     a(q + T z) = a + T A z,     A = V diag(lambda) V^-1,     c = V^-1 T+ a
+
 T are displacements that the closures admit, orthonormal by the coordinates' weights
-(motion/linearisation/linearise.py). c is what is left to be followed along each direction; noise is what rounding makes
-of it: less than that is nothing. Directions that hardly differ share a block in place of eigenvalues of their own
+(motion/linearisation/linearise.py). c is the remaining acceleration along each direction; noise is its rounding error:
+anything below counts as zero. Nearly parallel directions share a block instead of eigenvalues of their own
 (directions.py).
 """
 
@@ -15,33 +16,34 @@ from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
-from heuncli.loads.equilibrium.coordinates import Coordinates, resting, rounding_of
-from heuncli.loads.equilibrium.directions import Directions, directions, split
+from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, rounding_displacement
+from heuncli.loads.equilibrium.directions import SpectralDecomposition, decompose, decompose_with_null_space
 from heuncli.loads.equilibrium.pose import Pose
-from heuncli.loads.equilibrium.reasons import no_value
+from heuncli.loads.equilibrium.reasons import no_value_problem
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.linearisation.indifference import Indifference
-from heuncli.motion.linearisation.linearise import Linearised, linearised
-from heuncli.multibody.response import columns
+from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
+from heuncli.multibody.response import solve_columns
 from heuncli.results.results import Array, Mask
 
-SAMPLES = 4  # poses moved by rounding: that all of them hide a direction is unlikely
+PERTURBED_POSES = 4  # poses moved by rounding; it is unlikely that all of them hide a direction
 
 
 @record
-class Slopes:
-    """The linear law at a pose: T (n, f), T+ (f, n), A (f, f) by its directions, c and its noise (f,).
+class RestLaw:
+    """The linear law at a pose: T (n, f), T+ (f, n), A (f, f) and its decomposition, c and its noise (f,).
 
-    known (f,): what rounding makes of the eigenvalues; summed (f,): of the sums in c alone, a part of its noise;
-    bent (f,): by how much a pose moved by rounding leaves the law: rounding, but for loads that jump; rough (f,): what
-    the law makes of the rounding of a pose.
+    known (f,): rounding errors of the eigenvalues
+    summed (f,): rounding of the sums in c alone, a part of its noise
+    bent (f,): deviation of a pose moved by rounding from the law: rounding, except for loads that jump
+    rough (f,): effect of the rounding of a pose in the law
     """
 
-    law: Linearised
+    law: LinearisedEquations
     T: Array
     back: Array
     A: Array
-    directions: Directions
+    directions: SpectralDecomposition
     c: Array
     noise: Array
     known: Array
@@ -51,139 +53,184 @@ class Slopes:
 
     @property
     def eigenvalues(self) -> Array:
-        """Of A, (f,)."""
+        """Eigenvalues of A, (f,)."""
         return self.directions.eigenvalues
 
     @property
     def V(self) -> Array:
-        """The directions, (f, f)."""
+        """The directions as columns, (f, f)."""
         return self.directions.X
 
     @property
     def inverse(self) -> Array:
-        """V^-1."""
+        """The inverse of V."""
         return self.directions.inverse
 
     @property
-    def left(self) -> Array:
-        """c where it is more than rounding, else 0, (f,); of a block of directions all or nothing."""
-        beyond = np.abs(self.c) > self.noise
-        beyond[self.directions.alone :] = beyond[self.directions.alone :].any()
-        return np.where(beyond, self.c, 0.0)
+    def significant_c(self) -> Array:
+        """c where it exceeds rounding, else 0, (f,); a block of directions counts as one."""
+        is_significant = np.abs(self.c) > self.noise
+        is_significant[self.directions.single_count :] = is_significant[self.directions.single_count :].any()
+        return np.where(is_significant, self.c, 0.0)
 
     @property
-    def decided(self) -> Mask:
-        """The directions that are not indifferent, (f,)."""
-        return np.asarray(np.abs(self.eigenvalues) > self.known)
+    def is_decided(self) -> Mask:
+        """Which directions are not indifferent, (f,)."""
+        return np.asarray(np.abs(self.eigenvalues) > self.eigenvalue_errors)
 
-    def along(self, accelerations: Array) -> Array:
-        """Accelerations (n,) by directions, (f,)."""
-        return np.asarray(self.inverse @ (self.back @ accelerations))
+    def project(self, accelerations: Array) -> Array:
+        """Return the components of accelerations (n,) along the directions, (f,)."""
+        return np.asarray(self.inverse @ (self.T_inverse @ accelerations))
 
-    def way(self, h: float, c: Array | None = None) -> Array:
-        """How far dq/ds = a leads in s = h, by the linear law, (n,): z = V h phi(h lambda) c, phi(x) = (e^x - 1)/x."""
-        return self.by_directions(self.directions.led(h, self.left if c is None else c))
+    def follow(self, h: float, c: Array | None = None) -> Array:
+        """Return the displacement by dq/ds = a at s = h in the linear law, (n,): z = V h phi(h lambda) c, phi(x) = (e^x
+        - 1)/x.
+        """
+        return self.to_displacement(self.directions.integrate(h, self.significant_c if c is None else c))
 
-    def by_directions(self, z: Array) -> Array:
-        """The displacement (n,) of coordinates z (f,) of the directions; not finite if they are not."""
+    def to_displacement(self, z: Array) -> Array:
+        """Return the displacement (n,) of coordinates z (f,) of the directions; not finite if they are not."""
         with np.errstate(over="ignore", invalid="ignore"):
             return np.asarray(self.T @ (self.V @ z).real)
 
-    def newton(self, accelerations: Array) -> Array:
-        """The displacement (n,) that takes accelerations (n,) back, along all directions that are not indifferent."""
-        c = self.along(accelerations)
-        return self.by_directions(self.directions.softened(c, self.known))
+    def newton_step(self, accelerations: Array) -> Array:
+        """Return the displacement (n,) that cancels accelerations (n,), along all directions that are not
+        indifferent.
+        """
+        c = self.project(accelerations)
+        return self.to_displacement(self.directions.solve_compliance(c, self.eigenvalue_errors))
 
 
-def slopes(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Slopes:
-    """The linear law at a pose."""
-    law = linearised(evaluator.layout, at.t, at.state, at.holding)
+def make_rest_law(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> RestLaw:
+    """Make the linear law at a pose. Raises SolveError [no-rest-pose] where loads have no value or no slope."""
+    law = linearise(evaluator.layout, pose.t, pose.state, pose.holding)
     T = law.tangent
     back = T.T * coordinates.weights**2
     A = back @ law.by_place @ T
-    by = np.array([rounding_of(coordinates, at.state, k) for k in range(SAMPLES)])
-    moved = resting(
-        evaluator, at.t, coordinates.displaced(np.repeat(at.state[None, :], SAMPLES, axis=0), by), at.holding
+    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
+    perturbed = evaluate_at_rest(
+        evaluator,
+        pose.t,
+        coordinates.displace(np.repeat(pose.state[None, :], PERTURBED_POSES, axis=0), displacements),
+        pose.holding,
     )
-    change = (coordinates.accelerations(moved) - at.accelerations) @ back.T
+    change = (coordinates.accelerations(perturbed) - pose.accelerations) @ back.T
     if not (np.isfinite(A).all() and np.isfinite(change).all()):
-        raise SolveError(no_value(coordinates, change))
-    own = directions(A, T.T @ law.mass @ T)
-    inverse = own.inverse
+        raise SolveError(no_value_problem(coordinates, change))
+    decomposition = decompose(A, T.T @ law.mass @ T)
+    inverse = decomposition.inverse
     noise = np.abs(inverse @ change.T).max(axis=1, initial=0.0)
-    sums = rounding(evaluator, coordinates, at)
-    c = inverse @ (back @ at.accelerations)
+    sums = acceleration_rounding(evaluator, coordinates, pose)
+    c = inverse @ (back @ pose.accelerations)
     terms = np.abs(back) @ np.abs(law.by_place) @ np.abs(T)
-    known = known_to(own, terms, float(np.abs(at.recovered.bodies["omega"]).max(initial=0.0)))
-    summed = np.abs(inverse) @ (np.abs(back) @ sums)
-    summed = summed + np.abs(inverse @ (back @ of_springs(evaluator, coordinates, at))).sum(axis=1)
-    bent = np.abs(inverse @ (change.T - A @ (back @ by.T))).max(axis=1, initial=0.0)
-    rough = np.abs(inverse) @ (np.abs(back) @ (np.abs(law.by_place) @ np.abs(by).max(axis=0)))
-    noise = tolerances.PUSHED_BY_ROUNDING * (noise + summed)
-    return Slopes(law, T, back, A, own, c, noise, known, summed, bent, rough)
+    eigenvalue_errors = find_eigenvalue_errors(
+        decomposition, terms, float(np.abs(pose.evaluation.bodies["omega"]).max(initial=0.0))
+    )
+    sum_rounding = np.abs(inverse) @ (np.abs(back) @ sums)
+    sum_rounding = sum_rounding + np.abs(inverse @ (back @ spring_rounding(evaluator, coordinates, pose))).sum(axis=1)
+    nonlinearity = np.abs(inverse @ (change.T - A @ (back @ displacements.T))).max(axis=1, initial=0.0)
+    pose_rounding = np.abs(inverse) @ (np.abs(back) @ (np.abs(law.by_place) @ np.abs(displacements).max(axis=0)))
+    noise = tolerances.PUSHED_BY_ROUNDING * (noise + sum_rounding)
+    return RestLaw(
+        law, T, back, A, decomposition, c, noise, eigenvalue_errors, sum_rounding, nonlinearity, pose_rounding
+    )
 
 
-def decided_by(own: Slopes, what: Indifference) -> Slopes:
-    """The same law by the directions that nothing holds, and those of all that is held: which these are is known."""
-    right, left = own.back @ what.free, own.back @ what.T @ what.found.left
-    own_directions = split(own.A, own.T.T @ own.law.mass @ own.T, right, left)
-    if own_directions is None:
-        return own
-    change = np.abs(own_directions.inverse @ own.V)
-    noise, summed, bent, rough = (change @ x for x in (own.noise, own.summed, own.bent, own.rough))
-    known = np.where(own_directions.eigenvalues == 0.0, 1.0, 0.0)
-    known[idle(own.T @ own_directions.X, what.T)] = np.inf
-    c = own_directions.inverse @ (own.V @ own.c)
-    return replace(own, directions=own_directions, c=c, noise=noise, known=known, summed=summed, bent=bent, rough=rough)
+def separate_indifferent(law: RestLaw, indifference: Indifference) -> RestLaw:
+    """Return the same law decomposed into the given indifferent directions and those of all that is held."""
+    right_null, left_null = (
+        law.T_inverse @ indifference.free_motions,
+        law.T_inverse @ indifference.T @ indifference.elimination.left_null,
+    )
+    decomposition = decompose_with_null_space(law.A, law.T.T @ law.law.mass @ law.T, right_null, left_null)
+    if decomposition is None:
+        return law
+    basis_change = np.abs(decomposition.inverse @ law.V)
+    noise, summed, bent, rough = (
+        basis_change @ x for x in (law.noise, law.sum_rounding, law.nonlinearity, law.pose_rounding)
+    )
+    eigenvalue_errors = np.where(decomposition.eigenvalues == 0.0, 1.0, 0.0)
+    eigenvalue_errors[is_massless(law.T @ decomposition.X, indifference.T)] = np.inf
+    c = decomposition.inverse @ (law.V @ law.c)
+    return replace(
+        law,
+        directions=decomposition,
+        c=c,
+        noise=noise,
+        eigenvalue_errors=eigenvalue_errors,
+        sum_rounding=summed,
+        nonlinearity=bent,
+        pose_rounding=rough,
+    )
 
 
-def idle(ways: Array, moving: Array) -> Mask:
-    """Which displacements (n, f) are spins without inertia: no combination of what moves mass (n, m) makes them."""
-    if not moving.shape[1]:
-        return np.ones(ways.shape[1], dtype=bool)
-    left = ways - moving @ np.linalg.lstsq(moving, ways, rcond=None)[0]
-    return np.asarray(np.sum(np.abs(left) ** 2, axis=0) > 0.5 * np.sum(np.abs(ways) ** 2, axis=0))
-
-
-def known_to(own: Directions, terms: Array, spin: float) -> Array:
-    """What rounding makes of the eigenvalues, (f,); terms (f, f): of A; spin: the fastest angular velocity.
-
-    |y' dA x| of directions y, x; where k directions fall together with another one, dA to the power 1 / (k + 1), times
-    |A| to what is left (Elsner).
+def is_massless(displacements: Array, massive: Array) -> Mask:
+    """Return which displacements (n, f) are massless spins: no combination of those that move mass (n, m) makes
+    them.
     """
-    known = tolerances.INDIFFERENT * ((np.abs(own.inverse) @ terms) * np.abs(own.X).T).sum(axis=1)
+    if not massive.shape[1]:
+        return np.ones(displacements.shape[1], dtype=bool)
+    remainder = displacements - massive @ np.linalg.lstsq(massive, displacements, rcond=None)[0]
+    return np.asarray(np.sum(np.abs(remainder) ** 2, axis=0) > 0.5 * np.sum(np.abs(displacements) ** 2, axis=0))
+
+
+def find_eigenvalue_errors(decomposition: SpectralDecomposition, terms: Array, fastest_spin: float) -> Array:
+    """Return the rounding errors of the eigenvalues, (f,).
+
+    terms (f, f): magnitudes of the terms of A
+    fastest_spin: the fastest angular velocity
+
+    |y' dA x| of directions y, x; where k directions coincide with another one, dA to the power 1 / (k + 1), times |A|
+    to the rest (Elsner).
+    """
+    errors = tolerances.INDIFFERENT * ((np.abs(decomposition.inverse) @ terms) * np.abs(decomposition.X).T).sum(axis=1)
     # centrifugal terms cancel before they are seen
-    known = np.maximum(known, tolerances.EPS * terms.max(initial=0.0)) + tolerances.INDIFFERENT * spin * spin
-    if own.lost:
-        together, power = known[own.alone :].sum(), 1.0 / (own.lost + 1)
-        known[own.alone :] = together**power * (2.0 * np.linalg.norm(own.B) + together) ** (1.0 - power)
-    return np.asarray(known)
+    errors = (
+        np.maximum(errors, tolerances.EPS * terms.max(initial=0.0))
+        + tolerances.INDIFFERENT * fastest_spin * fastest_spin
+    )
+    if decomposition.defect:
+        block_error, power = errors[decomposition.single_count :].sum(), 1.0 / (decomposition.defect + 1)
+        errors[decomposition.single_count :] = block_error**power * (
+            2.0 * np.linalg.norm(decomposition.B) + block_error
+        ) ** (1.0 - power)
+    return np.asarray(errors)
 
 
-def rounding(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Array:
-    """What rounding of the sums makes of the accelerations, (n,): of what each cause makes alone, and of weight."""
-    terms = coordinates.terms(resting(evaluator, at.t, at.state[None, :], at.holding, causes=True))
+def acceleration_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> Array:
+    """Return the rounding errors of the accelerations from their sums, (n,): of each cause alone, and of weight."""
+    terms = coordinates.acceleration_terms(
+        evaluate_at_rest(evaluator, pose.t, pose.state[None, :], pose.holding, causes=True)
+    )
     gravity = float(np.abs(evaluator.layout.mechanism.gravity).max()) / evaluator.size
     return tolerances.SUM_ROUNDING * (terms + gravity / coordinates.weights)
 
 
-def of_springs(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Array:
-    """What rounding of each spring's length makes of the accelerations, (n, k): near its free length that is all."""
-    layout, bodies = evaluator.layout, at.recovered.bodies[0]
+def spring_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> Array:
+    """Return the rounding error of the accelerations from each spring's length, (n, k): all there is near its free
+    length.
+    """
+    layout, bodies = evaluator.layout, pose.evaluation.bodies[0]
     rows = layout.tables["loads"]
-    own = [k for k in np.flatnonzero(rows["kind"] == kernel.SPRING).tolist() if at.recovered.loads["span"][0, k] > 0.0]
+    spring_rows = [
+        k for k in np.flatnonzero(rows["kind"] == kernel.SPRING).tolist() if pose.evaluation.loads["span"][0, k] > 0.0
+    ]
     ropes = np.flatnonzero(rows["kind"] == kernel.ROPE).tolist()
-    units = np.zeros((len(own) + len(ropes), len(bodies), 6))
-    for n, k in enumerate(ropes, len(own)):
-        size = tolerances.SUM_ROUNDING * rows["stiffness"][k] * (at.recovered.loads["span"][0, k] + rows["length"][k])
+    units = np.zeros((len(spring_rows) + len(ropes), len(bodies), 6))
+    for n, k in enumerate(ropes, len(spring_rows)):
+        size = (
+            tolerances.SUM_ROUNDING * rows["stiffness"][k] * (pose.evaluation.loads["span"][0, k] + rows["length"][k])
+        )
         for part in range(int(rows["part"][k]), int(rows["part"][k] + rows["part_count"][k])):
-            ends, answer = layout.tables["parts"][part], at.recovered.parts[0, part]
+            ends, part_result = layout.tables["parts"][part], pose.evaluation.parts[0, part]
             for body, sign in ((int(ends["b"]), size), (int(ends["a"]), -size)):
                 if body >= 0:
-                    units[n, body, :3] += sign * (answer["m"] + np.cross(answer["Q"] - bodies["r"][body], answer["f"]))
-                    units[n, body, 3:] += sign * answer["f"]
-    for n, k in enumerate(own):
-        load = at.recovered.loads[0, k]
+                    units[n, body, :3] += sign * (
+                        part_result["m"] + np.cross(part_result["Q"] - bodies["r"][body], part_result["f"])
+                    )
+                    units[n, body, 3:] += sign * part_result["f"]
+    for n, k in enumerate(spring_rows):
+        load = pose.evaluation.loads[0, k]
         line = (load["at"] - load["from_at"]) / load["span"]
         force = tolerances.SUM_ROUNDING * rows["stiffness"][k] * (load["span"] + rows["length"][k]) * line
         for body, place, sign in ((int(rows["b"][k]), load["at"], 1.0), (int(rows["a"][k]), load["from_at"], -1.0)):
@@ -192,5 +239,5 @@ def of_springs(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Arra
                 units[n, body, 3:] += sign * force
     if not len(units):
         return np.zeros((coordinates.count, 0))
-    answers = columns(evaluator.workspace, at.t, at.state, units, np.zeros(len(units)))
-    return coordinates.along(answers.bodies["alpha"], answers.freedoms["udot"]).T
+    response = solve_columns(evaluator.workspace, pose.t, pose.state, units, np.zeros(len(units)))
+    return coordinates.collect(response.bodies["alpha"], response.freedoms["udot"]).T

@@ -1,9 +1,10 @@
-"""The way of one step along dq/ds = a(q, rates 0): an exponential Rosenbrock step of third order.
+"""One step along dq/ds = a(q, rates 0): an exponential Rosenbrock step of third order.
 
     z(s) = s phi_1(s A) c + 2 s phi_3(s A) (s/h)^2 d,     d = rates at z(h) - c - A z(h)
-z by the displacements that the closures admit, from where the linear law (A, c) holds. Without d the step is of second
-order, follows stiff directions to their end and is exact where the law is; d is what the law leaves out at the step's
-end, and its share of the way is what the step is off by. Hochbruck, Ostermann, Schweitzer 2009: exprb32.
+
+z is the displacement within the closures from the pose where the linear law (A, c) holds. Without d the step is of
+second order, follows stiff directions to their end and is exact where the law is; d is what the law misses at the
+step's end, and its share of the step is the error estimate. Hochbruck, Ostermann, Schweitzer 2009: exprb32.
 """
 
 from __future__ import annotations
@@ -11,36 +12,38 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.slopes import Slopes
+from heuncli.loads.equilibrium.slopes import RestLaw
 from heuncli.results.results import Array
 
 
 @record
-class Way:
-    """The way from a pose up to s = h; d (f,) by the law's own directions."""
+class RosenbrockStep:
+    """The step from a pose up to s = h; d (f,): correction along the law's directions."""
 
-    own: Slopes
+    own: RestLaw
     h: float
     d: Array
 
-    def by(self, s: float) -> Array:
-        """The displacement (n,) at some s, up to h."""
-        return np.asarray(self.own.way(s) + self.correction(s))
+    def displacement_at(self, s: float) -> Array:
+        """Return the displacement (n,) at some s, up to h."""
+        return np.asarray(self.law.follow(s) + self.correction_at(s))
 
-    def correction(self, s: float) -> Array:
-        """What d adds to it, (n,)."""
+    def correction_at(self, s: float) -> Array:
+        """Return the part of the displacement from d, (n,)."""
         if not self.d.any():
-            return np.zeros(len(self.own.T))
-        return self.own.by_directions(self.own.directions.led(s, 2.0 * (s / self.h) ** 2 * self.d, order=3))
+            return np.zeros(len(self.law.T))
+        return self.law.to_displacement(self.law.directions.integrate(s, 2.0 * (s / self.h) ** 2 * self.d, order=3))
 
-    def bent(self, rates: Array, by: Array, accelerations: Array) -> Way:
-        """The way with d, by the rates (n,) of its coordinates met behind a displacement (n,), and those before."""
-        own = self.own
-        d = own.along(rates - accelerations - own.T @ (own.A @ (own.back @ by)))
-        # an unstable direction that rounding alone pushes is left alone
-        return replace(self, d=np.where(np.abs(d) > own.noise, d, 0.0))
+    def with_correction(self, rates: Array, displacement: Array, accelerations: Array) -> RosenbrockStep:
+        """Return the step with d, from the rates (n,) of its coordinates after a displacement (n,), and those
+        before.
+        """
+        law = self.law
+        d = law.project(rates - accelerations - law.T @ (law.A @ (law.T_inverse @ displacement)))
+        # an unstable direction that only rounding pushes stays as it is
+        return replace(self, d=np.where(np.abs(d) > law.noise, d, 0.0))
 
 
-def straight(own: Slopes, h: float) -> Way:
-    """The way by the linear law alone."""
-    return Way(own, h, np.zeros(len(own.c)))
+def uncorrected_step(law: RestLaw, h: float) -> RosenbrockStep:
+    """Return the step by the linear law alone."""
+    return RosenbrockStep(law, h, np.zeros(len(law.c)))

@@ -1,6 +1,6 @@
-"""The numbers that a coupling is told by, beside what it exerts on each body: a row a type that has its own.
+"""The numbers reported for a coupling, besides its load on each body; one entry for each type with numbers of its own.
 
-Each hangs on the multipliers of some of its conditions: where one of these is open, so is the number.
+Each depends on the multipliers of some of its conditions: where one of these is indeterminate, so is the number.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from heuncli.scene.file_format.couplings import RollingWheel
 
 
 @record
-class CoupledNumber:
-    """A number of a coupling, (..., n_t); rows: the places of the conditions that it hangs on, among the coupling's.
+class CouplingNumber:
+    """A number of a coupling, (..., n_t).
 
-    factor: times which the multiplier of a single condition is the number; 0: it is no such multiple; linear: but one
-    that changes in time.
+    rows: the conditions that it depends on, by their numbers in the coupling
+    factor: the number divided by the multiplier of its single condition; 0 if it is no such multiple
+    is_linear: linear in the multipliers with a factor that changes in time
     """
 
     name: str
@@ -35,83 +36,91 @@ class CoupledNumber:
     @property
     def is_sum(self) -> bool:
         """Whether the shares of causes add up to it."""
-        return self.linear or self.factor != 0.0
+        return self.is_linear or self.factor != 0.0
 
 
-def numbers_of(loads: CouplingLoads) -> list[CoupledNumber]:
-    """The numbers of a coupling: of most the load that it carries."""
-    return NUMBERS.get(loads.coupling.given.type, carried)(loads)
+def list_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
+    """Return the numbers of a coupling; for most types, the load that it carries."""
+    return NUMBERS.get(loads.coupling.entry.type, list_carried_load)(loads)
 
 
-def components_of(loads: CouplingLoads) -> list[CoupledNumber]:
-    """Those that are the multiplier of one condition, of which sums may be certain."""
-    return [number for number in numbers_of(loads) if number.factor != 0.0]
+def list_multiples(loads: CouplingLoads) -> list[CouplingNumber]:
+    """Return the numbers that are a multiple of one condition's multiplier, of which sums may be determinate."""
+    return [number for number in list_numbers(loads) if number.factor != 0.0]
 
 
-def coupling_block(loads: CouplingLoads, names: Sequence[str], beside: Sequence[Action] = ()) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies, beside: what it exerts besides, as a pretension."""
-    on = {
+def make_coupling_block(
+    loads: CouplingLoads, names: Sequence[str], extra_actions: Sequence[Action] = ()
+) -> dict[str, object]:
+    """Return a coupling's block of the results; names: of the bodies; extra_actions: such as a pretension."""
+    body_loads = {
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies(beside).items()
+        for body, (place, force, moment) in loads.body_loads(extra_actions).items()
     }
-    return {number.name: number.values for number in numbers_of(loads)} | {"on": on, "open": []}
+    return {number.name: number.values for number in list_numbers(loads)} | {"on": body_loads, "open": []}
 
 
-def carried(loads: CouplingLoads) -> list[CoupledNumber]:
-    """The multiplier of its first condition: the force or the moment for which the coupling is there."""
-    name = loads.carries
-    return [CoupledNumber(name, loads.carried, (0,), name == "moment", float(name in ("force", "moment")), linear=True)]
+def list_carried_load(loads: CouplingLoads) -> list[CouplingNumber]:
+    """Return the multiplier of its first condition: the force or the moment that the coupling transmits."""
+    name = loads.load_name
+    return [
+        CouplingNumber(
+            name, loads.carried_load, (0,), name == "moment", float(name in ("force", "moment")), is_linear=True
+        )
+    ]
 
 
-def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
-    """What the plane presses the wheel with, what keeps it from slipping, and both together; how much more would.
+def list_wheel_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
+    """Return the normal force of a wheel, the forces that prevent slip, and both together; and the remaining grip.
 
     friction = sqrt(along^2 + aside^2),  force = sqrt(normal^2 + friction^2),  grip = coefficient normal - friction
     """
-    given = loads.coupling.given
-    assert isinstance(given, RollingWheel)
-    (_, *rolling), every = loads.coupling.rows, tuple(range(len(loads.multipliers)))
+    wheel = loads.coupling.entry
+    assert isinstance(wheel, RollingWheel)
+    (_, *rolling), all_rows = loads.coupling.rows, tuple(range(len(loads.multipliers)))
     normal = loads.multipliers[0]
-    ways = {row.parts[0].kind: values for row, values in zip(rolling, loads.multipliers[1:], strict=True)}
-    named = [("along", "rolls"), ("aside", "rolls_aside")]
-    found = [CoupledNumber("normal", normal, every[:1], factor=1.0)]
-    found += [
-        CoupledNumber(name, ways[kind], (1 + list(ways).index(kind),), factor=1.0)
-        for name, kind in named
-        if kind in ways
+    tangential = {row.parts[0].kind: values for row, values in zip(rolling, loads.multipliers[1:], strict=True)}
+    tangential_names = [("along", "rolls"), ("aside", "rolls_aside")]
+    numbers = [CouplingNumber("normal", normal, all_rows[:1], factor=1.0)]
+    numbers += [
+        CouplingNumber(name, tangential[kind], (1 + list(tangential).index(kind),), factor=1.0)
+        for name, kind in tangential_names
+        if kind in tangential
     ]
-    square = np.sum(np.square(np.array(loads.multipliers[1:])), axis=0)
-    found.append(CoupledNumber("friction", np.sqrt(square), every[1:]))
-    found.append(CoupledNumber("force", np.sqrt(square + np.square(normal)), every))
-    if given.friction is not None:
-        found.append(CoupledNumber("grip", given.friction * normal - np.sqrt(square), every))
-    return found
+    squared_friction = np.sum(np.square(np.array(loads.multipliers[1:])), axis=0)
+    numbers.append(CouplingNumber("friction", np.sqrt(squared_friction), all_rows[1:]))
+    numbers.append(CouplingNumber("force", np.sqrt(squared_friction + np.square(normal)), all_rows))
+    if wheel.friction is not None:
+        numbers.append(CouplingNumber("grip", wheel.friction * normal - np.sqrt(squared_friction), all_rows))
+    return numbers
 
 
-def of_rope(loads: CouplingLoads) -> list[CoupledNumber]:
-    """Its tension; where sheaves hold it that before the first of them, and that behind the last."""
-    held = (0,) if loads.rows else ()  # that of one that stretches hangs on no condition
-    found = [CoupledNumber("tension", 0.0 - loads.multipliers[0], held, factor=-1.0 if held else 0.0, linear=True)]
+def list_rope_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
+    """Return a rope's tension; with fixed sheaves, that before the first of them, and that after the last."""
+    rows = (0,) if loads.rows else ()  # the tension of a stretching rope depends on no condition
+    numbers = [
+        CouplingNumber("tension", 0.0 - loads.multipliers[0], rows, factor=-1.0 if rows else 0.0, is_linear=True)
+    ]
     if len(loads.multipliers) > 1:
-        found.append(
-            CoupledNumber("last_tension", 0.0 - loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0)
+        numbers.append(
+            CouplingNumber("last_tension", 0.0 - loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0)
         )
-    return found
+    return numbers
 
 
-def of_screw(loads: CouplingLoads) -> list[CoupledNumber]:
-    """Its thrust; with friction all of it, and the torque that this takes."""
+def list_screw_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
+    """Return a screw's thrust; with friction, the total thrust and the torque that it takes."""
     if loads.friction is None:
-        return carried(loads)
-    from heuncli.loads.kinetostatics.thread_friction import whole_load  # few scenes have it
+        return list_carried_load(loads)
+    from heuncli.loads.kinetostatics.thread_friction import total_screw_load  # few scenes have it
 
-    force, torque = whole_load(loads)
+    force, torque = total_screw_load(loads)
     return [
-        CoupledNumber("force", force, (0,), linear=True),
-        CoupledNumber("torque", torque, (0,), is_moment=True, linear=True),
+        CouplingNumber("force", force, (0,), is_linear=True),
+        CouplingNumber("torque", torque, (0,), is_moment=True, is_linear=True),
     ]
 
 
-NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {
-    "wheel": of_wheel, "rope": of_rope, "screw": of_screw,
+NUMBERS: dict[str, Callable[[CouplingLoads], list[CouplingNumber]]] = {
+    "wheel": list_wheel_numbers, "rope": list_rope_numbers, "screw": list_screw_numbers,
 }  # fmt: skip

@@ -1,8 +1,8 @@
 """Section planes: the cuts of each section, on which side of them attachments lie, and the pieces they separate.
 
-The piece is what lies on the side the normal n points into. A run of cuts has one normal. Where a joint, load or point
-mass lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the
-ends of the run only the one inside.
+The piece lies on the side that the normal n points to. A run of cuts has one normal. Where a joint, load or point mass
+lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the ends
+of the run only the inner one.
 """
 
 from __future__ import annotations
@@ -18,34 +18,40 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.section_axes import first_axis
+from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.multibody.mechanism.model import GROUND, Mechanism, PointLoad
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
-from heuncli.scene.shapes.forms import Form
+from heuncli.scene.shapes.forms import CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
-from heuncli.scene.shapes.rotations import cross
+from heuncli.scene.shapes.rotations import cross_vectors
 
 if TYPE_CHECKING:
-    from heuncli.loads.kinetostatics.auto_properties import CutProperties, Cutting
+    from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
 
 BEFORE, BEYOND = 1.0, -1.0
-TOLD_APART = 4.0  # times what counts as in a plane: the corners of a run are told apart by as much (stretch.py)
+MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)
 
 
 @record
 class Cuts:
-    """The cuts of one section, k of them; body axes, SI.
+    """The k cuts of one section; body axes, SI.
 
-    n: normal; e1, e2: axes in the plane, (e1, e2, n) right-handed; points (k, 3); s (k,): distance along the run, None
-    for a single cut; side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there; near: what
-    counts as in it; pieces (k, 4, 4): pseudo-inertias about the body's origin; centroids (k, 3) of the cross-sections,
-    None without shapes; about: where moments are taken: "at", "centroid", or (body, point); line: whether the
-    reduction line (`sections.reduction_line`) is told, too; warnings: sentences on what the planes meet;
-    properties, strength [Pa]: for stresses, None where not given (of kind `auto` those of the form); form: the shapes
-    that are cut. struck: a blow is what they are looked at for, in which nothing is stressed or moves yet.
-
-    Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
+    n: normal
+    e1, e2: axes in the plane, (e1, e2, n) right-handed
+    points (k, 3): points of the planes
+    s (k,): distance along the run, None for a single cut
+    side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there
+    plane_tolerance: distance up to which a point counts as in the plane
+    pieces (k, 4, 4): pseudo-inertias about the body's origin
+    centroids (k, 3): of the cross-sections, None without shapes
+    moment_reference: where moments are taken: "at", "centroid", or (body, point)
+    line: whether the reduction line (`sections.reduction_line`) is reported, too
+    warnings: sentences on what the planes meet
+    properties, strength [Pa]: for stresses, None where not given (for kind `auto` those of the form)
+    form: the shapes that are cut
+    is_impulse: the cuts are for an impulse, in which there are no stresses and no motion yet Where cuts move along a
+    body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
 
     name: str
@@ -64,51 +70,51 @@ class Cuts:
     properties: Properties | None
     strength: float | None
     warnings: tuple[str, ...]
-    form: Form | None = None
+    form: CompositeSolid | None = None
     struck: bool = False
 
     @cached_property
-    def taken(self) -> CutProperties:
+    def auto_properties(self) -> CutProperties:
         """The properties taken from the shapes, of all cuts one after the other."""
-        from heuncli.loads.kinetostatics.auto_properties import properties_of  # few scenes ask for them
+        from heuncli.loads.kinetostatics.auto_properties import find_cut_properties  # few scenes ask for them
 
-        return properties_of(self.cutting)
+        return find_cut_properties(self.cut_form)
 
     @property
-    def cutting(self) -> Cutting:
+    def cut_form(self) -> CutForm:
         """The form and the planes that cut it."""
-        from heuncli.loads.kinetostatics.auto_properties import Cutting
+        from heuncli.loads.kinetostatics.auto_properties import CutForm
 
         assert self.form is not None
         side = np.broadcast_to(self.side, self.points.shape[:-1])
-        return Cutting(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
+        return CutForm(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
 
-    def laid_for(self, on: Sequence[object]) -> Cuts:
-        """These cuts: where they lie does not depend on what acts on the body (that of a Stretch may)."""
+    def at_attachments(self, attachments: Sequence[object]) -> Cuts:
+        """Return these cuts; their positions do not depend on what acts on the body (those of a Stretch may)."""
         return self
 
     @property
-    def without_stresses(self) -> Cuts:
-        """The cuts as they meet a blow: of impulses no stresses are told, and no energies."""
-        return replace(self, properties=None, struck=True)
+    def for_impulse(self) -> Cuts:
+        """The cuts for an impulse, without stresses and energies."""
+        return replace(self, properties=None, is_impulse=True)
 
 
-def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
-    """Loads, impulses, joints, stops with their points, body axes.
+def list_attachment_points(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+    """List loads, impulses, joints and stops with their points, body axes.
 
-    A joint whose point of action moves over the body is none of them, but where it comes to a stop.
+    A joint whose point of action moves over the body is left out, except where it comes to a stop.
     """
     points: list[tuple[str, Array]] = []
     for joint in mechanism.joints:
         if joint.b == body:
             points.append((f"joint {joint.name}", joint.q))
-        if joint.a == body and not JOINTS[joint.kind].wanders:
+        if joint.a == body and not JOINTS[joint.kind].has_moving_contact:
             points.append((f"joint {joint.name}", joint.p))
     for load in mechanism.loads:
         if isinstance(load, PointLoad) and load.spread is not None:
             continue
         points += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
-    for blow in mechanism.blows:
+    for blow in mechanism.impulses:
         if blow.body == body and blow.point is not None:
             points.append((f"impulse {blow.name}", blow.point))
     for stop in mechanism.stops:
@@ -116,28 +122,28 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
         if joint.a == body and stop.quantity == "travel":
             limits = [limit for limit in (stop.low, stop.high) if limit is not None]
             for limit in limits:
-                way = limit * joint.axis if joint.path is None else joint.path.at(limit)[0]
-                points.append((f"stop {stop.name}", joint.p + way))
+                limit_point = limit * joint.axis if joint.path is None else joint.path.evaluate(limit)[0]
+                points.append((f"stop {stop.name}", joint.p + limit_point))
     return points
 
 
-def spread_on(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
-    """Distributed loads on a body, each with the two ends of its line, (2, 3), body axes."""
-    found: dict[str, Array] = {}
+def list_distributed_loads(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+    """List the distributed loads on a body, each with the two ends of its line, (2, 3), body axes."""
+    lines: dict[str, Array] = {}
     for load in mechanism.loads:
         if isinstance(load, PointLoad) and load.spread is not None and load.body == body:
-            found.setdefault(f"force {load.name}", np.stack([load.spread.start, load.spread.end]))
-    return list(found.items())
+            lines.setdefault(f"force {load.name}", np.stack([load.spread.start, load.spread.end]))
+    return list(lines.items())
 
 
-def lay_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, Form]) -> tuple[Cuts, ...]:
-    """The cuts of all sections of a spec. Raises SpecError with every section that cannot be cut."""
+def make_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, CompositeSolid]) -> tuple[Cuts, ...]:
+    """Make the cuts of all sections of a spec. Raises SpecError with every section that cannot be cut."""
     cuts: list[Cuts] = []
     problems: list[Problem] = []
     index = {b.name: i for i, b in enumerate(mechanism.bodies)}
     for name, section in spec.sections.items():
         try:
-            cuts.append(_lay(mechanism, spec, name, section, index, forms.get(section.body)))
+            cuts.append(_make_section_cuts(mechanism, spec, name, section, index, forms.get(section.body)))
         except SpecError as error:
             problems += error.problems
         except Finding as finding:
@@ -148,51 +154,56 @@ def lay_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, Form]) -> tuple[
     return tuple(cuts)
 
 
-def _lay(
-    mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: Form | None
+def _make_section_cuts(
+    mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: CompositeSolid | None
 ) -> Cuts:
     body = index[section.body]
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
-    e1 = first_axis(n, section.first_axis)
+    e1 = make_first_axis(n, section.first_axis)
     points, s = _cut_points(section)
     d = points @ n
-    loaded, lines = attached(mechanism, body), spread_on(mechanism, body)
-    heights = np.array([point for _, point in loaded]).reshape(-1, 3) @ n
+    attachment_points, lines = list_attachment_points(mechanism, body), list_distributed_loads(mechanism, body)
+    heights = np.array([point for _, point in attachment_points]).reshape(-1, 3) @ n
     ends = np.array([line for _, line in lines]).reshape(-1, 2, 3) @ n
-    near = _near(form, np.append(heights, ends), d)
-    # of a distributed load's line an end in the plane carries nothing, but all of it may lie there
-    off = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
-    in_plane = off <= near
-    loaded, heights = loaded + lines, np.append(heights, ends)
+    plane_tolerance = _plane_tolerance(form, np.append(heights, ends), d)
+    # the end of a distributed load in the plane carries nothing, but the whole line may lie there
+    distances = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
+    in_plane = distances <= plane_tolerance
+    attachment_points, heights = attachment_points + lines, np.append(heights, ends)
     jumps = np.asarray(in_plane.any(axis=1))
     if form is not None:
-        jumps = jumps | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
+        jumps = jumps | form.has_mass_in_plane(n, d) | form.has_rod_in_plane(n, d)
     location = spec.location(f"sections.{name}")
     if s is None:
         if jumps[0] and section.side is None:
             raise SpecError(
-                _needs_side([what for (what, _), on in zip(loaded, in_plane[0], strict=True) if on], location)
+                _missing_side_problem(
+                    [what for (what, _), on in zip(attachment_points, in_plane[0], strict=True) if on], location
+                )
             )
         # kept also where nothing lies in the plane: joints may move into it during the run
         side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]])
     else:
-        if s[-1] <= TOLD_APART * near:
-            message = f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by {near:.3g} m"
+        if s[-1] <= MIN_RUN_FACTOR * plane_tolerance:
+            message = f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by {plane_tolerance:.3g} m"
             raise SpecError(Problem("short-run", message, location, hint="is the body's largest coordinate right?"))
-        take, side = _sides_of_run(jumps)
-        points, s, d = points[take], s[take], d[take]
-    reach = (float(heights.min(initial=np.inf)) - near, float(heights.max(initial=-np.inf)) + near)
-    pieces, centroids, warnings = _cut_pieces(location, name, section, form, n, points, side, reach)
-    about: str | tuple[int, Array] = "at"
+        selected, side = _choose_run_sides(jumps)
+        points, s, d = points[selected], s[selected], d[selected]
+    reach = (
+        float(heights.min(initial=np.inf)) - plane_tolerance,
+        float(heights.max(initial=-np.inf)) + plane_tolerance,
+    )
+    pieces, centroids, warnings = _make_pieces(location, name, section, form, n, points, side, reach)
+    moment_reference: str | tuple[int, Array] = "at"
     if section.reduce_to == "centroid":
-        about = "centroid"
+        moment_reference = "centroid"
     elif not isinstance(section.reduce_to, str):
         end = section.reduce_to
-        about = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
+        moment_reference = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
     cuts = Cuts(
-        name=name, body=body, n=n, e1=e1, e2=cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
-        centroids=centroids, about=about, line=section.reduce_to == "line", properties=section.properties,
+        name=name, body=body, n=n, e1=e1, e2=cross_vectors(n, e1), points=points, s=s, side=side, plane_tolerance=plane_tolerance, pieces=pieces,
+        centroids=centroids, moment_reference=moment_reference, line=section.reduce_to == "line", properties=section.properties,
         strength=section.strength, warnings=warnings, form=form,
     )  # fmt: skip
     if section.properties is not None and section.properties.kind == "auto":
@@ -201,49 +212,49 @@ def _lay(
 
 
 def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
-    """Raise SpecError where the properties of a cut cannot be taken from the shapes; of a run anywhere along it."""
-    from heuncli.loads.kinetostatics.auto_properties import properties_of
+    """Raise SpecError where the properties of a cut cannot be taken from the shapes; for a run, anywhere along it."""
+    from heuncli.loads.kinetostatics.auto_properties import find_cut_properties
 
-    cutting = cuts.cutting
+    cut_form = cuts.cut_form
     if cuts.s is not None and cuts.form is not None:
-        low, high = float(cutting.d[0]), float(cutting.d[-1])
+        low, high = float(cut_form.d[0]), float(cut_form.d[-1])
         corners = np.sort(cuts.form.corners(cuts.n))
-        inside = (corners > low + cuts.near) & (corners < high - cuts.near)
+        inside = (corners > low + cuts.plane_tolerance) & (corners < high - cuts.plane_tolerance)
         ends = np.concatenate([[low], corners[inside], [high]])
         d = np.concatenate([ends[:-1], 0.5 * (ends[1:] + ends[:-1]), ends[1:]])
         side = np.repeat([BEYOND, 0.0, BEFORE], len(ends) - 1)
-        long = np.tile(np.diff(ends) > 4.0 * cuts.near, 3)
-        cutting = replace(cutting, d=d[long], side=side[long])
-    missing = properties_of(cutting).missing
+        is_long = np.tile(np.diff(ends) > 4.0 * cuts.plane_tolerance, 3)
+        cut_form = replace(cut_form, d=d[is_long], side=side[is_long])
+    missing = find_cut_properties(cut_form).missing
     if missing:
-        k = min(missing, key=lambda k: float(cutting.d[k]))
-        where = f" at s = {float(cutting.d[k] - cuts.points[0] @ cuts.n):.6g} m" if cuts.s is not None else ""
+        k = min(missing, key=lambda k: float(cut_form.d[k]))
+        where = f" at s = {float(cut_form.d[k] - cuts.points[0] @ cuts.n):.6g} m" if cuts.s is not None else ""
         hint = "give them: circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut square to the bar"
         message = f"properties: auto cannot be taken from the shapes{where}: {missing[k]}"
         raise SpecError(Problem("no-properties", message, location, hint=hint))
 
 
 def _cut_points(section: Section) -> tuple[Array, Array | None]:
-    """Points of the cuts (k, 3) and their distances along the run (k,), None for a single cut."""
+    """Return the points of the cuts (k, 3) and their distances along the run (k,), None for a single cut."""
     if section.at is not None:
         return np.array([section.at], dtype=float), None
     first, last = np.array(section.from_), np.array(section.to)
-    share = np.linspace(0.0, 1.0, section.count)
-    points = first + share[:, None] * (last - first)
+    fraction = np.linspace(0.0, 1.0, section.count)
+    points = first + fraction[:, None] * (last - first)
     points[-1] = last
-    return points, share * float(np.sqrt((last - first) @ (last - first)))
+    return points, fraction * float(np.sqrt((last - first) @ (last - first)))
 
 
-def _near(form: Form | None, heights: Array, d: Array) -> float:
-    """The distance [m] from a plane up to which a point counts as in it: rounding of the coordinates."""
+def _plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> float:
+    """Return the distance [m] up to which a point counts as in a plane: rounding of the coordinates."""
     extent = float(np.abs(heights).max(initial=0.0))
     if form is not None:
-        return max(form.near, tolerances.IN_PLANE * extent)
+        return max(form.tolerance, tolerances.IN_PLANE * extent)
     return tolerances.IN_PLANE * max(extent, float(np.abs(d).max()), tolerances.LEAST_EXTENT)
 
 
-def _needs_side(names: list[str], location: SourceLocation) -> Problem:
-    """The problem of a single cut with something in its plane and no side given."""
+def _missing_side_problem(names: list[str], location: SourceLocation) -> Problem:
+    """Make the problem of a single cut with something in its plane and no side given."""
     what = " and ".join(names) if names else "a point mass or rod of the body"
     hint = "add side: before (the cut just before it, so that it belongs to the piece) or side: beyond"
     return Problem(
@@ -251,8 +262,10 @@ def _needs_side(names: list[str], location: SourceLocation) -> Problem:
     )
 
 
-def _sides_of_run(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
-    """For each cut of a run the index of its point and its side: two cuts where the loads jump, at the ends one."""
+def _choose_run_sides(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
+    """Return for each cut of a run the index of its point and its side: two cuts where the loads jump, one at the
+    ends.
+    """
     rows: list[tuple[int, float]] = []
     for k, jump in enumerate(jumps.tolist()):
         if not jump:
@@ -266,11 +279,13 @@ def _sides_of_run(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
     return [k for k, _ in rows], np.array([side for _, side in rows])
 
 
-def _cut_pieces(
-    location: SourceLocation, name: str, section: Section, form: Form | None, n: Array, points: Array, side: Array,
+def _make_pieces(
+    location: SourceLocation, name: str, section: Section, form: CompositeSolid | None, n: Array, points: Array, side: Array,
     reach: tuple[float, float],
 ) -> tuple[Array, Array | None, tuple[str, ...]]:  # fmt: skip
-    """Pieces, centroids and warnings of the cuts; reach: from the least to the largest n.x of joints and loads."""
+    """Make pieces, centroids and warnings of the cuts; reach: from the smallest to the largest n.x of joints and
+    loads.
+    """
     if form is None:
         if section.piece is None:
             raise SpecError(Problem(
@@ -279,17 +294,17 @@ def _cut_pieces(
             ))  # fmt: skip
         piece = section.piece
         return pseudo_inertia(piece.mass, np.array(piece.center), np.array(piece.inertia))[None], None, ()
-    d, run = points @ n, section.at is None
-    # the ends of a run may lie in end faces: there the limits from inside are taken
-    inside = side.copy()
-    if run:
-        inside[0], inside[-1] = BEYOND, BEFORE
-    cross_sections = form.cross_sections(n, d, inside)
-    bare = cross_sections.regions == 0
-    _require_body(location, section, form, n, d[bare], reach)
+    d, is_run = points @ n, section.at is None
+    # the ends of a run may lie in end faces: there the inner limits are used
+    inner_side = side.copy()
+    if is_run:
+        inner_side[0], inner_side[-1] = BEYOND, BEFORE
+    cross_sections = form.cross_sections(n, d, inner_side)
+    is_empty = cross_sections.regions == 0
+    _require_body(location, section, form, n, d[is_empty], reach)
     warnings = []
-    if bare.any():
-        meets = f"{int(bare.sum())} of {len(d)} cuts meet" if run else "the plane meets"
+    if is_empty.any():
+        meets = f"{int(is_empty.sum())} of {len(d)} cuts meet" if is_run else "the plane meets"
         where = "" if section.properties is None else ", and stresses are about the cut's point"
         what = f"{meets} no material of the body {section.body}; the loads are those of what lies beyond{where}"
         warnings.append(f"sections.{name}: {what}")
@@ -297,26 +312,26 @@ def _cut_pieces(
         most = int(cross_sections.regions.max())
         what = f"meets the body {section.body} in {most} separate places; the loads are their sum"
         warnings.append(f"sections.{name}: the plane {what}")
-    if form.rods_in_plane(n, d).any():
+    if form.has_rod_in_plane(n, d).any():
         what = f"runs along a rod of the body {section.body}; the rod's mass lies on the side chosen"
         warnings.append(f"sections.{name}: the plane {what}")
-    centroids = np.where(bare[:, None], points, cross_sections.centroid)
-    return form.pieces(n, d, side), centroids, tuple(warnings)
+    centroids = np.where(is_empty[:, None], points, cross_sections.centroid)
+    return form.piece_inertias(n, d, side), centroids, tuple(warnings)
 
 
 def _require_body(
-    location: SourceLocation, section: Section, form: Form, n: Array, d: Array, reach: tuple[float, float]
+    location: SourceLocation, section: Section, form: CompositeSolid, n: Array, d: Array, reach: tuple[float, float]
 ) -> None:
-    """Raise SpecError unless cuts at d, which meet no material, have something of the body on both sides of them.
+    """Raise SpecError unless cuts at d, which meet no material, have something of the body on both sides.
 
-    What is drawn apart is one body all the same: what the piece exerts on the remainder is as certain there as in a
+    A body drawn in separate parts is one body all the same: the load between its parts is as determinate there as in a
     bar without mass. It has no centroid.
     """
     what = "a cut of the run" if section.at is None else "the plane"
     low, high = form.extent(n)
-    off = d[(d < min(low, reach[0])) | (d > max(high, reach[1]))]
-    if len(off):
-        lies = float(off[0])
+    outside = d[(d < min(low, reach[0])) | (d > max(high, reach[1]))]
+    if len(outside):
+        lies = float(outside[0])
         hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane lies at {lies:.6g} m"
         raise SpecError(Problem("misses-body", f"{what} does not meet the body {section.body}", location, hint))
     if len(d) and section.reduce_to == "centroid":

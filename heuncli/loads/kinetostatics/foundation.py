@@ -1,6 +1,7 @@
 """The foundation (55), its central axis, and the mass effects (56).
 
     s = sum k - sum m x..,   M_s = sum (x - O) x k + couples - sum [(x_s - O) x m x_s.. + I sigma. + sigma x I sigma]
+
 s and M_s act ON the foundation; k is what is applied from outside: weight, force, couple. Heun (1901), no. 25-26.
 """
 
@@ -15,10 +16,10 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.reactions import in_plane
+from heuncli.loads.kinetostatics.reactions import project_to_plane
 from heuncli.multibody.mechanism.model import GROUND, JointLoad, Mechanism
 from heuncli.results.results import Array, Block, Mask
-from heuncli.scene.shapes.by_component import cross, instants_first, turned
+from heuncli.scene.shapes.by_component import cross_components, instants_first, rotate_components
 from heuncli.scene.shapes.rotations import cross_rows
 
 ElementKeys = Mapping[tuple[str, str], str]  # of `foundation.elements`, by block of the spec and name
@@ -31,116 +32,124 @@ BLOCK_OF = {
 
 
 def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
-    """m x_s.. and I sigma. + sigma x I sigma of every body, (n_t, n, 3), world axes."""
+    """Return m x_s.. and I sigma. + sigma x I sigma of every body, (n_t, n, 3), world axes."""
     force, moment = map(instants_first, inertia_rows(mechanism, states))
     return force, moment
 
 
 def inertia_rows(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
-    """The same by component, (n, 3, n_t)."""
+    """Return the inertia loads by component, (n, 3, n_t)."""
     m = np.array([b.mass for b in mechanism.bodies])
     J = np.array([b.inertia for b in mechanism.bodies])[..., None]
     w, u = states.turning
-    spin = turned(states.rows_of("R"), turned(J, u) + cross(w, turned(J, w)))
-    force = m[:, None, None] * states.rows_of("a_centre")
+    spin = rotate_components(
+        states.component_rows("R"), rotate_components(J, u) + cross_components(w, rotate_components(J, w))
+    )
+    force = m[:, None, None] * states.component_rows("a_centre")
     if not mechanism.planar:
         return force, spin
     return force * np.array([[1.0], [1.0], [0.0]]), spin * np.array([[0.0], [0.0], [1.0]])
 
 
-def total(
-    states: BodyStates, forces: Array, spin: Array, actions: Sequence[Action], about: Array
+def total_load(
+    states: BodyStates, forces: Array, spin: Array, actions: Sequence[Action], reference: Array
 ) -> tuple[Array, Array]:
-    """s and M_s, (n_t, 3); forces: weight less m x_s.. of every body, spin: I sigma. + sigma x I sigma, (n_t, n, 3)."""
+    """Return s and M_s, (n_t, 3).
+
+    forces: weight minus m x_s.. of every body
+    spin: I sigma. + sigma x I sigma, (n_t, n, 3)
+    """
     force = forces.sum(axis=1)
-    moment = (cross_rows(states.centre - about, forces) - spin).sum(axis=1)
+    moment = (cross_rows(states.centre - reference, forces) - spin).sum(axis=1)
     for action in actions:
-        if action.from_ is None:
+        if action.from_end is None:
             force = force + action.force
-            moment = moment + cross_rows(action.to.position - about, action.force) + action.moment
+            moment = moment + cross_rows(action.to_end.position - reference, action.force) + action.moment
     return force, moment
 
 
-def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], about: Array) -> Block:
-    """The foundation's block of the results; `about` (3,) is where moments are taken."""
+def foundation_block(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], reference: Array) -> Block:
+    """Return the foundation's block of the results; `reference` (3,) is where moments are taken."""
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    force, moment = total(states, weight - ma, spin, actions, about)
-    standing: Block = {"supports": {}, "elements": {}}
-    for (kind, name), on in on_ground(mechanism, actions).items():
-        where = {"point": on.about.copy()} if kind == "elements" else {}
-        standing[kind][name] = {"force": on.force, "moment": on.moment} | where
-    orbital = cross_rows(states.centre - about, ma).sum(axis=1)
+    force, moment = total_load(states, weight - ma, spin, actions, reference)
+    ground_blocks: Block = {"supports": {}, "elements": {}}
+    for (kind, name), load in find_ground_loads(mechanism, actions).items():
+        where = {"point": load.point.copy()} if kind == "elements" else {}
+        ground_blocks[kind][name] = {"force": load.force, "moment": load.moment} | where
+    orbital = cross_rows(states.centre - reference, ma).sum(axis=1)
     if mechanism.planar:
-        force, moment = in_plane(force, moment)
-        _, orbital = in_plane(force, orbital)
+        force, moment = project_to_plane(force, moment)
+        _, orbital = project_to_plane(force, orbital)
     block: Block = {
-        "about": about, "force": force, "moment": moment,
-        "axis": central_axis(force, moment, about, largest_force(mechanism, force, ma, actions)),
+        "about": reference, "force": force, "moment": moment,
+        "axis": central_axis(force, moment, reference, largest_force(mechanism, force, ma, actions)),
         "mass_effect": {
             "force": ma.sum(axis=1), "moment_orbital": orbital, "moment_spin": spin.sum(axis=1),
         },
     }  # fmt: skip
-    return block | {kind: own for kind, own in standing.items() if own}
+    return block | {kind: entries for kind, entries in ground_blocks.items() if entries}
 
 
-class OnGround(NamedTuple):
-    """A force and a moment ON the ground, and where the moment is taken."""
+class GroundLoad(NamedTuple):
+    """A force and a moment ON the ground, and the point that the moment is about."""
 
     force: Array
     moment: Array
     about: Array
 
-    def with_another(self, own: OnGround) -> OnGround:
-        """Together with another part of the same coupling, about the place of the first."""
-        moment = self.moment + own.moment + cross_rows(own.about - self.about, own.force)
-        return OnGround(self.force + own.force, moment, self.about)
+    def add(self, other: GroundLoad) -> GroundLoad:
+        """Add another part of the same coupling, about the point of the first."""
+        moment = self.moment + other.moment + cross_rows(other.point - self.point, other.force)
+        return GroundLoad(self.force + other.force, moment, self.point)
 
 
-def on_ground(mechanism: Mechanism, actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
-    """What stands on the ground: ("supports", joint), or ("elements", the key of a force, drive, stop or coupling)."""
-    found: dict[tuple[str, str], OnGround] = {}
-    keys = element_keys(mechanism)
+def find_ground_loads(mechanism: Mechanism, actions: Sequence[Action]) -> dict[tuple[str, str], GroundLoad]:
+    """Find the loads on the ground: ("supports", joint), or ("elements", the key of a force, drive, stop or
+    coupling).
+    """
+    loads: dict[tuple[str, str], GroundLoad] = {}
+    keys = make_element_keys(mechanism)
     for action in actions:
-        on = action.on_ground()
-        if on is None or action.from_ is None:
+        load = action.ground_load()
+        if load is None or action.from_end is None:
             continue
-        key = ("supports", action.name) if action.kind == "joint" else ("elements", element_key(keys, action))
-        own = OnGround(*on)
-        found[key] = own if key not in found else found[key].with_another(own)
-    return found
+        key = ("supports", action.name) if action.kind == "joint" else ("elements", find_element_key(keys, action))
+        ground_load = GroundLoad(*load)
+        loads[key] = ground_load if key not in loads else loads[key].add(ground_load)
+    return loads
 
 
-def element_keys(mechanism: Mechanism) -> ElementKeys:
-    """The keys in `foundation.elements` of what stands on the ground, by its block in the spec and its name.
+def make_element_keys(mechanism: Mechanism) -> ElementKeys:
+    """Return the keys in `foundation.elements` of what acts on the ground, by its block in the spec and its name.
 
-    The key is the name. Where a force, a drive or a coupling have one name, the later of them has its block before it:
+    The key is the name. Where a force, a drive or a coupling have one name, the later one is prefixed by its block:
     `drives.NAME`, `couplings.NAME`.
     """
-    grounded = {k for k, joint in enumerate(mechanism.joints) if GROUND in (joint.a, joint.b)}
-    standing = [
-        (mechanism.block_of(load), load.name)
+    grounded_joints = {k for k, joint in enumerate(mechanism.joints) if GROUND in (joint.a, joint.b)}
+    elements = [
+        (mechanism.spec_block(load), load.name)
         for load in mechanism.loads
         if (
-            load.joint in grounded
+            load.joint in grounded_joints
             if isinstance(load, JointLoad)
             else GROUND in (getattr(load, "a", 0), getattr(load, "b", 0))
         )
     ]
-    drives = ((joint.drive, JOINTS[joint.kind]) for k, joint in enumerate(mechanism.joints) if k in grounded)
-    standing += [("drives", drive.name) for drive, kind in drives if drive is not None and not kind.keeps_distance]
-    standing += [("stops", stop.name) for stop in mechanism.stops if stop.joint in grounded]
-    standing += [("couplings", own.name) for own in mechanism.couplings if GROUND in own.ends]
+    drives = ((joint.drive, JOINTS[joint.kind]) for k, joint in enumerate(mechanism.joints) if k in grounded_joints)
+    elements += [("drives", drive.name) for drive, kind in drives if drive is not None and not kind.keeps_distance]
+    elements += [("stops", stop.name) for stop in mechanism.stops if stop.joint in grounded_joints]
+    elements += [("couplings", own.name) for own in mechanism.couplings if GROUND in own.bodies_and_ground]
     keys: dict[tuple[str, str], str] = {}
-    taken: dict[str, str] = {}
-    for block, name in standing:
-        owner = taken.setdefault(name, block)
+    owners: dict[str, str] = {}
+    for block, name in elements:
+        owner = owners.setdefault(name, block)
         keys[block, name] = name if owner == block else f"{block}.{name}"
     return keys
 
 
-def element_key(keys: ElementKeys, action: Action) -> str:
-    """The key of an action on the ground; a load may be its coupling's own."""
+def find_element_key(keys: ElementKeys, action: Action) -> str:
+    """Return the key of an action on the ground; a load may belong to its coupling."""
     block = BLOCK_OF[action.kind]
     if block == "forces" and (block, action.name) not in keys:
         block = "couplings"
@@ -148,7 +157,8 @@ def element_key(keys: ElementKeys, action: Action) -> str:
 
 
 def largest_force(mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[Action]) -> float:
-    """The largest force at any of the instants [N], of those that s is the sum of, and s itself: s beside it is none.
+    """Return the largest force at any instant [N], of s and the forces that it is the sum of: the scale below which s
+    is zero.
 
     s (n_t, 3); ma: m x_s.. of every body, (n_t, n, 3).
     """
@@ -158,20 +168,21 @@ def largest_force(mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[A
     return max(float(np.sqrt(np.sum(s * s, axis=1).max(initial=0.0))), scale)
 
 
-def no_force(s: Array, largest: float) -> Mask:
-    """At which instants s (n_t, 3) is none beside the largest force of the run, (n_t,)."""
+def is_zero_force(s: Array, largest: float) -> Mask:
+    """Return at which instants s (n_t, 3) is zero compared with the largest force of the run, (n_t,)."""
     return np.asarray(np.sum(s * s, axis=1) <= (tolerances.NO_FORCE * largest) ** 2)
 
 
-def central_axis(s: Array, M: Array, about: Array, largest: float) -> Block:
-    """Central axis of the wrench (s, M about `about`): point nearest `about`, direction, pitch [m]; nan where s = 0.
+def central_axis(s: Array, M: Array, reference: Array, largest: float) -> Block:
+    """Return the central axis of the wrench (s, M about `reference`): nearest point, direction, pitch [m]; nan where s
+    = 0.
 
-    largest: the largest force of the run [N].
+    largest: the largest force of the run [N]
     """
     s2 = np.sum(s * s, axis=1)
-    safe = np.where(no_force(s, largest), np.nan, s2)
+    safe = np.where(is_zero_force(s, largest), np.nan, s2)
     return {
-        "point": about + cross_rows(s, M) / safe[:, None],
+        "point": reference + cross_rows(s, M) / safe[:, None],
         "direction": s / np.sqrt(safe)[:, None],
         "pitch": np.sum(s * M, axis=1) / safe,
     }

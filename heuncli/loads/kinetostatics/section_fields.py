@@ -1,7 +1,8 @@
-"""The largest shear and the largest von Mises stress over a section, by how both are spread over its shape.
+"""Compute the largest shear and the largest von Mises stress in a section from the distribution of both over its shape.
 
     sigma = axial + bend . u,   mises^2 = sigma^2 + 3 |tau|^2,   u the place, in half extents of the section
-Shear by Jourawski, tau = Q S/(I b), torsion by Saint-Venant. What is found is never below the largest of these fields.
+
+Shear by Jourawski, tau = Q S/(I b), torsion by Saint-Venant. The result is never below the largest of these fields.
 """
 
 from __future__ import annotations
@@ -16,18 +17,19 @@ from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array
 
-NEWTON = 8  # rounds from a start within a factor 1.5 of the solution: doubling digits, four would do
-CELLS = 10  # a half extent: what is known to a cell errs by a few per cent of the largest stress
+NEWTON_STEPS = 8  # rounds from a start within a factor 1.5 of the solution: doubling digits, four would do
+CELLS = 10  # per half extent: the error of a cell is a few per cent of the largest stress
 TERMS = 1000  # of the torsion's series: the rest is some 1e-6 along the short sides, and less elsewhere
 CHUNK = 512  # places in time and along a run treated together: the cells' arrays stay in the cache
 
 
 @record
 class StressFields:
-    """What the loads make of a section, [Pa], arrays of one shape, signs as the loads'.
+    """The stresses of the loads in a section, [Pa], arrays of one shape, signs as the loads'.
 
-    bend: of the normal stress at the ends of its half extents along e1, e2; shear: largest from Q1, Q2 alone;
-    torsion: largest from T alone.
+    bend: normal stress at the ends of its half extents along e1, e2
+    shear: largest from Q1, Q2 alone
+    torsion: largest from T alone
     """
 
     axial: Array
@@ -36,7 +38,7 @@ class StressFields:
     torsion: Array
 
     @property
-    def sheared(self) -> Array:
+    def shear_magnitude(self) -> Array:
         """Largest stress from the shear force alone where its components add up as vectors."""
         return np.asarray(np.hypot(*self.shear))
 
@@ -44,34 +46,41 @@ class StressFields:
 Largest = Callable[[StressFields], tuple[Array, Array]]  # shear and von Mises
 
 
-def circle(at: StressFields) -> tuple[Array, Array]:
-    """Of a solid circle: both on its edge, where tau = torsion + shear x u runs along it.
+def circle_maxima(stress: StressFields) -> tuple[Array, Array]:
+    """Return the maxima of a solid circle: both on its edge, where tau = torsion + shear x u runs along it.
 
-    Inside, tau = torsion (n x u) + q - (q.u) u (textbooks' directions: chords' ends along the edge): linear along a
-    chord normal to Q, as sigma is. So mises^2 is convex along it, and largest at an end.
+    Inside, tau = torsion (n x u) + q - (q.u) u (the textbooks' directions: at the ends of chords along the edge):
+    linear along a chord normal to Q, as sigma is. So mises^2 is convex along it, and largest at an end.
     """
-    return np.abs(at.torsion) + at.sheared, np.sqrt(on_edge(at))
+    return np.abs(stress.torsion) + stress.shear_magnitude, np.sqrt(max_on_edge(stress))
 
 
-def tube(at: StressFields) -> tuple[Array, Array]:
-    """Of a ring: on its edge, as a thin one; but what shear takes off the torsion is not counted on inside thick walls.
+def tube_maxima(stress: StressFields) -> tuple[Array, Array]:
+    """Return the maxima of a ring: on its edge, as for a thin one; inside thick walls shear does not reduce the
+    torsion.
 
-    Along a chord the shear that Jourawski gives is the same: convex again, and below shear * (cos of the place)^2.
+    Along a chord the shear by Jourawski is constant: convex again, and below shear * (cos of the place)^2.
     """
-    unrelieved = (np.abs(at.axial) + np.hypot(*at.bend)) ** 2 + 3.0 * at.torsion**2
-    return np.abs(at.torsion) + at.sheared, np.sqrt(np.maximum(on_edge(at), unrelieved))
+    unrelieved = (np.abs(stress.axial) + np.hypot(*stress.bend)) ** 2 + 3.0 * stress.torsion**2
+    return np.abs(stress.torsion) + stress.shear_magnitude, np.sqrt(np.maximum(max_on_edge(stress), unrelieved))
 
 
-def on_edge(at: StressFields) -> Array:
-    """Largest (axial + bend.u)^2 + 3 (torsion + (shear2, -shear1).u)^2 on the circle |u| = 1.
+def max_on_edge(stress: StressFields) -> Array:
+    """Return the largest (axial + bend.u)^2 + 3 (torsion + (shear2, -shear1).u)^2 on the circle |u| = 1.
 
-    u.H u + 2 g.u + c is nowhere above c + l + g.(l - H)^-1 g for any l above the eigenvalues of H; the least of these
-    bounds is met (a trust region's dual): |(l - H)^-1 g| = 1, by Newton's steps on the inverse of it, from below.
+    u.H u + 2 g.u + c is nowhere above c + l + g.(l - H)^-1 g for any l above the eigenvalues of H. The smallest of
+    these bounds is attained (a trust region's dual): |(l - H)^-1 g| = 1, by Newton's steps on its inverse, from below.
     """
-    scale = np.abs(at.axial) + np.abs(at.torsion) + np.hypot(*at.bend) + at.sheared
-    one = np.where(scale > 0.0, scale, 1.0)
+    scale = np.abs(stress.axial) + np.abs(stress.torsion) + np.hypot(*stress.bend) + stress.shear_magnitude
+    safe_scale = np.where(scale > 0.0, scale, 1.0)
     a, t, b1, b2, q1, q2 = (
-        v / one for v in (at.axial, math.sqrt(3.0) * at.torsion, *at.bend, *(math.sqrt(3.0) * q for q in at.shear))
+        v / safe_scale
+        for v in (
+            stress.axial,
+            math.sqrt(3.0) * stress.torsion,
+            *stress.bend,
+            *(math.sqrt(3.0) * q for q in stress.shear),
+        )
     )
     difference, mixed = 0.5 * (b1 * b1 + q2 * q2 - b2 * b2 - q1 * q1), b1 * b2 - q1 * q2
     radius = np.hypot(difference, mixed)
@@ -80,31 +89,35 @@ def on_edge(at: StressFields) -> Array:
     g1, g2 = np.abs(x * np.cos(turn) + y * np.sin(turn)), np.abs(y * np.cos(turn) - x * np.sin(turn))
     gap = 2.0 * radius
     # l = the larger eigenvalue + above
-    above = np.maximum(np.maximum(g1, g2 - gap), tolerances.EPS * tolerances.EPS)
-    for _ in range(NEWTON):
-        u1, u2 = g1 / above, g2 / (above + gap)
+    excess = np.maximum(np.maximum(g1, g2 - gap), tolerances.EPS * tolerances.EPS)
+    for _ in range(NEWTON_STEPS):
+        u1, u2 = g1 / excess, g2 / (excess + gap)
         square = u1 * u1 + u2 * u2
-        slope = u1 * u1 / above + u2 * u2 / (above + gap)
-        further = np.sqrt(square) > 1.0
-        above = above + np.where(further, square * (np.sqrt(square) - 1.0) / np.where(further, slope, 1.0), 0.0)
-    largest = 0.5 * (b1 * b1 + b2 * b2 + q1 * q1 + q2 * q2) + radius + above + g1 * g1 / above + g2 * g2 / (above + gap)
+        slope = u1 * u1 / excess + u2 * u2 / (excess + gap)
+        is_below = np.sqrt(square) > 1.0
+        excess = excess + np.where(is_below, square * (np.sqrt(square) - 1.0) / np.where(is_below, slope, 1.0), 0.0)
+    largest = (
+        0.5 * (b1 * b1 + b2 * b2 + q1 * q1 + q2 * q2) + radius + excess + g1 * g1 / excess + g2 * g2 / (excess + gap)
+    )
     return np.asarray((largest + a * a + t * t) * scale * scale)
 
 
-def unknown(at: StressFields) -> tuple[Array, Array]:
-    """Of a section whose shape is not known: as if all that is largest met in one place."""
-    shear = np.abs(at.torsion) + at.sheared
-    return shear, np.sqrt((np.abs(at.axial) + np.abs(at.bend[0]) + np.abs(at.bend[1])) ** 2 + 3.0 * shear**2)
+def unknown_shape_maxima(stress: StressFields) -> tuple[Array, Array]:
+    """Return bounds for a section of unknown shape: as if all largest stresses acted at one place."""
+    shear = np.abs(stress.torsion) + stress.shear_magnitude
+    return shear, np.sqrt(
+        (np.abs(stress.axial) + np.abs(stress.bend[0]) + np.abs(stress.bend[1])) ** 2 + 3.0 * shear**2
+    )
 
 
-def rectangle(width: float, height: float) -> Largest:
-    """Of a solid rectangle, width along e1: largest of bounds over cells of it.
+def make_rectangle_maxima(width: float, height: float) -> Largest:
+    """Make the function of the maxima of a solid rectangle, width along e1: the largest of bounds over its cells.
 
     All stresses are linear in the loads, with factors that lie in an interval over a cell.
     """
     middle, half = rectangle_factors(width, height)
 
-    def largest(at: StressFields) -> tuple[Array, Array]:
+    def rectangle_maxima(at: StressFields) -> tuple[Array, Array]:
         loads = np.stack(np.broadcast_arrays(at.axial, *at.bend, *at.shear, at.torsion)).reshape(6, -1)
         shear, mises = np.empty((2, loads.shape[1]))
         for first in range(0, loads.shape[1], CHUNK):
@@ -115,45 +128,48 @@ def rectangle(width: float, height: float) -> Largest:
             mises[first : first + CHUNK] = np.sqrt((sigma * sigma + 3.0 * square).max(axis=0))
         return shear.reshape(np.shape(at.axial)), mises.reshape(np.shape(at.axial))
 
-    return largest
+    return rectangle_maxima
 
 
 @lru_cache(maxsize=32)
 def rectangle_factors(width: float, height: float) -> tuple[Array, Array]:
-    """Middles and half widths of the intervals: rows sigma, tau1, tau2 of all cells, columns the loads of `Fields`."""
+    """Return midpoints and half widths of the intervals: rows sigma, tau1, tau2 of all cells, columns the loads of
+    `StressFields`.
+    """
     u = np.linspace(0.0, 1.0, CELLS + 1)
     parabola = 1.0 - u * u
-    twist1, twist2 = twist(width, height, u)
+    twist1, twist2 = torsion_stresses(width, height, u)
     # both fall with one coordinate and grow with the other: phi_xy has one sign in a quadrant
     low1, high1, low2, high2 = twist1[1:, :-1], twist1[:-1, 1:], twist2[:-1, 1:], twist2[1:, :-1]
     i, j = np.meshgrid(np.arange(CELLS), np.arange(CELLS), indexing="ij")
     zero = np.zeros((CELLS, CELLS))
-    none, all_over = (zero, zero), (zero + 1.0, zero + 1.0)
+    zero_interval, one_interval = (zero, zero), (zero + 1.0, zero + 1.0)
     fall1, fall2 = (parabola[i], parabola[i + 1]), (parabola[j], parabola[j + 1])
     rows: list[list[list[tuple[Array, Array]]]] = [[], [], []]
     for s1, s2 in ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
         rise1, rise2 = (s1 * u[i], s1 * u[i + 1]), (s2 * u[j], s2 * u[j + 1])
-        rows[0].append([all_over, rise1, rise2, none, none, none])
-        rows[1].append([none, none, none, fall1, none, (-s2 * low1, -s2 * high1)])
-        rows[2].append([none, none, none, none, fall2, (s1 * low2, s1 * high2)])
+        rows[0].append([one_interval, rise1, rise2, zero_interval, zero_interval, zero_interval])
+        rows[1].append([zero_interval, zero_interval, zero_interval, fall1, zero_interval, (-s2 * low1, -s2 * high1)])
+        rows[2].append([zero_interval, zero_interval, zero_interval, zero_interval, fall2, (s1 * low2, s1 * high2)])
     ends = np.array(rows).reshape(3, 4, 6, 2, -1).transpose(3, 0, 1, 4, 2).reshape(2, -1, 6)
     return 0.5 * (ends[0] + ends[1]), 0.5 * np.abs(ends[1] - ends[0])
 
 
-def twist(width: float, height: float, u: Array) -> tuple[Array, Array]:
-    """Sizes of the torsional stresses along e1 and e2 at (u[i], u[j]), u in half sides, over the largest of all.
+def torsion_stresses(width: float, height: float, u: Array) -> tuple[Array, Array]:
+    """Return magnitudes of the torsional stresses along e1 and e2 at (u[i], u[j]), u in half sides, relative to the
+    largest.
 
     Saint-Venant's series, Timoshenko, Goodier, Theory of Elasticity, section 109; the long side is its second.
     """
     if width > height:
-        along2, along1 = twist(height, width, u)
+        along2, along1 = torsion_stresses(height, width, u)
         return along1.T, along2.T
     ratio = height / width
     n = np.arange(1, 2 * TERMS, 2)[:, None, None]
     x, y = 0.5 * math.pi * n * u[:, None], 0.5 * math.pi * n * ratio * u
     sign = np.where(n % 4 == 1, 1.0, -1.0) / n**2
-    whole = np.exp(-math.pi * n * ratio)
-    edge = np.exp(y - 0.5 * math.pi * n * ratio) / (1.0 + whole)
+    decay = np.exp(-math.pi * n * ratio)
+    edge = np.exp(y - 0.5 * math.pi * n * ratio) / (1.0 + decay)
     cosh, sinh = edge * (1.0 + np.exp(-2.0 * y)), edge * (1.0 - np.exp(-2.0 * y))
     c = 8.0 / math.pi**2
     along1 = c * (sign * sinh * np.cos(x)).sum(axis=0)

@@ -3,6 +3,7 @@
     s' = sum' k - sum' m x..             force of the piece on the remainder [N]
     M'(P) = sum' (x - P) x k + couples - sum' (x - P) x m x..     about P [N m]
     N = s'.n (tension > 0), Q1 = s'.e1, Q2 = s'.e2, T = M'.n, M1 = M'.e1, M2 = M'.e2
+
 sum' runs over the piece, n points into it; k is its weight, the loads and the joints on it. With the acceleration
 matrix Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] sum' m (x.. - g) of a piece of pseudo-inertia P is the last column
 of Acc P, its moment about the body's origin the skew part of the rest. Heun (1901), (57)-(61), corrected.
@@ -20,17 +21,18 @@ from heuncli.base.records import record
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.cuts import Cuts
-from heuncli.loads.kinetostatics.stress import MODULI, stresses
+from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 
 
 @record
 class Attachment:
-    """Force and couple ON a body, body axes, (n_t, 3); at: their point (3,), or (n_t, 3) if it moves over the body.
+    """Force and couple ON a body, body axes, (n_t, 3); by causes: (n_c, n_t, 3).
 
-    to: the end of the line from `at` along which the force is spread, falling evenly to nothing; None where it is not.
-    By causes: (n_c, n_t, 3).
+    point: where they act (3,), or (n_t, 3) if it moves over the body
+    line_end: end of the line from `point` along which the force is distributed, decreasing linearly to zero; None
+    otherwise
     """
 
     at: Array
@@ -38,66 +40,73 @@ class Attachment:
     moment: Array
     to: Array | None = None
 
-    def beyond(self, cuts: Cuts) -> tuple[Array, Array]:
-        """What part of it stands on the pieces, (k,), and that part times its place, (k, 3).
+    def share_on_pieces(self, cuts: Cuts) -> tuple[Array, Array]:
+        """Return the share of it that acts on the pieces, (k,), and that share times its place, (k, 3).
 
         (n_t, k) and (n_t, k, 3) where the point or the cuts move over the body.
         """
-        if self.to is None:
-            part = on_piece(cuts, self.at)
-            return part, part[..., None] * self.at[..., None, :]
-        return line_on_piece(cuts, self.at, self.to)
+        if self.line_end is None:
+            fraction = is_on_piece(cuts, self.point)
+            return fraction, fraction[..., None] * self.point[..., None, :]
+        return line_share_on_piece(cuts, self.point, self.line_end)
 
 
-def attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[Attachment]:
-    """The loads of the actions on a body, each at its point of application."""
+def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[Attachment]:
+    """Return the loads of the actions on a body, each at its point of application."""
     R = states.R[:, body]
-    attached: list[Attachment] = []
+    result: list[Attachment] = []
     for action in actions:
-        for end, force, moment in action.on_bodies():
+        for end, force, moment in action.iter_ends():
             if end.body != body:
                 continue
-            for along in action.spread:
-                F = in_body_axes(R, along.force)
-                attached.append(Attachment(along.spread.start, F, np.zeros_like(F), along.spread.end))
+            for distributed_force in action.spread:
+                F = to_body_axes(R, distributed_force.force)
+                result.append(
+                    Attachment(distributed_force.spread.start, F, np.zeros_like(F), distributed_force.spread.end)
+                )
             if action.spread:
                 continue
-            F, M = in_body_axes(R, np.array([force, moment]))
+            F, M = to_body_axes(R, np.array([force, moment]))
             if end.point is None:
-                attached.append(Attachment(in_body_axes(R, end.position - states.x[:, body]), F, M))
+                result.append(Attachment(to_body_axes(R, end.position - states.x[:, body]), F, M))
                 continue
-            if end.apart:
-                M = M + cross_rows(in_body_axes(R, end.position - states.x[:, body]) - end.point, F)
-            attached.append(Attachment(end.point, F, M))
-    return attached
+            if end.is_offset:
+                M = M + cross_rows(to_body_axes(R, end.position - states.x[:, body]) - end.point, F)
+            result.append(Attachment(end.point, F, M))
+    return result
 
 
-def in_body_axes(R: Array, v: Array) -> Array:
-    """R' v: body components of vectors v (..., n_t, 3) in world axes; R (n_t, 3, 3), body to world."""
+def to_body_axes(R: Array, v: Array) -> Array:
+    """Return R' v: body components of vectors v (..., n_t, 3) in world axes; R (n_t, 3, 3), body to world."""
     components = np.empty(v.shape)
     for i in range(3):
         components[..., i] = R[:, 0, i] * v[..., 0] + R[:, 1, i] * v[..., 1] + R[:, 2, i] * v[..., 2]
     return components
 
 
-HUGE = 1 << 19  # doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
+HUGE_PAGE_DOUBLES = (
+    1 << 19
+)  # doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
 
 
-def scratch(*shape: int) -> Array:
-    """Uninitialised memory for arrays side by side."""
+def allocate(*shape: int) -> Array:
+    """Return uninitialised memory for adjacent arrays."""
     size = math.prod(shape)
-    return np.empty(max(size, HUGE) if size > HUGE // 8 else size)[:size].reshape(shape)
+    return np.empty(max(size, HUGE_PAGE_DOUBLES) if size > HUGE_PAGE_DOUBLES // 8 else size)[:size].reshape(shape)
 
 
-def on_piece(cuts: Cuts, at: Array) -> Array:
-    """1 where a point lies on the piece of a cut, else 0: (k,), or (n_t, k) for a point that moves over the body."""
-    beyond = at[..., None, :] @ cuts.n - cuts.points @ cuts.n
-    mask: Array = np.where(np.abs(beyond) <= cuts.near, (cuts.side > 0.0), beyond > 0.0).astype(float)
+def is_on_piece(cuts: Cuts, point: Array) -> Array:
+    """Return 1 where a point lies on the piece of a cut, else 0: (k,), or (n_t, k) for a point that moves over the
+    body.
+    """
+    height = point[..., None, :] @ cuts.n - cuts.points @ cuts.n
+    mask: Array = np.where(np.abs(height) <= cuts.plane_tolerance, (cuts.side > 0.0), height > 0.0).astype(float)
     return mask
 
 
-def line_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
-    """What part of a force spread from start to end stands on the pieces, and that part times its place.
+def line_share_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
+    """Return the share of a force distributed from start to end that acts on the pieces, and that share times its
+    place.
 
     From a to b of the line, parts of its length x = 0 to 1, where it is 2 (1 - x) dx at start + x (end - start):
 
@@ -107,22 +116,24 @@ def line_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
     """
     d = cuts.points @ cuts.n
     first, last = float(start @ cuts.n) - d, float(end @ cuts.n) - d
-    cut = (first > 0.0) != (last > 0.0)
-    at = np.where(cut, first, 0.0) / np.where(cut, first - last, 1.0)
-    a = np.where(first > 0.0, 0.0, np.where(cut, at, 1.0))
-    b = np.where(last > 0.0, 1.0, np.where(cut, at, a))
-    in_plane = (np.abs(first) <= cuts.near) & (np.abs(last) <= cuts.near)
+    is_cut = (first > 0.0) != (last > 0.0)
+    crossing = np.where(is_cut, first, 0.0) / np.where(is_cut, first - last, 1.0)
+    a = np.where(first > 0.0, 0.0, np.where(is_cut, crossing, 1.0))
+    b = np.where(last > 0.0, 1.0, np.where(is_cut, crossing, a))
+    in_plane = (np.abs(first) <= cuts.plane_tolerance) & (np.abs(last) <= cuts.plane_tolerance)
     a = np.where(in_plane, 0.0, a)
     b = np.where(in_plane, (np.broadcast_to(cuts.side, d.shape) > 0.0).astype(float), b)
-    part = (b - a) * (2.0 - a - b)
-    run = (b - a) * ((a + b) - 2.0 / 3.0 * (a * a + a * b + b * b))
-    return part, part[..., None] * start + run[..., None] * (end - start)
+    fraction = (b - a) * (2.0 - a - b)
+    line_moment = (b - a) * ((a + b) - 2.0 / 3.0 * (a * a + a * b + b * b))
+    return fraction, fraction[..., None] * start + line_moment[..., None] * (end - start)
 
 
 def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
-    """E' = tr(V P V') / 2 of the pieces (n_t, k) [J], V = [hat(sigma), x_o.] in body axes, P their pseudo-inertias."""
+    """Return E' = tr(V P V') / 2 of the pieces (n_t, k) [J], V = [hat(sigma), x_o.] in body axes, P their
+    pseudo-inertias.
+    """
     R = states.R[:, cuts.body]
-    w, v = in_body_axes(R, np.array([states.omega[:, cuts.body], states.v[:, cuts.body]]))
+    w, v = to_body_axes(R, np.array([states.omega[:, cuts.body], states.v[:, cuts.body]]))
     V = np.zeros((len(w), 3, 4))
     for i in range(3):
         V[:, i, (i + 1) % 3] = -w[:, (i + 2) % 3]
@@ -133,14 +144,16 @@ def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
 
 
 def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
-    """Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
+    """Return Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
     vectors = np.array([states.omega[:, body], states.alpha[:, body], states.a[:, body] - gravity])
-    return accelerations_as_matrix(*in_body_axes(R, vectors))
+    return make_acceleration_matrix(*to_body_axes(R, vectors))
 
 
-def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
-    """Acc (3, ..., n_t, 4) of angular velocity w, its rate u and the acceleration a of the origin, all in body axes."""
+def make_acceleration_matrix(w: Array, u: Array, a: Array) -> Array:
+    """Return Acc (3, ..., n_t, 4) of angular velocity w, its rate u and the acceleration a of the origin, in body
+    axes.
+    """
     A = np.empty((3, *u.shape[:-1], 4))
     square = np.sum(w * w, axis=-1)
     for i in range(3):
@@ -154,78 +167,80 @@ def accelerations_as_matrix(w: Array, u: Array, a: Array) -> Array:
     return A
 
 
-def piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
-    """s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
+def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment]) -> tuple[Array, Array]:
+    """Return s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
 
-    Inertia and the loads at fixed points are one product of instants and cuts a component, (n_t, 4 + m) (4 + m, k); the
-    levers from the cut's point are in the second factor. A load whose point moves over the body may change pieces and
-    is added by itself. By causes: (3, n_c, n_t, k), of A (3, n_c, n_t, 4).
+    Inertia and the loads at fixed points are one product of instants and cuts for each component, (n_t, 4 + m) (4 + m,
+    k); the levers from the cut's point are in the second factor. A load whose point moves over the body may change
+    pieces and is added separately. By causes: (3, n_c, n_t, k), with A (3, n_c, n_t, 4).
     """
     if cuts.points.ndim == 3:
-        return moving_piece_loads(cuts, A, on)
+        return find_moving_piece_loads(cuts, A, attached_loads)
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
-    fixed = [a for a in on if a.at.ndim == 1]
-    beyond = [a.beyond(cuts) for a in fixed]
-    mask = np.array([part for part, _ in beyond]).reshape(-1, len(cuts.points))
-    first = np.array([moment for _, moment in beyond]).reshape(-1, len(cuts.points), 3)
-    B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed)], axis=-1) for i in range(3)]
+    fixed_loads = [a for a in attached_loads if a.point.ndim == 1]
+    shares = [a.share_on_pieces(cuts) for a in fixed_loads]
+    mask = np.array([part for part, _ in shares]).reshape(-1, len(cuts.points))
+    first = np.array([moment for _, moment in shares]).reshape(-1, len(cuts.points), 3)
+    B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed_loads)], axis=-1) for i in range(3)]
     C = np.concatenate([-P[:, 3], mask])
-    force, moment = scratch(2, 3, *A.shape[1:-1], len(cuts.points))
+    force, moment = allocate(2, 3, *A.shape[1:-1], len(cuts.points))
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         np.matmul(B[i], C, out=force[i])
-        left = np.concatenate([B[j], B[k], *(a.moment[..., i : i + 1] for a in fixed)], axis=-1)
+        left = np.concatenate([B[j], B[k], *(a.moment[..., i : i + 1] for a in fixed_loads)], axis=-1)
         right = (
             np.concatenate([P[:, k], -first[..., k]]) + p[k] * C,
             np.concatenate([-P[:, j], first[..., j]]) - p[j] * C,
             mask,
         )
         np.matmul(left, np.concatenate(right), out=moment[i])
-    for a in on:
-        if a.at.ndim == 2:
-            there = on_piece(cuts, a.at)
+    for a in attached_loads:
+        if a.point.ndim == 2:
+            piece_mask = is_on_piece(cuts, a.point)
             for i in range(3):
                 j, k = (i + 1) % 3, (i + 2) % 3
-                lever_j, lever_k = a.at[:, j, None] - p[j], a.at[:, k, None] - p[k]
-                force[i] += a.force[..., i, None] * there
+                lever_j, lever_k = a.point[:, j, None] - p[j], a.point[:, k, None] - p[k]
+                force[i] += a.force[..., i, None] * piece_mask
                 moment[i] += (
                     a.moment[..., i, None] + lever_j * a.force[..., k, None] - lever_k * a.force[..., j, None]
-                ) * there
+                ) * piece_mask
     return force, moment
 
 
-def moving_piece_loads(cuts: Cuts, A: Array, on: Sequence[Attachment]) -> tuple[Array, Array]:
-    """`piece_loads` of cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
+def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment]) -> tuple[Array, Array]:
+    """Return the piece loads of cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
     p = cuts.points.transpose(2, 0, 1)
     inertia = -np.einsum("i...tj,tkjl->il...tk", A, cuts.pieces)
     force = inertia[:, 3].copy()
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
-    moment -= crossed(p, force)
-    for a in on:
-        part, first = a.beyond(cuts)
+    moment -= cross_components(p, force)
+    for a in attached_loads:
+        fraction, first = a.share_on_pieces(cuts)
         F, M = (np.moveaxis(x, -1, 0)[..., None] for x in (a.force, a.moment))
-        force += F * part
-        moment += crossed(np.moveaxis(first, -1, 0) - p * part, F)
-        moment += M * part
+        force += F * fraction
+        moment += cross_components(np.moveaxis(first, -1, 0) - p * fraction, F)
+        moment += M * fraction
     return force, moment
 
 
-def crossed(a: Array, b: Array) -> Array:
-    """a x b of vectors (3, ...)."""
+def cross_components(a: Array, b: Array) -> Array:
+    """Return a x b of vectors (3, ...)."""
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def shifted(force: Array, moment: Array, by: Array) -> Array:
-    """Moments about points that lie `by` from the old one, (3, n_t, k): M - by x s."""
-    return moment - crossed(by, force)
+def shift_moment(force: Array, moment: Array, offset: Array) -> Array:
+    """Return moments about points at an `offset` from the old one, (3, n_t, k): M - offset x s."""
+    return moment - cross_components(offset, force)
 
 
 @record
 class CutPlaces:
-    """Where the cuts of a body are and where their moments are taken: at, about, centre (3, n_t, k), body axes [m].
+    """Where the cuts of a body are and where their moments are taken, (3, n_t, k), body axes [m].
 
-    at: the cuts' own points; about: where moments are told; centre: the centroids, where there are shapes, else `at`.
-    R (n_t, 3, 3), origin (n_t, 3): the body's attitude and place.
+    cut_points: the cuts' own points
+    moment_points: where moments are reported
+    centroids: the centroids, where there are shapes, else `cut_points` R (n_t, 3, 3), origin (n_t, 3): the body's
+    attitude and position
     """
 
     cuts: Cuts
@@ -235,9 +250,11 @@ class CutPlaces:
     about: Array
     centre: Array
 
-    def in_world_axes(self, v: Array, out: Array | None = None, is_position: bool = False) -> Array:
-        """World components (n_t, k, 3) of a vector (3, n_t, k) in body axes, or of a position from the origin."""
-        world = np.empty(v.shape) if out is None else out
+    def to_world_axes(self, v: Array, output: Array | None = None, is_position: bool = False) -> Array:
+        """Return world components (n_t, k, 3) of a vector (3, n_t, k) in body axes, or of a position from the
+        origin.
+        """
+        world = np.empty(v.shape) if output is None else output
         if v.ndim == 3 and v.strides[1] == 0:  # the same at all instants: one product
             np.matmul(self.R.transpose(1, 0, 2), v[:, 0], out=world)
         else:
@@ -247,46 +264,58 @@ class CutPlaces:
             world += self.origin.T[:, :, None]
         return world.transpose(*range(1, v.ndim), 0)
 
-    def wrench(self, force: Array, moment: Array) -> tuple[Array, Array]:
-        """Loads given about the cuts' points, with moments where they are asked for, body axes."""
-        return force, moment if self.about is self.at else shifted(force, moment, self.about - self.at)
+    def shift_wrench(self, force: Array, moment: Array) -> tuple[Array, Array]:
+        """Return loads given about the cuts' points, with moments about the reported points, body axes."""
+        return force, moment if self.moment_points is self.cut_points else shift_moment(
+            force, moment, self.moment_points - self.cut_points
+        )
 
     def components(self, force: Array, moment: Array) -> Block:
-        """All components of loads given about the cuts' points; T0, M10, M20 about the centroid, for stresses."""
-        _, about = self.wrench(force, moment)
-        c = self.cuts
-        space = scratch(15, *force.shape[1:])
+        """Return all components of loads given about the cuts' points; T0, M10, M20 about the centroid, for
+        stresses.
+        """
+        _, moments = self.shift_wrench(force, moment)
+        cuts = self.cuts
+        space = allocate(15, *force.shape[1:])
         block: Block = {
-            "force": self.in_world_axes(force, space[9:12]),
-            "moment": self.in_world_axes(about, space[12:15]),
+            "force": self.to_world_axes(force, space[9:12]),
+            "moment": self.to_world_axes(moments, space[12:15]),
         }
         rows = [
-            ("N", c.n, force),
-            ("Q1", c.e1, force),
-            ("Q2", c.e2, force),
-            ("T", c.n, about),
-            ("M1", c.e1, about),
-            ("M2", c.e2, about),
+            ("N", cuts.n, force),
+            ("Q1", cuts.e1, force),
+            ("Q2", cuts.e2, force),
+            ("T", cuts.n, moments),
+            ("M1", cuts.e1, moments),
+            ("M2", cuts.e2, moments),
         ]
-        if c.properties is not None:
-            centre = moment if self.centre is self.at else shifted(force, moment, self.centre - self.at)
-            rows += [("T0", c.n, centre), ("M10", c.e1, centre), ("M20", c.e2, centre)]
-        for out, (name, axis, v) in zip(space, rows, strict=False):
-            block[name] = along(axis, v, out)
+        if cuts.properties is not None:
+            centroid_moments = (
+                moment
+                if self.centroids is self.cut_points
+                else shift_moment(force, moment, self.centroids - self.cut_points)
+            )
+            rows += [
+                ("T0", cuts.n, centroid_moments),
+                ("M10", cuts.e1, centroid_moments),
+                ("M20", cuts.e2, centroid_moments),
+            ]
+        for output, (name, axis, v) in zip(space, rows, strict=False):
+            block[name] = axis_component(axis, v, output)
         return block
 
 
-def along(axis: Array, v: Array, out: Array | None = None) -> Array:
-    """axis . v of vectors (3, n_t, k), (n_t, k); terms with a zero in axis are skipped."""
+def axis_component(axis: Array, v: Array, output: Array | None = None) -> Array:
+    """Return axis . v of vectors (3, n_t, k), (n_t, k); terms with a zero in axis are skipped."""
     (first, x), *rest = [(i, x) for i, x in enumerate(axis.tolist()) if x != 0.0]
-    component: Array = np.multiply(v[first], x, out=out)
+    component: Array = np.multiply(v[first], x, out=output)
     for i, x in rest:
         component += x * v[i]
     return component
 
 
-def planes(cuts: Cuts, states: BodyStates) -> CutPlaces:
-    """Points of the cuts, of their moments and their centroids at the asked instants."""
+def make_cut_places(cuts: Cuts, states: BodyStates) -> CutPlaces:
+    """Return the points of the cuts, of their moments and their centroids at the requested instants."""
     R, x = states.R[:, cuts.body], states.x[:, cuts.body]
     shape = (3, len(R), cuts.points.shape[-2])
 
@@ -294,59 +323,64 @@ def planes(cuts: Cuts, states: BodyStates) -> CutPlaces:
         moves = points.ndim == 3
         return np.broadcast_to(points.transpose(2, 0, 1) if moves else points.T[:, None], shape)
 
-    at = over_instants(cuts.points)
-    centre = at if cuts.centroids is None else over_instants(cuts.centroids)
-    about = centre if cuts.about == "centroid" else at
-    if not isinstance(cuts.about, str):
-        owner, point = cuts.about
-        about = np.broadcast_to(in_body_axes(R, states.point_position(owner, point) - x).T[:, :, None], shape)
-    return CutPlaces(cuts, R, x, at, about, centre)
+    cut_points = over_instants(cuts.points)
+    centroids = cut_points if cuts.centroids is None else over_instants(cuts.centroids)
+    moment_points = centroids if cuts.moment_reference == "centroid" else cut_points
+    if not isinstance(cuts.moment_reference, str):
+        owner, point = cuts.moment_reference
+        moment_points = np.broadcast_to(to_body_axes(R, states.point_position(owner, point) - x).T[:, :, None], shape)
+    return CutPlaces(cuts, R, x, cut_points, moment_points, centroids)
 
 
 MOMENTS = frozenset({"moment", "T", "M1", "M2", "T0", "M10", "M20"})
 ABOUT_CENTROID = ("T0", "M10", "M20")
 
 
-def components_at_rest(cuts: Cuts, states: BodyStates, on: Sequence[Attachment]) -> Block:
-    """Section loads of the attached loads alone, without weight and inertia: (n_t, k), (n_t, k, 3)."""
-    return planes(cuts, states).components(*piece_loads(cuts, np.zeros((3, len(states.x), 4)), on))
+def static_components(cuts: Cuts, states: BodyStates, attached_loads: Sequence[Attachment]) -> Block:
+    """Return section loads of the attached loads alone, without weight and inertia: (n_t, k), (n_t, k, 3)."""
+    return make_cut_places(cuts, states).components(
+        *find_piece_loads(cuts, np.zeros((3, len(states.x), 4)), attached_loads)
+    )
 
 
-def section(
+def section_block(
     cuts: Cuts,
     states: BodyStates,
     gravity: Array,
-    on: Sequence[Attachment],
+    attached_loads: Sequence[Attachment],
     is_open: Mapping[str, Mask],
     planar: bool = False,
 ) -> Block:
-    """The block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
+    """Return the block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
 
-    is_open: masks of the indeterminate among the components of `CutPlaces.components`: they become nan.
+    is_open: masks of the indeterminate values of `CutPlaces.components`, which become nan
     """
-    where = planes(cuts, states)
-    force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
+    cut_places = make_cut_places(cuts, states)
+    force, moment = find_piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), attached_loads)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
     components = {
         name: np.where(is_open[name], np.nan, value) if name in is_open else value
-        for name, value in where.components(force, moment).items()
+        for name, value in cut_places.components(force, moment).items()
     }
     about_centroid = {name[:-1]: components.pop(name) for name in ABOUT_CENTROID if name in components}
     block: Block = {
-        "point": where.in_world_axes(where.about, is_position=True),
-        "normal": where.R @ cuts.n,
-        "first_axis": where.R @ cuts.e1,
+        "point": cut_places.to_world_axes(cut_places.moment_points, is_position=True),
+        "normal": cut_places.R @ cuts.n,
+        "first_axis": cut_places.R @ cuts.e1,
         "open": [],
     } | components
-    if not cuts.struck:
+    if not cuts.is_impulse:
         block["energy"] = piece_energy(cuts, states)
     if cuts.properties is not None:
-        block["stress"] = stress(cuts, {name: components[name] for name in ("N", "Q1", "Q2")} | about_centroid)
+        block["stress"] = stress_of_cuts(cuts, {name: components[name] for name in ("N", "Q1", "Q2")} | about_centroid)
     if cuts.line:
-        sure = np.isfinite(np.sum([components[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
-        line = reduction_line(where, force, moment)
-        block["line"] = {k: np.where(sure[..., None] if v.ndim == 3 else sure, v, np.nan) for k, v in line.items()}
+        is_determinate = np.isfinite(np.sum([components[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
+        line = reduction_line(cut_places, force, moment)
+        block["line"] = {
+            k: np.where(is_determinate[..., None] if v.ndim == 3 else is_determinate, v, np.nan)
+            for k, v in line.items()
+        }
     if cuts.s is None:
         for key in ({"point", "energy"} & block.keys()) | components.keys():
             block[key] = block[key][:, 0]
@@ -357,26 +391,26 @@ def section(
     return {"s": cuts.s, "side": [words[x] for x in cuts.side.tolist()]} | block
 
 
-def stress(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
-    """The stresses of all cuts, by the properties given or by those of the shapes."""
+def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
+    """Return the stresses of all cuts, from the given properties or from those of the shapes."""
     assert cuts.properties is not None
     if cuts.properties.kind == "auto":
-        from heuncli.loads.kinetostatics.auto_properties import stress_block
+        from heuncli.loads.kinetostatics.auto_properties import make_stress_block
 
-        return stress_block(cuts.taken, cuts.points.shape[:-1], loads, cuts.strength)
-    return stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
+        return make_stress_block(cuts.auto_properties, cuts.points.shape[:-1], loads, cuts.strength)
+    return compute_stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
 
 
-def reduction_line(where: CutPlaces, force: Array, moment: Array) -> Block:
-    """Points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
+def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
+    """Find the points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
 
     moment is about the cut's own point. point: the one nearest to that; pressure_centre: where the moment in the plane
     is zero. nan where N = 0 (no such points, or all) or Q = 0 (all points); `kind` says which: 0 a line, 1 none, 2 all.
     manual/theory.md, "Reduction line".
     """
-    cuts, local, in_world_axes = where.cuts, where.at, where.in_world_axes
+    cuts, cut_points, to_world_axes = cut_places.cuts, cut_places.cut_points, cut_places.to_world_axes
     n = cuts.n[:, None, None]
-    N, T = along(cuts.n, force), along(cuts.n, moment)
+    N, T = axis_component(cuts.n, force), axis_component(cuts.n, moment)
     Q, M_t = force - n * N, moment - n * T
     points = cuts.points.reshape(-1, 3)
     reach = float(np.abs(points - points.mean(axis=0)).max())
@@ -384,16 +418,16 @@ def reduction_line(where: CutPlaces, force: Array, moment: Array) -> Block:
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size
-    twist = along(cuts.n, crossed(Q, M_t))
+    twist = axis_component(cuts.n, cross_components(Q, M_t))
     free_N = np.where(no_N, np.nan, N)
     free_Q = np.where(no_Q | no_N, np.nan, q)
     n = np.broadcast_to(n, Q.shape)
-    point = local - twist / (free_N * free_Q**2) * Q
-    direction = crossed(n, Q) / free_Q
-    pressure = local + crossed(n, M_t) / free_N
+    point = cut_points - twist / (free_N * free_Q**2) * Q
+    direction = cross_components(n, Q) / free_Q
+    pressure = cut_points + cross_components(n, M_t) / free_N
     parallel = np.abs(twist) <= tolerances.NO_FORCE * size * size * reach
     kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
     return {
-        "point": in_world_axes(point, is_position=True), "direction": in_world_axes(direction),
-        "pressure_centre": in_world_axes(pressure, is_position=True), "kind": kind,
+        "point": to_world_axes(point, is_position=True), "direction": to_world_axes(direction),
+        "pressure_centre": to_world_axes(pressure, is_position=True), "kind": kind,
     }  # fmt: skip

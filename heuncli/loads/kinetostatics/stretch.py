@@ -1,13 +1,13 @@
-"""The whole stretch of a run of cuts, between its cuts too: where its loads are largest.
+"""A run of cuts as a continuous stretch, to find where its loads are largest, between its cuts too.
 
 Between the corners of a run (joints, forces, point masses, changes of shape; on either side of each) the loads are
-smooth in s, the way along it: of prisms and rods polynomials of degree 3, of cones and balls of degree 5 or 6. So they
-are known between two corners by their values at nine nodes, x_j = −cos(πj/8) (Lobatto), whose polynomial
+smooth in s, the distance along it: for prisms and rods polynomials of degree 3, for cones and balls of degree 5 or 6.
+So between two corners they follow from their values at nine nodes, x_j = −cos(πj/8) (Lobatto), whose polynomial
 
     Σ_k c_k T_k(x),   c = V⁻¹ q,   V_jk = T_k(x_j) = cos(k arccos x_j)
 
-takes the values q. Where the shape's own inertia is no such polynomial, as of what is cut askew, the pieces are halved
-until it is. A joint or load whose point moves over the body is a corner that moves: then the nodes move with it.
+takes the values q. Where the shape's own inertia is no such polynomial, as for an oblique cut, the pieces are halved
+until it is. A joint or load whose point moves over the body is a moving corner: then the nodes move with it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
-from heuncli.results.results import Array, Indices, Mask, Place
+from heuncli.results.results import Array, CutPosition, Indices, Mask
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.sections import Attachment
@@ -30,24 +30,28 @@ if TYPE_CHECKING:
 DEGREE = 8
 NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 SIDES = np.array([BEYOND, *[0.0] * (DEGREE - 1), BEFORE])
-FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is looked at first
+FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is sampled first
 HALVINGS = 4
-SHORT = 64.0  # times what counts as in a plane: the first node of a longer piece is 0.038 of it from the corner
-ONE_PLACE = 0.25  # of it: corners so close are one, as all that acts there counts as in the plane of the first
-NEWTON = 3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
+SHORT_PIECE = 64.0  # times the plane tolerance: the first node of a longer piece is 0.038 of its length from the corner
+CORNER_DISTANCE = (
+    0.25  # times the plane tolerance: closer corners are one, because all there lies in the plane of the first
+)
+NEWTON_STEPS = (
+    3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
+)
 
 
-def chebyshev(x: Array) -> Array:
-    """T_0(x) to T_8(x), on a new last axis."""
+def chebyshev_polynomials(x: Array) -> Array:
+    """Return T_0(x) to T_8(x), on a new last axis."""
     return np.cos(np.arange(DEGREE + 1) * np.arccos(np.clip(x, -1.0, 1.0))[..., None])
 
 
-TO_COEFFICIENTS = np.linalg.inv(chebyshev(NODES))
-TO_FINE = (chebyshev(FINE) @ TO_COEFFICIENTS).T
+TO_COEFFICIENTS = np.linalg.inv(chebyshev_polynomials(NODES))
+TO_FINE = (chebyshev_polynomials(FINE) @ TO_COEFFICIENTS).T
 
 
-def _derivative() -> Array:
-    """Coefficients of the derivative of each T_k, in columns."""
+def _derivative_matrix() -> Array:
+    """Return the coefficients of the derivative of each T_k, in columns."""
     D = np.zeros((DEGREE + 1, DEGREE + 1))
     for k in range(1, DEGREE + 1):
         D[k - 1 :: -2, k] = 2.0 * k
@@ -56,15 +60,16 @@ def _derivative() -> Array:
     return D
 
 
-DERIVATIVE = _derivative()
+DERIVATIVE = _derivative_matrix()
 
 
 @record
 class Stretch:
     """A run of cuts with its corners.
 
-    asked: its cuts; corners (m,): where along n the loads or the shape change, its ends first and last; jumps (m,):
-    whether the loads may jump there.
+    cuts: its cuts
+    corners (m,): heights along n where the loads or the shape change, its ends first and last
+    jumps (m,): whether the loads may jump there
     """
 
     asked: Cuts
@@ -73,168 +78,176 @@ class Stretch:
 
     @property
     def name(self) -> str:
-        """Of the section."""
-        return self.asked.name
+        """Name of the section."""
+        return self.cuts.name
 
     @property
     def body(self) -> int:
-        """The body that is cut."""
-        return self.asked.body
+        """Number of the body that is cut."""
+        return self.cuts.body
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is worth saying about its cuts."""
-        return self.asked.warnings
+        """The warnings on its cuts."""
+        return self.cuts.warnings
 
     @property
-    def without_stresses(self) -> Stretch:
-        """The stretch with cuts that have no properties, so that no stresses are told."""
-        return replace(self, asked=self.asked.without_stresses)
+    def for_impulse(self) -> Stretch:
+        """The stretch with cuts without properties, so that no stresses are reported."""
+        return replace(self, cuts=self.cuts.for_impulse)
 
-    def height(self, s: Array) -> Array:
-        """Along n, from the body's origin."""
-        return np.asarray(float(self.asked.points[0] @ self.asked.n) + s)
+    def find_height(self, s: Array) -> Array:
+        """Return the height along n, from the body's origin."""
+        return np.asarray(float(self.cuts.points[0] @ self.cuts.n) + s)
 
-    def laid_for(self, on: Sequence[Attachment]) -> Cuts:
-        """The cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
-        moving = [a.at @ self.asked.n for a in on if a.at.ndim == 2]
+    def at_attachments(self, attachments: Sequence[Attachment]) -> Cuts:
+        """Return the cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
+        moving = [a.point @ self.cuts.n for a in attachments if a.point.ndim == 2]
         if not moving:
-            return self.fixed
+            return self.fixed_cuts
         heights = np.clip(np.stack(moving, axis=1), self.corners[0], self.corners[-1])
         corners = np.broadcast_to(self.corners, (len(heights), len(self.corners)))
-        return self.at_nodes(np.sort(np.concatenate([corners, heights], axis=1), axis=1))
+        return self.make_node_cuts(np.sort(np.concatenate([corners, heights], axis=1), axis=1))
 
     @cached_property
-    def fixed(self) -> Cuts:
+    def fixed_cuts(self) -> Cuts:
         """The cuts at the nodes where nothing moves over the body."""
-        return self.at_nodes(self.corners)
+        return self.make_node_cuts(self.corners)
 
-    def at_nodes(self, corners: Array) -> Cuts:
-        """The cuts at the nodes between corners, (m,) or (n_t, m).
+    def make_node_cuts(self, corners: Array) -> Cuts:
+        """Make the cuts at the nodes between corners, (m,) or (n_t, m).
 
-        Of corners that lie so close that the nodes between count as in the plane of the one or the other (two loads of
-        nearly the same place, or what moves over the body), all of these are put to one place where nothing is: of so
-        short a piece nothing is told.
+        Corners may lie so close that the nodes between them count as in the plane of one of them (two loads at nearly
+        the same place, or one that moves over the body). Then all these nodes are put to one place where nothing is: so
+        short a piece gives no results.
         """
         a, b = corners[..., :-1, None], corners[..., 1:, None]
         heights = np.where(NODES < 0.0, a + 0.5 * (b - a) * (NODES + 1.0), b - 0.5 * (b - a) * (1.0 - NODES))
-        short = b - a <= SHORT * self.asked.near
-        if short.any():
-            heights = np.where(short, in_longest(corners)[..., None, None], heights)
+        is_short = b - a <= SHORT_PIECE * self.cuts.plane_tolerance
+        if is_short.any():
+            heights = np.where(is_short, find_middle_of_longest(corners)[..., None, None], heights)
         heights = heights.reshape(*corners.shape[:-1], -1)
-        return laid(self.asked, heights - self.height(np.zeros(1)), np.tile(SIDES, corners.shape[-1] - 1))
+        return make_cuts_at(self.cuts, heights - self.find_height(np.zeros(1)), np.tile(SIDES, corners.shape[-1] - 1))
 
-    def place(self, s: float, side: float) -> Place:
-        """A place for a reader, by its distance and the side on which it lies where a piece ends; else 0."""
-        asked, d = self.asked, float(self.height(np.array(s)))
-        assert asked.s is not None
-        near = max(4.0 * asked.near, tolerances.IN_PLANE * float(asked.s[-1]))
-        corner = np.flatnonzero(np.abs(self.corners - d) <= near)
-        # the end of a piece that is none of the corners is one that moves
+    def make_place(self, s: float, side: float) -> CutPosition:
+        """Return a place for the output, from its distance and the side on which it lies where a piece ends, else 0."""
+        own_cuts, d = self.cuts, float(self.find_height(np.array(s)))
+        assert own_cuts.s is not None
+        tolerance = max(4.0 * own_cuts.plane_tolerance, tolerances.IN_PLANE * float(own_cuts.s[-1]))
+        corner = np.flatnonzero(np.abs(self.corners - d) <= tolerance)
+        # the end of a piece that is not a corner is a moving one
         jumps = side != 0.0 and (len(corner) == 0 or bool(self.jumps[corner].any()))
         side = side if jumps else 0.0
-        close = np.abs(asked.s - s) <= tolerances.SAME_CUT * asked.s[-1]
-        same = np.flatnonzero(close & (asked.side * side >= 0.0))
-        return Place(s, {BEFORE: "before", BEYOND: "beyond"}.get(side), int(same[0]) if len(same) else None)
+        is_close = np.abs(own_cuts.s - s) <= tolerances.SAME_CUT * own_cuts.s[-1]
+        matching = np.flatnonzero(is_close & (own_cuts.side * side >= 0.0))
+        return CutPosition(
+            s, {BEFORE: "before", BEYOND: "beyond"}.get(side), int(matching[0]) if len(matching) else None
+        )
 
 
-def in_longest(corners: Array) -> Array:
-    """The middle of the longest piece between corners (m,) or (n_t, m), () or (n_t,)."""
+def find_middle_of_longest(corners: Array) -> Array:
+    """Return the middle of the longest piece between corners (m,) or (n_t, m), () or (n_t,)."""
     k = np.argmax(np.diff(corners), axis=-1)[..., None]
     ends = np.take_along_axis(corners, k, axis=-1) + np.take_along_axis(corners, k + 1, axis=-1)
     return np.asarray(0.5 * ends[..., 0])
 
 
-def laid(asked: Cuts, s: Array, side: Array) -> Cuts:
-    """Other cuts along a run, at distances (k,) or (n_t, k) with sides (k,)."""
-    form, n = asked.form, asked.n
+def make_cuts_at(cuts: Cuts, s: Array, side: Array) -> Cuts:
+    """Make other cuts along a run, at distances (k,) or (n_t, k) with sides (k,)."""
+    form, n = cuts.form, cuts.n
     assert form is not None
-    points = asked.points[0] + s[..., None] * n
+    points = cuts.points[0] + s[..., None] * n
     d, sides = (points @ n).ravel(), np.broadcast_to(side, s.shape).ravel()
-    pieces = form.pieces(n, d, sides).reshape(*s.shape, 4, 4)
+    pieces = form.piece_inertias(n, d, sides).reshape(*s.shape, 4, 4)
     centroids = None
-    if asked.centroids is not None and (asked.about == "centroid" or asked.properties is not None):
+    if cuts.centroids is not None and (cuts.moment_reference == "centroid" or cuts.properties is not None):
         centroids = form.cross_sections(n, d, np.where(sides == 0.0, BEFORE, sides)).centroid.reshape(*s.shape, 3)
         centroids = np.where(np.isfinite(centroids), centroids, points)  # between shapes there is none
-    return replace(asked, points=points, s=s, side=side, pieces=pieces, centroids=centroids)
+    return replace(cuts, points=points, s=s, side=side, pieces=pieces, centroids=centroids)
 
 
-def stretch_of(asked: Cuts, attached: Sequence[Array], lines: Sequence[Array] = (), *, halved: int = 0) -> Stretch:
-    """The whole stretch of a run; attached: where loads and joints act on the body; halved: each piece, so often.
+def make_stretch(cuts: Cuts, points: Sequence[Array], lines: Sequence[Array] = (), *, min_halvings: int = 0) -> Stretch:
+    """Make the stretch of a run.
 
-    lines: the two ends (2, 3) of each distributed load, where loads bend but do not jump, if the line is not in a cut.
+    points: where loads and joints act on the body
+    lines: the two ends (2, 3) of each distributed load, where loads bend but do not jump, unless the line is in a cut
+    min_halvings: halve each piece at least so often
     """
-    form, n = asked.form, asked.n
-    assert form is not None and asked.s is not None
-    low = float(asked.points[0] @ n)
-    high = low + float(asked.s[-1])
+    form, n = cuts.form, cuts.n
+    assert form is not None and cuts.s is not None
+    low = float(cuts.points[0] @ n)
+    high = low + float(cuts.s[-1])
     ends = np.array(lines).reshape(-1, 2, 3) @ n
-    flat = np.abs(ends[:, 1] - ends[:, 0]) <= 4.0 * asked.near
-    acting = np.concatenate([[point @ n for point in attached], ends[flat].mean(axis=1)])
-    inside = np.concatenate([acting, ends[~flat].ravel(), form.corners(n)])
-    inside = np.sort(inside[(inside > low + asked.near) & (inside < high - asked.near)])
+    is_in_plane = np.abs(ends[:, 1] - ends[:, 0]) <= 4.0 * cuts.plane_tolerance
+    acting = np.concatenate([[point @ n for point in points], ends[is_in_plane].mean(axis=1)])
+    inside = np.concatenate([acting, ends[~is_in_plane].ravel(), form.corners(n)])
+    inside = np.sort(inside[(inside > low + cuts.plane_tolerance) & (inside < high - cuts.plane_tolerance)])
     corners = np.concatenate([[low], inside, [high]])
-    corners = corners[np.append(True, np.diff(corners) > ONE_PLACE * asked.near)]
+    corners = corners[np.append(True, np.diff(corners) > CORNER_DISTANCE * cuts.plane_tolerance)]
     corners[-1] = high
-    for turn in range(HALVINGS):
+    for round_number in range(HALVINGS):
         a, b = corners[:-1], corners[1:]
-        askew = np.full(len(a), True) if turn < halved else ~_fits(asked, a, b)
-        if not askew.any():
+        needs_halving = np.full(len(a), True) if round_number < min_halvings else ~_is_polynomial(cuts, a, b)
+        if not needs_halving.any():
             break
-        corners = np.sort(np.concatenate([corners, 0.5 * (a + b)[askew]]))
-    jumps = np.min(np.abs(corners[:, None] - np.append(acting, np.inf)), axis=1) <= 4.0 * asked.near
-    return Stretch(asked, corners, jumps | form.masses_in_plane(n, corners) | form.rods_in_plane(n, corners))
+        corners = np.sort(np.concatenate([corners, 0.5 * (a + b)[needs_halving]]))
+    jumps = np.min(np.abs(corners[:, None] - np.append(acting, np.inf)), axis=1) <= 4.0 * cuts.plane_tolerance
+    return Stretch(cuts, corners, jumps | form.has_mass_in_plane(n, corners) | form.has_rod_in_plane(n, corners))
 
 
-def _fits(asked: Cuts, a: Array, b: Array) -> Mask:
-    """Whether the inertia of what lies beyond is the polynomial of its nodes, between each two heights."""
-    form, n = asked.form, asked.n
+def _is_polynomial(cuts: Cuts, a: Array, b: Array) -> Mask:
+    """Return whether the inertia of what lies beyond is the polynomial of its nodes, between each two heights."""
+    form, n = cuts.form, cuts.n
     assert form is not None
     checked = np.array([-0.93, -0.45, 0.1, 0.62, 0.97])
-    at = np.concatenate([NODES, checked])
-    d = 0.5 * (a + b)[:, None] + 0.5 * (b - a)[:, None] * at
+    samples = np.concatenate([NODES, checked])
+    d = 0.5 * (a + b)[:, None] + 0.5 * (b - a)[:, None] * samples
     sides = np.broadcast_to(np.append(SIDES, np.zeros(len(checked))), d.shape)
-    P = form.pieces(n, d.ravel(), sides.ravel()).reshape(*d.shape, 16)
-    expected = np.einsum("cj,pje->pce", chebyshev(checked) @ TO_COEFFICIENTS, P[:, : len(NODES)])
+    P = form.piece_inertias(n, d.ravel(), sides.ravel()).reshape(*d.shape, 16)
+    expected = np.einsum("cj,pje->pce", chebyshev_polynomials(checked) @ TO_COEFFICIENTS, P[:, : len(NODES)])
     scale = np.abs(P).max(axis=(0, 1))
-    off = np.abs(expected - P[:, len(NODES) :]) / np.where(scale > 0.0, scale, 1.0)
-    return np.asarray(off.max(axis=(1, 2)) <= tolerances.QUADRATURE * 1e3)
+    errors = np.abs(expected - P[:, len(NODES) :]) / np.where(scale > 0.0, scale, 1.0)
+    return np.asarray(errors.max(axis=(1, 2)) <= tolerances.QUADRATURE * 1e3)
 
 
-class Summits(NamedTuple):
-    """The highest value along a stretch at each instant (n_t,): its height, piece, and place in the piece, -1 to 1."""
+class StretchPeaks(NamedTuple):
+    """The highest value along a stretch at each instant (n_t,): its height, piece, and position in the piece, -1 to
+    1.
+    """
 
     height: Array
     piece: Indices
     at: Array
 
 
-def summits(values: Array) -> tuple[Summits, Summits]:
-    """The lowest and the highest along a stretch of what takes these values at its nodes, (n_t, 9 m).
+def find_peaks(values: Array) -> tuple[StretchPeaks, StretchPeaks]:
+    """Return the lowest and the highest value along a stretch from the values at its nodes, (n_t, 9 m).
 
-    The lowest is told as a height, with its sign turned. Where any of the values is nan, they are.
+    The lowest is given as a height, with its sign reversed. The results are nan where any of the values is.
     """
     q = values.reshape(len(values), -1, DEGREE + 1)
-    unknown = np.asarray(np.isnan(values).any(axis=1))
-    q = np.where(unknown[:, None, None], 0.0, q) if unknown.any() else q
+    is_unknown = np.asarray(np.isnan(values).any(axis=1))
+    q = np.where(is_unknown[:, None, None], 0.0, q) if is_unknown.any() else q
     fine = (q @ TO_FINE).reshape(len(q), -1)
-    found = [highest(side * q, np.argmax(side * fine, axis=1)) for side in (-1.0, 1.0)]
-    low, high = (one._replace(height=np.where(unknown, np.nan, one.height)) for one in found)
+    peaks = [find_highest(side * q, np.argmax(side * fine, axis=1)) for side in (-1.0, 1.0)]
+    low, high = (one._replace(height=np.where(is_unknown, np.nan, one.height)) for one in peaks)
     return low, high
 
 
-def highest(q: Array, top: Indices) -> Summits:
-    """The highest of the polynomials that take the heights q at the nodes of pieces, from their highest of FINE on."""
-    piece, place = np.divmod(top, len(FINE))
+def find_highest(q: Array, start_indices: Indices) -> StretchPeaks:
+    """Find the highest value of the polynomials with the heights q at the nodes of pieces, starting from their highest
+    of FINE.
+    """
+    piece, place = np.divmod(start_indices, len(FINE))
     c = q[np.arange(len(q)), piece] @ TO_COEFFICIENTS.T
     first, second = c @ DERIVATIVE.T, c @ (DERIVATIVE @ DERIVATIVE).T
     low, high = FINE[np.maximum(place - 1, 0)], FINE[np.minimum(place + 1, len(FINE) - 1)]
     start = x = FINE[place]
-    for _ in range(NEWTON):
-        T = chebyshev(x)
+    for _ in range(NEWTON_STEPS):
+        T = chebyshev_polynomials(x)
         slope, bend = np.sum(T * first, axis=1), np.sum(T * second, axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
             x = np.clip(np.where(bend < 0.0, x - slope / bend, x), low, high)
-    before, after = (np.sum(chebyshev(at) * c, axis=1) for at in (start, x))
-    better = after > before
-    return Summits(np.where(better, after, before), piece, np.where(better, x, start))
+    before, after = (np.sum(chebyshev_polynomials(position) * c, axis=1) for position in (start, x))
+    is_better = after > before
+    return StretchPeaks(np.where(is_better, after, before), piece, np.where(is_better, x, start))

@@ -1,9 +1,12 @@
-"""What a screw with friction carries in all, and what of the power that goes in comes out.
+"""Compute the total load of a screw with friction, and its efficiency.
 
     force = N - friction along the axis        torque = N lead / (2 pi) + friction about it
-N is what the flanks press with along the axis.
-    force rise - torque = -loss / rate       rise = lead / (2 pi), the travel for a unit of turning
-Of the two powers, force rise rate INTO what slides and -torque rate INTO what turns, the one above zero comes out.
+
+N is the axial component of the flank pressure.
+
+    force rise - torque = -loss / rate       rise = lead / (2 pi), the travel per unit of rotation
+
+Of the two powers, force rise rate INTO what slides and -torque rate INTO what turns, the positive one is the output.
 """
 
 from __future__ import annotations
@@ -17,31 +20,31 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Screw
 
 
-def whole_load(loads: CouplingLoads) -> tuple[Array, Array]:
-    """Thrust along the axis and the torque about it that it takes, (..., n_t), friction with them."""
-    given, part, rubs = loads.coupling.given, loads.parts[0], loads.friction
-    assert isinstance(given, Screw)
-    rise = given.lead / math.tau
+def total_screw_load(loads: CouplingLoads) -> tuple[Array, Array]:
+    """Return thrust along the axis and the torque about it that it takes, (..., n_t), including friction."""
+    screw, part, friction = loads.coupling.entry, loads.parts[0], loads.friction
+    assert isinstance(screw, Screw)
+    rise = screw.lead / math.tau
     force, torque = loads.multipliers[0], loads.multipliers[0] * rise
-    if rubs is None:
+    if friction is None:
         return force, torque
-    sense = 1.0 if rubs.to.body == part.part.b else -1.0  # its own opposite stands on the other body
-    along = np.sum(rubs.force * part.f, axis=-1)
-    about = np.sum(rubs.moment * part.m, axis=-1) / rise
-    return force + sense * along, torque + sense * about
+    sense = 1.0 if friction.to_end.body == part.part.b else -1.0  # its opposite acts on the other body
+    axial_friction = np.sum(friction.force * part.f, axis=-1)
+    friction_torque = np.sum(friction.moment * part.m, axis=-1) / rise
+    return force + sense * axial_friction, torque + sense * friction_torque
 
 
-def efficiency(loads: CouplingLoads, none: float) -> Array:
-    """The power that comes out by the power that goes in, (n_t,); at rest 1, for nothing rubs, and 0 without a load.
+def efficiency(loads: CouplingLoads, zero_thrust: float) -> Array:
+    """Return output power over input power, (n_t,); 1 at rest, because nothing slides, and 0 without a load.
 
-    none: a thrust that is none beside the loads of the scene [N].
+    zero_thrust: a thrust that counts as zero compared with the loads of the scene [N]
     """
-    given = loads.coupling.given
-    assert isinstance(given, Screw)
-    force, torque = whole_load(loads)
-    carries = np.abs(force) > none
-    force = force * (given.lead / math.tau)
-    turns = np.where(torque < force, -1.0, 1.0)  # the way it turns, for friction takes power
-    into = np.stack([turns * force, -turns * torque])
-    out, taken = np.maximum(into.max(axis=0), 0.0), -into.min(axis=0)
-    return np.where(carries & (taken > 0.0), out / np.where(taken > 0.0, taken, 1.0), 0.0)
+    screw = loads.coupling.entry
+    assert isinstance(screw, Screw)
+    force, torque = total_screw_load(loads)
+    is_loaded = np.abs(force) > zero_thrust
+    force = force * (screw.lead / math.tau)
+    direction = np.where(torque < force, -1.0, 1.0)  # direction of rotation, because friction takes power
+    powers = np.stack([direction * force, -direction * torque])
+    output, input_power = np.maximum(powers.max(axis=0), 0.0), -powers.min(axis=0)
+    return np.where(is_loaded & (input_power > 0.0), output / np.where(input_power > 0.0, input_power, 1.0), 0.0)

@@ -1,4 +1,4 @@
-"""How many conditions of the joints hold what others hold already, and how many freedoms are left."""
+"""Count the redundant conditions of the joints, and the remaining freedoms."""
 
 from __future__ import annotations
 
@@ -10,27 +10,29 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import Joint
-from heuncli.multibody.stages import ANEW, Stages
-from heuncli.multibody.tree.frame import without_loads
+from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.tree.frame import remove_loads
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
-from heuncli.scene.expressions.programs import Expression, pack_of
+from heuncli.scene.expressions.programs import Expression, make_pack
 
 if TYPE_CHECKING:
-    from heuncli.loads.redundancy.self_stress import KnownStress, SelfStress
+    from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress
 
 
-class Redundancy(NamedTuple):
-    """How many conditions hold what others hold: near the start (a singular pose does not count), and just at it.
+class RedundancyCount(NamedTuple):
+    """Number of redundant conditions, near the start (a singular position does not count), and exactly at it.
 
-    dependent: the same near the start, in a planar scene with those across the plane, which are not counted; closed:
-    how many rows take part at the start. open: how many are left where joints give way; giving: what these do.
-    here: the self-stresses at the start.
+    dependent: the same near the start, including in a planar scene those across the plane, which are not counted
+    active_rows: number of rows that take part at the start
+    remaining: number left where joints give way
+    giving: sentences on what these joints do
+    here: the self-stresses at the start
     """
 
     generic: int
@@ -40,59 +42,75 @@ class Redundancy(NamedTuple):
     stress: SelfStress | None
     open: int
     giving: tuple[str, ...] = ()
-    here: KnownStress | None = None
+    here: CachedStress | None = None
 
 
-def redundancy(scene: PreparedScene, runner: Runner, stages: Stages = ANEW) -> Redundancy:
-    """Count what is held twice: it hangs on no load; stages: that is one, of the scene without loads."""
-    if not scene.layout.rows:
-        return Redundancy(0, 0, 0, 0, None, 0)
-    drives = tuple(law.value for law in scene.mechanism.laws)
-    bare, holding = without_loads(scene.layout), runner.start_holding
-    return stages.run(counted_without_loads, bare, drives, holding, by=lambda: counted(runner))
-
-
-def counted_without_loads(layout: Layout, drives: tuple[Expression, ...], holding: Array) -> Redundancy:
-    """Count what is held twice in a scene without loads.
-
-    drives: whose programs it has; holding (contacts,): which are closed at the start.
+def count_redundancy(scene: PreparedScene, runner: Runner, stage_cache: Stages = NO_CACHE) -> RedundancyCount:
+    """Count the redundancy of a scene, which depends on no load; stage_cache: caches the count of the scene without
+    loads.
     """
-    return counted(Evaluator(replace(layout, pack=pack_of(drives)), lambda _: holding))
+    if not scene.layout.rows:
+        return RedundancyCount(0, 0, 0, 0, None, 0)
+    drives = tuple(law.value for law in scene.mechanism.laws)
+    bare_layout, holding = remove_loads(scene.layout), runner.start_holding
+    return stage_cache.run(
+        count_without_loads, bare_layout, drives, holding, fallback=lambda: count_self_stresses(runner)
+    )
 
 
-def counted(runner: Evaluator) -> Redundancy:
-    """Count what is held twice in a scene with closed chains."""
-    from heuncli.loads.redundancy.neighbours import neighbours  # a tree starts faster without them
-    from heuncli.loads.redundancy.self_stress import KnownStress, self_stress, stress_of, stress_poses
+def count_without_loads(layout: Layout, drives: tuple[Expression, ...], holding: Array) -> RedundancyCount:
+    """Count the redundancy of a scene without loads.
+
+    drives: the expressions whose programs it has
+    holding (contacts,): which contacts are closed at the start
+    """
+    return count_self_stresses(Evaluator(replace(layout, pack=make_pack(drives)), lambda _: holding))
+
+
+def count_self_stresses(runner: Evaluator) -> RedundancyCount:
+    """Count the redundancy of a scene with closed chains."""
+    from heuncli.loads.redundancy.neighbours import find_neighbour_poses  # a tree starts faster without them
+    from heuncli.loads.redundancy.self_stress import (
+        CachedStress,
+        find_self_stress,
+        find_stress_of_poses,
+        make_stress_poses,
+    )
 
     layout = runner.layout
-    here = runner.recovered(np.zeros(1), layout.y0[None, :])
-    closed = int(here.rows["closed"][0].sum())
-    states = body_states(layout, here)
-    poses = stress_poses(here, states)
-    stress = stress_of(runner, poses)
-    known = KnownStress(poses, stress)
+    start = runner.evaluate(np.zeros(1), layout.y0[None, :])
+    active_rows = int(start.rows["closed"][0].sum())
+    states = make_body_states(layout, start)
+    poses = make_stress_poses(start, states)
+    stress = find_stress_of_poses(runner, poses)
+    start_stress = CachedStress(poses, stress)
     at_start, joints = int(stress.count[0]), layout.mechanism.joints
-    near = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,))
-    if near is None:
-        left, giving = left_open(stress, joints, states)
-        return Redundancy(at_start, at_start, int(stress.dependent[0]), closed, stress, left, giving, known)
-    around = body_states(layout, near)
-    beside = self_stress(runner, near, around)
-    assert beside is not None
-    dependent = min(stress.dependent[0], beside.dependent.min())
-    generic = int(min(at_start, beside.count.min()))
-    left, giving = left_open(beside, joints, around)
-    return Redundancy(generic, at_start, int(dependent), closed, beside, min(generic, left), giving, known)
+    neighbour_poses = find_neighbour_poses(runner, 0.0, start.states[0], (tolerances.NEIGHBOUR,))
+    if neighbour_poses is None:
+        remaining, giving = count_after_yielding(stress, joints, states)
+        return RedundancyCount(
+            at_start, at_start, int(stress.dependent[0]), active_rows, stress, remaining, giving, start_stress
+        )
+    neighbour_states = make_body_states(layout, neighbour_poses)
+    neighbour_stress = find_self_stress(runner, neighbour_poses, neighbour_states)
+    assert neighbour_stress is not None
+    dependent = min(stress.dependent[0], neighbour_stress.dependent.min())
+    generic = int(min(at_start, neighbour_stress.count.min()))
+    remaining, giving = count_after_yielding(neighbour_stress, joints, neighbour_states)
+    return RedundancyCount(
+        generic, at_start, int(dependent), active_rows, neighbour_stress, min(generic, remaining), giving, start_stress
+    )
 
 
-def left_open(stress: SelfStress, joints: Sequence[Joint], states: BodyStates) -> tuple[int, tuple[str, ...]]:
-    """How many self-stresses are left at each pose once joints have given way, and what these do, in words."""
+def count_after_yielding(
+    stress: SelfStress, joints: Sequence[Joint], states: BodyStates
+) -> tuple[int, tuple[str, ...]]:
+    """Count the self-stresses left at each pose once joints have given way; also return sentences on these joints."""
     if all(joint.stiffness is None for joint in joints):
         return int(stress.count.min()), ()
-    from heuncli.loads.redundancy.split import with_least_strain
-    from heuncli.loads.redundancy.zero_stiffness import soft_maps, told, vanishing
+    from heuncli.loads.redundancy.split import minimise_strain
+    from heuncli.loads.redundancy.zero_stiffness import describe_yielding, find_vanishing, make_yield_maps
 
-    maps = vanishing(stress, soft_maps(joints, states, stress.length))
-    _, left = with_least_strain(stress, maps)
-    return int(left.count.min()) if left is not None else 0, told(joints, maps)
+    maps = find_vanishing(stress, make_yield_maps(joints, states, stress.length))
+    _, remaining = minimise_strain(stress, maps)
+    return int(remaining.count.min()) if remaining is not None else 0, describe_yielding(joints, maps)

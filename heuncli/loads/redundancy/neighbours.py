@@ -1,4 +1,6 @@
-"""Neighbouring poses: moved a little along admissible rates, so that no accident of one pose is taken for a law."""
+"""Make neighbouring poses, displaced along admissible rates, so that a coincidence in one pose is not taken for a
+rule.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.evaluator import Evaluator, Recovered
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import quaternion_product
@@ -16,48 +18,51 @@ DIRECTIONS = 3
 SEED = 1901  # fixed: the same scene gives the same verdicts
 
 
-def neighbours(
-    runner: Evaluator, t: float, state: Array, by: Sequence[float], holding: Array | None = None
-) -> Recovered | None:
-    """Poses displaced by each of `by` (rad, or of the size) along fixed pseudo-random admissible rates, both ways.
+def find_neighbour_poses(
+    runner: Evaluator, t: float, state: Array, step_sizes: Sequence[float], holding: Array | None = None
+) -> Evaluation | None:
+    """Return poses displaced by each step size (rad, or relative to the size) along fixed pseudo-random admissible
+    rates, in both directions.
 
-    None if nothing moves. holding: the contacts that are closed, by default as at the start.
+    Returns None if nothing moves. holding: the closed contacts, by default as at the start.
     """
     layout = runner.layout
     rng = np.random.default_rng(SEED)
-    start = np.repeat(state[None, :], DIRECTIONS, axis=0)
-    slots = rate_slots(layout)
-    start[:, slots] = rng.uniform(-1.0, 1.0, (DIRECTIONS, len(slots))) / layout.weights[slots]
-    admissible = runner.recovered(np.full(DIRECTIONS, t), start, holding=holding).states
+    random_states = np.repeat(state[None, :], DIRECTIONS, axis=0)
+    slots = find_rate_indices(layout)
+    random_states[:, slots] = rng.uniform(-1.0, 1.0, (DIRECTIONS, len(slots))) / layout.weights[slots]
+    admissible = runner.evaluate(np.full(DIRECTIONS, t), random_states, holding=holding).states
     largest = np.abs(admissible[:, slots] * layout.weights[slots]).max(axis=1, initial=0.0)
-    moving = largest > tolerances.MOVES
-    if not moving.any():
+    is_moving = largest > tolerances.MOVES
+    if not is_moving.any():
         return None
-    steps = [(k, sign * step / largest[k]) for k in np.flatnonzero(moving) for step in by for sign in (1.0, -1.0)]
-    moved = [displaced(layout, admissible[k], step) for k, step in steps]
-    found = runner.recovered(np.full(len(steps), t), np.array(moved), holding=holding)
-    closed = found.gap <= tolerances.OPEN_GAP * layout.size
-    if not closed.any():
+    steps = [
+        (k, sign * step / largest[k]) for k in np.flatnonzero(is_moving) for step in step_sizes for sign in (1.0, -1.0)
+    ]
+    displaced_states = [displace_along_rates(layout, admissible[k], step) for k, step in steps]
+    evaluation = runner.evaluate(np.full(len(steps), t), np.array(displaced_states), holding=holding)
+    is_closed = evaluation.gap <= tolerances.OPEN_GAP * layout.size
+    if not is_closed.any():
         return None
-    return found.at(closed)
+    return evaluation.select(is_closed)
 
 
-def rate_slots(layout: Layout) -> Array:
-    """Places of the controlled rates in the state."""
+def find_rate_indices(layout: Layout) -> Array:
+    """Return the indices of the controlled rates in the state."""
     groups = layout.tables["groups"]
-    found: Array = np.concatenate([np.arange(g["rates"], g["end"]) for g in groups]).astype(int)
-    return found
+    indices: Array = np.concatenate([np.arange(g["rates"], g["end"]) for g in groups]).astype(int)
+    return indices
 
 
-def displaced(layout: Layout, state: Array, by: float) -> Array:
-    """The state with its coordinates moved by rates * by."""
-    moved = state.copy()
+def displace_along_rates(layout: Layout, state: Array, factor: float) -> Array:
+    """Return the state with its coordinates displaced by rates times a factor."""
+    displaced_state = state.copy()
     for body in layout.bodies[layout.bodies["ball"] == 1]:
         attitude, rate = body["attitude_at"], body["rate_at"]
-        q, w = state[attitude : attitude + 4], 0.5 * by * state[rate : rate + 3]
+        q, w = state[attitude : attitude + 4], 0.5 * factor * state[rate : rate + 3]
         turn = quaternion_product(np.array([0.0, *w]), q)
-        moved[attitude : attitude + 4] = (q + turn) / np.sqrt(np.sum((q + turn) ** 2))
+        displaced_state[attitude : attitude + 4] = (q + turn) / np.sqrt(np.sum((q + turn) ** 2))
     for freedom in layout.freedoms:
         if freedom.q >= 0:
-            moved[freedom.q] += by * state[freedom.u]
-    return moved
+            displaced_state[freedom.q] += factor * state[freedom.u]
+    return displaced_state

@@ -1,7 +1,7 @@
-"""What flanks push apart with where it is open which of several meshes carries how much.
+"""Handle separating forces of tooth flanks where it is indeterminate which of several meshes carries how much.
 
-The push hangs on a multiplier's size, not on its sign, and is not linear in self-stresses. So that nothing is called
-certain which is not, the push of every mesh that some self-stress reaches counts as one more that is free.
+The force depends on the magnitude of a multiplier, not on its sign, and is not linear in self-stresses. To be on the
+safe side, the separating force of every mesh that some self-stress reaches counts as one more free load.
 """
 
 from __future__ import annotations
@@ -13,25 +13,29 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
-from heuncli.loads.kinetostatics.flanks import between, held_off, pushes_apart
+from heuncli.loads.kinetostatics.flanks import find_joints_between, has_separating_forces, transfer_force
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.loads.redundancy.self_stress import SelfStress
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 
 
-def with_open_flanks(
+def add_flank_columns(
     stress: SelfStress, layout: Layout, joints: Sequence[JointLoads], couplings: Sequence[CouplingLoads]
 ) -> SelfStress:
-    """The self-stresses with a column for the push of every mesh that they reach."""
-    if not pushes_apart(layout.mechanism):
+    """Return the self-stresses with a column for the separating force of every mesh that they reach."""
+    if not has_separating_forces(layout.mechanism):
         return stress
     columns = []
     for own in couplings:
-        for r, part in own.parts_of_rows():
+        for r, part in own.iter_row_parts():
             unit = np.abs(stress.multipliers[:, r]) / np.where(stress.largest > 0.0, stress.largest, 1.0)
-            if part.pushed is not None and unit.max(initial=0.0) > tolerances.OPEN_SHARE:
-                columns.append(_column(layout, joints, part.pushed, part.place, between(layout, part.part)))
+            if part.separating_force is not None and unit.max(initial=0.0) > tolerances.OPEN_SHARE:
+                columns.append(
+                    _flank_column(
+                        layout, joints, part.separating_force, part.place, find_joints_between(layout, part.part)
+                    )
+                )
     if not columns:
         return stress
     shares = np.concatenate([stress.shares, np.stack(columns, axis=3)], axis=3)
@@ -44,10 +48,12 @@ def with_open_flanks(
     return found
 
 
-def _column(layout: Layout, joints: Sequence[JointLoads], push: Array, place: Array, held: dict[int, float]) -> Array:
-    """The shares of a unit push in all joints, (n_j, n_t, 6)."""
+def _flank_column(
+    layout: Layout, joints: Sequence[JointLoads], push: Array, place: Array, factors: dict[int, float]
+) -> Array:
+    """Return the shares of a unit separating force in all joints, (n_j, n_t, 6)."""
     shares = np.zeros((len(joints), len(push), 6))
     size = np.max(np.sqrt(np.sum(push * push, axis=1)))
-    for k, share in held.items():
-        shares[k] = np.concatenate(held_off(joints[k], share / size * push, place), axis=1)
+    for k, share in factors.items():
+        shares[k] = np.concatenate(transfer_force(joints[k], share / size * push, place), axis=1)
     return shares

@@ -1,8 +1,8 @@
-"""Conditions on a motion: whether each is true.
+"""Evaluate whether the conditions on a motion are true.
 
-A condition is a program with branches that the kernel holds within a step and ends steps at, as those of loads
-(kernel/events.py). Between two changes of its branches it stands still, so it is asked once for each: with the branches
-of the step, whatever rounding says of margins beside zero.
+A condition is a program whose branches the kernel holds within a step. The kernel ends a step where they change, as it
+does for the branches of loads (kernel/events.py). Between two changes a condition is constant. So it is evaluated once
+for each such interval, with the branches of the step, whatever rounding makes of margins near zero.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 
 from heuncli.kernel.choose import expressions as kernel
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.motion.integration.named_points import Jet, motion_of
-from heuncli.multibody.response import variables_at
+from heuncli.motion.integration.named_points import Jet, point_motion
+from heuncli.multibody.response import evaluate_variables
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Pack
@@ -24,7 +24,10 @@ Coordinates = Mapping[tuple[str, str], Jet]  # of a joint or point, and a quanti
 
 
 class Conditions:
-    """The conditions of a scene; places: where their branches stand among all that its kernel holds."""
+    """The conditions of a scene.
+
+    places: position of each of their branches among all branches that the kernel holds
+    """
 
     def __init__(self, layout: Layout) -> None:
         self.conditions: tuple[Condition, ...] = layout.mechanism.conditions
@@ -33,39 +36,42 @@ class Conditions:
         known = {(id(e), k): i for i, (e, k) in enumerate(layout.pack.branches)}
         self.places = [known[id(e), k] for e, k in self.pack.branches]
 
-    def held(self, t: float, branches: Sequence[float], coordinates: Coordinates) -> list[float]:
-        """Whether each is true (1 or 0) with its branches among those that the kernel holds; nan: it has no value."""
-        own = self.pack.expressions
-        own.hold_branches([branches[i] for i in self.places])
-        own.hold(HELD)
-        values = [own.evaluate(*program, self.variables(t, coordinates)) for program in self.programs]
-        own.hold(FREE)
+    def evaluate_held(self, t: float, branches: Sequence[float], coordinates: Coordinates) -> list[float]:
+        """Return the truth of each condition (1 or 0) with the branches that the kernel holds; nan where it has no
+        value.
+        """
+        expressions = self.pack.expressions
+        expressions.hold_branches([branches[i] for i in self.places])
+        expressions.hold(HELD)
+        values = [
+            expressions.evaluate(*program, self.extrapolate_variables(t, coordinates)) for program in self.programs
+        ]
+        expressions.hold(FREE)
         return values
 
-    def taken(self, t: float, coordinates: Coordinates) -> list[float]:
-        """The branches as the coordinates have them, to rounding; ordered as `places`."""
-        own = self.pack.expressions
-        own.hold(TAKEN)
+    def take_branches(self, t: float, coordinates: Coordinates) -> list[float]:
+        """Return the branches that follow from the coordinates, up to rounding, in the order of `places`."""
+        expressions = self.pack.expressions
+        expressions.hold(TAKEN)
         for program in self.programs:
-            own.evaluate(*program, self.variables(t, coordinates))
-        own.hold(FREE)
-        return own.branches()
+            expressions.evaluate(*program, self.extrapolate_variables(t, coordinates))
+        expressions.hold(FREE)
+        return expressions.branches()
 
-    def free(self, number: int, t: float, d: float, coordinates: Coordinates) -> float:
-        """Whether one is true at t + d, by the coordinates at t."""
-        return self.pack.value(*self.programs[number], self.variables(t, coordinates, d))
+    def evaluate_free(self, number: int, t: float, d: float, coordinates: Coordinates) -> float:
+        """Return the truth of one condition at t + d, from the coordinates at t."""
+        return self.pack.value(*self.programs[number], self.extrapolate_variables(t, coordinates, d))
 
-    def variables(self, t: float, coordinates: Coordinates, d: float = 0.0) -> list[float]:
-        """The time, and the coordinates that are used, d later than at t."""
+    def extrapolate_variables(self, t: float, coordinates: Coordinates, d: float = 0.0) -> list[float]:
+        """Return the time t + d and the coordinates in use, extrapolated from t to second order."""
         uses = [coordinates[use] for use in self.pack.variables if not isinstance(use, str)]
         return [t + d, *(q + d * (u + 0.5 * d * a) for q, u, a in uses)]
 
 
-def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
-    """The coordinates of the joints at a state, by their places in it, without their second derivatives; of points as
-    they stand there, without any.
+def read_coordinates(layout: Layout, t: float, state: Array) -> Coordinates:
+    """Read the coordinates of joints and points from a state, without calling the kernel, which may be running.
 
-    Nothing is asked of the kernel, which may be under way.
+    Joint coordinates have no second derivatives (0); points have neither rates nor second derivatives.
     """
     found: dict[tuple[str, str], Jet] = {}
     for freedom in layout.freedoms:
@@ -77,33 +83,33 @@ def coordinates_in(layout: Layout, t: float, state: Array) -> Coordinates:
         else:
             assert joint.drive is not None
             q, u, _ = joint.drive.value.derivatives(t)
-        put(found, joint.name, freedom.quantity, (q, u, 0.0))
+        put_coordinate(found, joint.name, freedom.quantity, (q, u, 0.0))
     if layout.mechanism.points:
-        for use, x in zip(layout.pack.variables, variables_at(layout, t, state), strict=True):
+        for use, x in zip(layout.pack.variables, evaluate_variables(layout, t, state), strict=True):
             if not isinstance(use, str) and use[0] in layout.mechanism.points:
                 found[use] = x, 0.0, 0.0
     return found
 
 
-def put(to: dict[tuple[str, str], Jet], joint: str, quantity: str, jet: Jet) -> None:
-    """Add a coordinate of a joint, and its rate, by their names in conditions."""
+def put_coordinate(coordinates: dict[tuple[str, str], Jet], joint: str, quantity: str, jet: Jet) -> None:
+    """Add a joint's coordinate and its rate under their names in conditions."""
     q, u, a = jet
-    to[joint, quantity] = q, u, a
-    to[joint, "rate" if quantity == "angle" else "speed"] = u, a, 0.0
+    coordinates[joint, quantity] = q, u, a
+    coordinates[joint, "rate" if quantity == "angle" else "speed"] = u, a, 0.0
 
 
-def coordinates_at(scene: Evaluator, times: Array, states: Array) -> list[Coordinates]:
-    """The coordinates of the joints at states of a scene, as they go on from there."""
+def evaluate_coordinates(scene: Evaluator, times: Array, states: Array) -> list[Coordinates]:
+    """Return the coordinates of joints and points at given states, with rates and second derivatives."""
     if not any(condition.value.uses for condition in scene.layout.mechanism.conditions):
         return [{}] * len(times)
-    layout, answers = scene.layout, scene.recovered(times, states)
-    points = {name: motion_of(layout, point, answers.bodies) for name, point in layout.mechanism.points.items()}
+    layout, evaluation = scene.layout, scene.evaluate(times, states)
+    points = {name: point_motion(layout, point, evaluation.bodies) for name, point in layout.mechanism.points.items()}
     found: list[Coordinates] = []
-    for i, row in enumerate(answers.freedoms):
-        own = {(name, quantity): jet for name, jets in points.items() for quantity, jet in jets[i].items()}
+    for i, row in enumerate(evaluation.freedoms):
+        jets_by_name = {(name, quantity): jet for name, jets in points.items() for quantity, jet in jets[i].items()}
         for freedom, (q, u, a, _) in zip(layout.freedoms, row.tolist(), strict=True):
             if freedom.joint >= 0 and freedom.quantity in ("angle", "travel"):
                 name = layout.mechanism.joints[freedom.joint].name
-                put(own, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
-        found.append(own)
+                put_coordinate(jets_by_name, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
+        found.append(jets_by_name)
     return found

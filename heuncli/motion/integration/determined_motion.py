@@ -1,10 +1,13 @@
-"""Whether a motion is followed and not integrated: where the drives and the closed chains leave no freedom."""
+"""Decide whether a motion follows from the drives alone, so that it is solved instant by instant instead of integrated.
+
+This is so where the drives and the closed chains leave no freedom.
+"""
 
 from __future__ import annotations
 
 from heuncli.base.records import record
 from heuncli.motion.integration.integrated_scene import IntegratedScene
-from heuncli.multibody.tree.held_speeds import holds_speed
+from heuncli.multibody.tree.held_speeds import find_speed_rows
 from heuncli.results.results import Block
 
 BY_DRIVES = "nothing is integrated: the drives leave no freedom, every instant follows from them and what closes chains"
@@ -15,41 +18,44 @@ ROLLS = "integrated, though nothing is free: what rolls has its speeds determine
 
 
 @record
-class Determined:
-    """Whether every instant follows from the drives; told: that, or why not though a reader might expect it."""
+class DeterminedMotion:
+    """Whether every instant follows from the drives.
+
+    notes: sentences that say so, or why not where a reader might expect it
+    """
 
     is_so: bool
     told: tuple[str, ...]
 
-    def beside(self, block: Block) -> Block:
-        """This told beside what else was reduced, or was not: sentences by their keys in the block `model`."""
+    def add_to_block(self, block: Block) -> Block:
+        """Add the notes to the block `model`, next to those on reductions that were made or not made."""
         key = "reduced" if self.is_so else "not_reduced"
-        return block | ({key: [*block.get(key, ()), *self.told]} if self.told else {})
+        return block | ({key: [*block.get(key, ()), *self.notes]} if self.notes else {})
 
 
-NOT_DETERMINED = Determined(False, ())
+NOT_DETERMINED = DeterminedMotion(False, ())
 
 
-def determined(moving: IntegratedScene) -> Determined:
-    """Whether a motion can be followed from its start.
+def find_determined_motion(integrated_scene: IntegratedScene) -> DeterminedMotion:
+    """Decide whether the motion can be followed from its start without integration.
 
-    Closed chains that are held more than once leave no freedom as well; a singular start does, and is integrated.
+    Redundantly closed chains may leave no freedom either. A singular start leaves one, so such a motion is integrated.
     """
-    layout = moving.layout
+    layout = integrated_scene.layout
     free = layout.tree_freedoms
     if free > len(layout.rows):
         return NOT_DETERMINED
-    left = free - moving.workspace.chosen_count(0.0, layout.y0) if layout.rows else free
-    if left:
+    freedoms_left = free - integrated_scene.workspace.count_independent_rows(0.0, layout.y0) if layout.rows else free
+    if freedoms_left:
         return NOT_DETERMINED
     if len(layout.tables["contacts"]):
-        return Determined(False, (CONTACTS,))
-    if holds_speed(layout).any():
-        return Determined(False, (ROLLS,))
-    return Determined(True, (BY_DRIVES if layout.driven else BY_JOINTS,))
+        return DeterminedMotion(False, (CONTACTS,))
+    if find_speed_rows(layout).any():
+        return DeterminedMotion(False, (ROLLS,))
+    return DeterminedMotion(True, (BY_DRIVES if layout.has_laws else BY_JOINTS,))
 
 
-def integrated_after_all(model: Block) -> Block:
-    """What the note on the model tells of a motion that could not be followed to its end."""
-    kept = [sentence for sentence in model.get("reduced", ()) if sentence not in (BY_DRIVES, BY_JOINTS)]
-    return {"reduced": kept, "not_reduced": [*model.get("not_reduced", ()), SINGULAR]}
+def note_fallback_to_integration(model: Block) -> Block:
+    """Correct the block `model` after a motion could not be followed to its end and was integrated."""
+    sentences = [sentence for sentence in model.get("reduced", ()) if sentence not in (BY_DRIVES, BY_JOINTS)]
+    return {"reduced": sentences, "not_reduced": [*model.get("not_reduced", ()), SINGULAR]}

@@ -1,4 +1,4 @@
-"""What the kernel answers at given states: accelerations and loads, each state by itself."""
+"""Evaluate accelerations and loads at given states with the kernel, each state independently."""
 
 from __future__ import annotations
 
@@ -9,21 +9,31 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import fields, record
-from heuncli.multibody.response import Columns, answer_kinds, as_numbers, columns_of, room_for_answers, workspace_of
+from heuncli.multibody.response import (
+    Columns,
+    allocate_solutions,
+    as_numbers,
+    make_workspace,
+    solution_parts,
+    unpack_columns,
+)
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 
-AT_ONCE, ROWS = 20_000, 10  # body-states to a call of the kernel, some ten milliseconds; closure rows cost their square
-CAUSES = ("motion", "drives", "gravity")  # beside the loads: velocity terms, what is prescribed, weight
+AT_ONCE, ROWS = 20_000, 10  # body-states per kernel call, about ten milliseconds; closure rows count by their square
+CAUSES = ("motion", "drives", "gravity")  # besides the loads: velocity terms, prescribed motion, weight
 
 
 @record
-class Recovered:
-    """The kernel's answers at the instants, tables (n_t, n) in tree order; their fields: multibody/tree/tables.py.
+class Evaluation:
+    """The kernel's results at a set of instants: tables (n_t, n) in tree order; their fields are in
+    multibody/tree/tables.py.
 
-    times (n_t,) [s]; states (n_t, n_state), settled on the closures; gap (n_t,): the largest left [m]; idle (n_t,): how
-    many freedoms have no inertia behind them.
+    times (n_t,): instants [s]
+    states (n_t, n_state): states, projected onto the closures
+    gap (n_t,): largest closure gap left [m]
+    massless_count (n_t,): number of freedoms without inertia
     """
 
     times: Array
@@ -36,59 +46,67 @@ class Recovered:
     gap: Array
     idle: Array
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
-    residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of
-    may_stay: Array  # what of it rows may keep that were left out as dependent
-    holding: Array  # (n_t, contacts and places): 0 open, 1 closed, also where others close it (Layout.closed)
-    causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
+    residual: Array  # of all rows, J Vdot + gamma at the accelerations found, relative to its terms
+    may_stay: Array  # the residual that rows left out as dependent may have
+    holding: Array  # (n_t, contacts and latch places): 0 open, 1 closed, also if others close it (Layout.closed)
+    causes: Columns | None = None  # (n_t, n_c): one column per load row, then CAUSES; their sum is all
 
     @property
-    def dependent(self) -> Array:
-        """How many of the closure rows that carry depend on others and are left out, (n_t,)."""
+    def dependent_count(self) -> Array:
+        """Number of active closure rows that depend on others and are left out, (n_t,)."""
         return np.asarray((self.rows["closed"] - self.rows["chosen"]).sum(axis=1))
 
-    def at(self, which: Mask | Indices | slice) -> Recovered:
-        """At some of the instants; of a slice views."""
-        if isinstance(which, slice) and which == slice(None):
+    def select(self, instants: Mask | Indices | slice) -> Evaluation:
+        """Select some of the instants; a slice gives views."""
+        if isinstance(instants, slice) and instants == slice(None):
             return self
-        own = fields(self)
-        causes = own.pop("causes")
-        return Recovered(**{name: values[which] for name, values in own.items()}, causes=causes and causes.at(which))
+        values_by_name = fields(self)
+        causes = values_by_name.pop("causes")
+        return Evaluation(
+            **{name: values[instants] for name, values in values_by_name.items()}, causes=causes and causes.at(instants)
+        )
 
 
-def work_of(layout: Layout) -> int:
-    """What a scene takes to be answered at a state, in bodies."""
+def estimate_work(layout: Layout) -> int:
+    """Estimate the work to evaluate a scene at one state, in bodies."""
     return len(layout.place) + len(layout.rows) ** 2 // ROWS
 
 
 class Evaluator:
-    """A laid-out scene with the kernel's work arrays; every call starts from what it is given."""
+    """A scene's layout with the kernel's work arrays. Each call depends only on its arguments."""
 
     def __init__(self, layout: Layout, closed_at_start: Callable[[Evaluator], Array] | None = None) -> None:
-        """closed_at_start: which of the contacts are closed at the start, (contacts,); needed where there are any."""
+        """closed_at_start: finds which contacts are closed at the start, (contacts,); required if the scene has
+        contacts
+        """
         self.layout, self.closed_at_start = layout, closed_at_start
-        self.workspace = workspace_of(layout)
+        self.workspace = make_workspace(layout)
         self.size = layout.size
-        self.kinds = answer_kinds(layout)
+        self.kinds = solution_parts(layout)
 
     @cached_property
     def start_holding(self) -> Array:
-        """The contacts that are closed at the start, (contacts,). Raises ValueError where nobody can tell."""
+        """The contacts that are closed at the start, (contacts,). Raises ValueError if `closed_at_start` was not
+        given.
+        """
         if not self.layout.contacts:
             return np.zeros(0)
         if self.closed_at_start is None:
             raise ValueError("which contacts are closed at the start was not handed in")
         return self.closed_at_start(self)
 
-    def may_stay(self, gap: Array) -> Array:
-        """What accelerations may leave unmet of rows that depend on others, at gaps (n_t,), of the rows' terms."""
-        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / self.least_length)
+    def allowed_residual(self, gap: Array) -> Array:
+        """Return the residual that accelerations may leave in dependent rows, relative to the rows' terms; gap
+        (n_t,).
+        """
+        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / self.min_length)
 
     @cached_property
-    def least_length(self) -> float:
-        """Of the islands of loops the shortest length [m]; the scene's size where there are none."""
+    def min_length(self) -> float:
+        """Shortest length of the islands of loops [m]; the scene's size if there are none."""
         return min((island.length for island in self.layout.islands), default=self.size)
 
-    def recovered(
+    def evaluate(
         self,
         times: Array,
         states: Array,
@@ -97,60 +115,67 @@ class Evaluator:
         hold_rows: bool = False,
         causes: bool = False,
         holding: Array | None = None,
-    ) -> Recovered:
-        """Accelerations and loads at the given states, which are projected onto the closures first.
+    ) -> Evaluation:
+        """Evaluate accelerations and loads at given states, which are first projected onto the closures.
 
-        Each state by itself, whatever others are asked with it: its independent closure rows are chosen anew.
-        branches (n_t, n): those that the expressions hold; without them branches are as the states say.
-        hold_rows: those of the first serve the others too, as long as they can, for pivots that are comparable.
-        causes: with a column a cause. holding (n_t, contacts) or (contacts,): which are closed, above 0; by default as
-        at the start.
+        Each state is evaluated independently of the others: its independent closure rows are chosen for it alone.
+
+        branches (n_t, n): branches that the expressions hold; by default each state determines its own
+        hold_rows: reuse the rows of the first state for the others as long as possible, so that pivots are comparable
+        causes: also compute one column per cause holding (n_t, contacts) or (contacts,): closed contacts are above 0;
+        by default as at the start
         """
         layout, n_t = self.layout, len(times)
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
-        told, columns = room_for_answers(self.kinds, n_t), np.zeros((n_t, n_c * self.workspace.column_width))
-        at = np.ascontiguousarray(times, dtype=float)
-        settled = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
-        held = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
-        closed = np.zeros((n_t, len(layout.all_open)))
-        # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts
-        closed[:] = layout.closed(self.start_holding if holding is None else holding)
-        given = {"times": at, "branches": held, "holding": closed}
-        answers = {"states": settled, "columns": columns, **{name: as_numbers(table) for name, table in told.items()}}
-        self._recover(given, answers, hold_rows, causes)
-        rows, whole = told["rows"], told["whole"]
+        tables, columns = allocate_solutions(self.kinds, n_t), np.zeros((n_t, n_c * self.workspace.column_width))
+        instants = np.ascontiguousarray(times, dtype=float)
+        projected_states = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
+        held_branches = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
+        closed = np.zeros((n_t, len(layout.open_contacts)))
+        # contacts closed by others count as closed too: the rank, and later checks, decide which of them
+        # carry
+        closed[:] = layout.closed_contacts(self.start_holding if holding is None else holding)
+        inputs = {"times": instants, "branches": held_branches, "holding": closed}
+        outputs = {
+            "states": projected_states,
+            "columns": columns,
+            **{name: as_numbers(table) for name, table in tables.items()},
+        }
+        self._recover(inputs, outputs, hold_rows, causes)
+        rows, whole = tables["rows"], tables["whole"]
         residual = whole["residual"][:, 0]
         if layout.rows:
-            # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing
+            # after an impulse that ends all motion, the rates are rounding, and terms in their squares
+            # count as zero
             still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
             residual = np.where(still, 0.0, residual)
-        return Recovered(
-            times=at, states=settled, bodies=told["bodies"], freedoms=told["freedoms"], loads=told["loads"], rows=rows,
-            parts=told["parts"], gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
-            residual=residual, may_stay=self.may_stay(whole["gap"][:, 0]),
+        return Evaluation(
+            times=instants, states=projected_states, bodies=tables["bodies"], freedoms=tables["freedoms"], loads=tables["loads"], rows=rows,
+            parts=tables["parts"], gap=whole["gap"][:, 0], massless_count=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
+            residual=residual, allowed_residual=self.allowed_residual(whole["gap"][:, 0]),
             holding=closed,
-            causes=columns_of(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))
+            causes=unpack_columns(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))
             if causes
             else None,
         )  # fmt: skip
 
-    def _recover(self, given: dict[str, Array], answers: dict[str, Array], hold_rows: bool, causes: bool) -> None:
-        """The kernel's calls for arrays by instants; answers, the states among them, are written into.
+    def _recover(self, inputs: dict[str, Array], outputs: dict[str, Array], hold_rows: bool, causes: bool) -> None:
+        """Call the kernel in batches of instants; the output arrays, the states among them, are written in place.
 
-        Each is so short that an alarm or an interrupt is heard soon: they wait for a call to end.
+        Signals and timeouts wait until a call ends, so each call is short.
         """
-        arrays = given | answers
-        count, many = len(given["times"]), max(1, AT_ONCE // max(work_of(self.layout), 1))
-        if 0 < count <= many:
+        arrays = inputs | outputs
+        count, batch_size = len(inputs["times"]), max(1, AT_ONCE // max(estimate_work(self.layout), 1))
+        if 0 < count <= batch_size:
             self.workspace.recover({name: values.reshape(-1) for name, values in arrays.items()}, not hold_rows, causes)
             return
-        for begin in range(0, count, many):
-            part = {name: values[begin : begin + many] for name, values in arrays.items()}
-            first = hold_rows and begin > 0  # the rows are chosen there, once more
+        for begin in range(0, count, batch_size):
+            part = {name: values[begin : begin + batch_size] for name, values in arrays.items()}
+            first = hold_rows and begin > 0  # repeats the first state, where the rows are chosen
             if first:
                 part = {name: np.concatenate([arrays[name][:1], values]) for name, values in part.items()}
             flat = {name: values.reshape(-1) for name, values in part.items()}
             self.workspace.recover(flat, not hold_rows, causes)
             if first:
-                for name in answers:
-                    arrays[name][begin : begin + many] = part[name][1:]
+                for name in outputs:
+                    arrays[name][begin : begin + batch_size] = part[name][1:]

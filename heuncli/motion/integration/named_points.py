@@ -1,4 +1,4 @@
-"""The motion of points that expressions name, from what the kernel tells of the bodies."""
+"""Compute the motion of points that expressions name from the kernel's body results."""
 
 from __future__ import annotations
 
@@ -12,19 +12,21 @@ from heuncli.scene.shapes.rotations import cross_rows
 Jet = tuple[float, float, float]  # value, rate, second derivative
 
 
-def motion_of(layout: Layout, point: NamedPoint, bodies: Table) -> list[dict[str, Jet]]:
-    """A point's places and velocities at instants, as they go on from there, by their names; bodies (n_t, n_b)."""
+def point_motion(layout: Layout, point: NamedPoint, bodies: Table) -> list[dict[str, Jet]]:
+    """Return a point's position and velocity components with their derivatives at each instant, by name; bodies (n_t,
+    n_b).
+    """
     if point.body == GROUND:
         place = np.tile(point.place, (len(bodies), 1))
         velocity = acceleration = np.zeros_like(place)
     else:
-        at = layout.place[point.body]
-        own = bodies[:, at]
-        arm = own["R"] @ (point.place - layout.reference[at])
-        swept = cross_rows(own["omega"], arm)
-        place, velocity = own["r"] + arm, own["v"] + swept
-        acceleration = own["a"] + layout.mechanism.gravity + cross_rows(own["alpha"], arm)
-        acceleration = np.nan_to_num(acceleration + cross_rows(own["omega"], swept))
+        index = layout.place[point.body]
+        body_rows = bodies[:, index]
+        arm = body_rows["R"] @ (point.place - layout.reference[index])
+        swept = cross_rows(body_rows["omega"], arm)
+        place, velocity = body_rows["r"] + arm, body_rows["v"] + swept
+        acceleration = body_rows["a"] + layout.mechanism.gravity + cross_rows(body_rows["alpha"], arm)
+        acceleration = np.nan_to_num(acceleration + cross_rows(body_rows["omega"], swept))
     x, v, a = (rows @ point.axes.T for rows in (place, velocity, acceleration))
     x = x + point.offset
     return [

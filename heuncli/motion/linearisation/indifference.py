@@ -1,11 +1,12 @@
-"""Which small motions no stiffness holds: the null space of K, told from what rounding of all its terms makes of it.
+"""Find which small motions no stiffness holds: the null space of K, decided by the rounding errors of all its terms.
 
-    K x = 0,   K = -T' M da/dq T          of displacements T x, at rest in the frame of what goes on
-Rest poses, their stability and small oscillations all take this one decision. How well K is known is seen in scenes
-and poses that rounding does not tell from this one (rounded_scenes.py), each brought to where it rests itself: what
-cancels in K, between loads or inside a law, differs there by the rounding of its terms, entry by entry. K is eliminated
-from its largest entry down, in all these scenes alike, as long as an entry is more than they differ by: so what is soft
-is compared with the terms of soft motions, and not with those of stiff ones beside it.
+    K x = 0,   K = -T' M da/dq T          of displacements T x, at rest in the frame of what moves steadily
+
+Rest poses, their stability and small oscillations all use this one decision. The error of K is measured with scenes and
+poses that rounding cannot distinguish from this one (rounded_scenes.py), each brought to its own rest: what cancels in
+K, between loads or inside a law, differs there by the rounding of its terms, entry by entry. K is eliminated from its
+largest entry down, in all these scenes alike, as long as an entry exceeds their differences: so soft entries are
+compared with the terms of soft motions, and not with those of stiff neighbouring ones.
 """
 
 from __future__ import annotations
@@ -14,30 +15,30 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.motion.linearisation.linearise import Linearised, linearised
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.reduced_equations import (
     ReducedEquations,
-    complement,
-    frames,
-    idle_spins,
-    rates_of_balls,
+    ball_rates,
+    ball_rotations,
+    find_massless_spins,
+    orthogonal_complement,
 )
-from heuncli.motion.linearisation.rounded_scenes import rounded_scene, rounded_state
-from heuncli.multibody.tree.layout import Layout, places_of_rates
+from heuncli.motion.linearisation.rounded_scenes import make_rounded_scene, make_rounded_state
+from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Indices
 
-SCENES = 4  # moved by rounding: that all of them hide a term is unlikely
-FARTHEST = 1.0  # rad, or of the size: a pose that rounding moves farther is known no better than that
+ROUNDED_SCENES = 4  # perturbed by rounding; it is unlikely that all of them hide a term
+MAX_DISPLACEMENT = 1.0  # rad, or relative to the size: limit of a displacement by rounding
 
 
 @record
-class Eliminated:
-    """A matrix (f, f) by its entries that are more than rounding: their rows and columns, in pairs; the null spaces.
+class Elimination:
+    """A matrix (f, f) eliminated by its significant entries: their rows and columns, in pairs; the null spaces.
 
-    right, left (f, g): K right = 0 = left' K but for rounding, which is at most `unsure` (g, g) on them, `known` (f, f)
-    on all.
+    right_null, left_null (f, g): K right_null = 0 = left_null' K except for rounding, which is at most `null_errors`
+    (g, g) on them, `entry_errors` (f, f) on all
     """
 
     K: Array
@@ -48,8 +49,8 @@ class Eliminated:
     unsure: Array
     known: Array
 
-    def answer(self, forces: Array) -> Array:
-        """x of K x = forces (f, m) where forces are none on `left`, (f, m); none along what is indifferent."""
+    def solve(self, forces: Array) -> Array:
+        """Solve K x = forces (f, m) for forces that vanish on `left_null`; x is zero along what is indifferent."""
         x = np.zeros((len(self.K), forces.shape[1]))
         if len(self.rows):
             x[self.columns] = np.linalg.solve(self.K[np.ix_(self.rows, self.columns)], forces[self.rows])
@@ -58,29 +59,32 @@ class Eliminated:
 
 @record
 class Indifference:
-    """What nothing holds: free (n, g), a basis of displacements, with few of the tree's freedoms in each.
+    """What nothing holds.
 
-    T (n, f): displacements that the closures admit, each with a coordinate of its own; found: K on them, eliminated.
-    reach: how far rounding moves the pose, along what is held softly [rad, or of the size].
+    free (n, g): a basis of displacements, with few of the tree's freedoms in each T (n, f): displacements that the
+    closures admit, each with a coordinate of its own
+    elimination: K on these displacements, eliminated
+    reach: how far rounding moves the pose, along what is held softly [rad, or relative to the size]
     """
 
     T: Array
-    found: Eliminated
+    found: Elimination
     reach: float
 
     @property
-    def free(self) -> Array:
-        """(n, g)"""
-        return np.asarray(self.T @ self.found.right)
+    def free_motions(self) -> Array:
+        """Basis of the indifferent displacements, (n, g)."""
+        return np.asarray(self.T @ self.elimination.right_null)
 
 
 @record
-class Loose:
-    """What no stiffness holds, in coordinates x: K right = 0 = left' K, bases orthonormal (f, g).
+class IndifferentMotions:
+    """What no stiffness holds, in coordinates x: K right_null = 0 = left_null' K, with orthonormal bases (f, g).
 
-    unsure: the largest stiffness [1/s^2] that rounding may hide in it; held (f, f): what a force is answered by.
-    to (m, f): x by displacements with a coordinate each, on which the stiffness is K (m, m), and rounding of it no more
-    than known (m, m): what is soft keeps its digits there.
+    error: the largest stiffness [1/s^2] that rounding may hide in it
+    compliance (f, f): response to a force
+    to_pivots (m, f): x to displacements with a coordinate each, on which the stiffness is K (m, m) with rounding errors
+    of at most entry_errors (m, m); soft motions keep their digits there
     """
 
     right: Array
@@ -91,129 +95,160 @@ class Loose:
     K: Array
     known: Array
 
-    def between(self, X: Array) -> Array:
-        """The stiffness of motions (f, k) among each other, (k, k) [1/s^2]."""
-        own = self.to @ X
-        return np.asarray(own.T @ self.K @ own)
+    def mutual_stiffness(self, X: Array) -> Array:
+        """Return the stiffness of motions (f, k) among each other, (k, k) [1/s^2]."""
+        displacements = self.to_pivots @ X
+        return np.asarray(displacements.T @ self.K @ displacements)
 
-    def hidden(self, X: Array) -> Array:
-        """What rounding makes of the stiffness of motions (f, k), (k,) [1/s^2]."""
-        size = np.abs(self.to @ X)
-        return np.asarray(np.sum(size * (self.known @ size), axis=0))
+    def stiffness_error(self, X: Array) -> Array:
+        """Return the rounding error of the stiffness of motions (f, k), (k,) [1/s^2]."""
+        size = np.abs(self.to_pivots @ X)
+        return np.asarray(np.sum(size * (self.entry_errors @ size), axis=0))
 
 
-def indifference(
-    scene: PreparedScene, t: float, holding: Array, law: Linearised, *, rests: bool = True
+def find_indifference(
+    scene: PreparedScene, t: float, holding: Array, law: LinearisedEquations, *, is_at_rest: bool = True
 ) -> Indifference:
-    """Of a scene about a state; law: its linear equations there. rests: the state is as good as rounding lets it be, so
-    that what is as soft as rounding moves the pose along it is not told from nothing."""
+    """Find the indifferent motions of a scene about a state; law: its linear equations there.
+
+    is_at_rest: the state rests as well as rounding permits, so softness within the displacement by rounding counts as
+    none
+    """
     layout = scene.layout
-    weights = weights_of(layout)
-    tangent, drift = with_inertia(scene, law)
-    T, pivots = echelon(tangent, weights)
+    weights = freedom_weights(layout)
+    tangent, drift = massive_displacements(scene, law)
+    T, pivots = find_pivots(tangent, weights)
     if not T.shape[1]:
-        return Indifference(T, eliminated(np.zeros((0, 0)), np.zeros((0, 0, 0))), 0.0)
-    K, _ = stiffness(layout, law, T, drift)
-    scenes = [replace(scene, layout=rounded_scene(layout, number)) for number in range(SCENES)]
-    states = [rounded_state(layout, law.state, number) for number in range(SCENES)]
-    beside, pushes = moved(scenes, t, states, holding, weights, pivots)
-    first, reach = eliminated(K, beside - K), 0.0
-    if rests and len(first.rows):
-        ways = [T @ first.answer(push[:, None])[:, 0] for push in pushes]
-        reach = max(float(np.abs(way * weights).max()) for way in ways)
-        states = [displaced(layout, state, bounded(way, weights)) for state, way in zip(states, ways, strict=True)]
-        beside, _ = moved(scenes, t, states, holding, weights, pivots)
-        first = eliminated(K, beside - K)
-    return Indifference(T, first, reach)
+        return Indifference(T, eliminate(np.zeros((0, 0)), np.zeros((0, 0, 0))), 0.0)
+    K, _ = find_stiffness(layout, law, T, drift)
+    scenes = [replace(scene, layout=make_rounded_scene(layout, number)) for number in range(ROUNDED_SCENES)]
+    states = [make_rounded_state(layout, law.state, number) for number in range(ROUNDED_SCENES)]
+    perturbed_K, pushes = perturbed_stiffness(scenes, t, states, holding, weights, pivots)
+    elimination, reach = eliminate(K, perturbed_K - K), 0.0
+    if is_at_rest and len(elimination.rows):
+        displacements = [T @ elimination.solve(push[:, None])[:, 0] for push in pushes]
+        reach = max(float(np.abs(rounding_motion * weights).max()) for rounding_motion in displacements)
+        states = [
+            displace(layout, state, limit_displacement(rounding_motion, weights))
+            for state, rounding_motion in zip(states, displacements, strict=True)
+        ]
+        perturbed_K, _ = perturbed_stiffness(scenes, t, states, holding, weights, pivots)
+        elimination = eliminate(K, perturbed_K - K)
+    return Indifference(T, elimination, reach)
 
 
-def loose(system: ReducedEquations, of: Indifference) -> Loose:
-    """The same of reduced equations, whose motions are some of those displacements: idle spins are none."""
-    back = system.tangent.T @ system.mass
-    right, left = (orthonormal(back @ of.T @ basis) for basis in (of.found.right, of.found.left))
-    to: Array = np.linalg.lstsq(of.T, system.tangent, rcond=None)[0].astype(float)  # x by those displacements
-    forces: Array = np.linalg.lstsq(to, np.eye(len(to)), rcond=None)[0].astype(float)
-    held = back @ of.T @ of.found.answer(forces.T)
-    basis = np.linalg.lstsq(back @ of.T @ of.found.right, right, rcond=None)[0] if right.shape[1] else np.zeros((0, 0))
-    unsure = np.abs(basis).T @ of.found.unsure @ np.abs(basis) if basis.size else np.zeros((0, 0))
-    return Loose(right, left, float(np.abs(unsure).max(initial=0.0)), held, to, of.found.K, of.found.known)
+def reduce_indifference(system: ReducedEquations, indifference: Indifference) -> IndifferentMotions:
+    """Return the indifference of reduced equations, whose motions are some of those displacements, without massless
+    spins.
+    """
+    projection = system.tangent.T @ system.mass
+    right_null, left_null = (
+        orthonormalise(projection @ indifference.T @ basis)
+        for basis in (indifference.elimination.right_null, indifference.elimination.left_null)
+    )
+    to_pivots: Array = np.linalg.lstsq(indifference.T, system.tangent, rcond=None)[0].astype(
+        float
+    )  # x by those displacements
+    forces: Array = np.linalg.lstsq(to_pivots, np.eye(len(to_pivots)), rcond=None)[0].astype(float)
+    compliance = projection @ indifference.T @ indifference.elimination.solve(forces.T)
+    basis = (
+        np.linalg.lstsq(projection @ indifference.T @ indifference.elimination.right_null, right_null, rcond=None)[0]
+        if right_null.shape[1]
+        else np.zeros((0, 0))
+    )
+    errors = np.abs(basis).T @ indifference.elimination.null_errors @ np.abs(basis) if basis.size else np.zeros((0, 0))
+    return IndifferentMotions(
+        right_null,
+        left_null,
+        float(np.abs(errors).max(initial=0.0)),
+        compliance,
+        to_pivots,
+        indifference.elimination.K,
+        indifference.elimination.entry_errors,
+    )
 
 
-def orthonormal(columns: Array) -> Array:
-    """An orthonormal basis of what independent columns span, however different their sizes."""
+def orthonormalise(columns: Array) -> Array:
+    """Return an orthonormal basis of the span of independent columns, however different their sizes."""
     return np.asarray(np.linalg.qr(columns / np.sqrt(np.sum(columns**2, axis=0)))[0])
 
 
-def moved(
+def perturbed_stiffness(
     scenes: list[PreparedScene], t: float, states: list[Array], holding: Array, weights: Array, pivots: Indices
 ) -> tuple[Array, Array]:
-    """K of scenes, (s, f, f), and what pushes there, (s, f)."""
+    """Return K of perturbed scenes, (s, f, f), and their remaining forces, (s, f)."""
     f = len(pivots)
     K, pushes = np.full((len(scenes), f, f), np.nan), np.zeros((len(scenes), f))
     for k, (scene, state) in enumerate(zip(scenes, states, strict=True)):
-        law = linearised(scene.layout, t, state, holding)
+        law = linearise(scene.layout, t, state, holding)
         if not np.isfinite(law.by_place).all():
             continue
-        tangent, drift = with_inertia(scene, law)
+        tangent, drift = massive_displacements(scene, law)
         if tangent.shape[1] == f:
-            K[k], pushes[k] = stiffness(scene.layout, law, on_pivots(tangent, weights, pivots), drift)
+            K[k], pushes[k] = find_stiffness(scene.layout, law, normalise_on_pivots(tangent, weights, pivots), drift)
     return K, pushes
 
 
-def bounded(way: Array, weights: Array) -> Array:
-    """A displacement (n,), but not farther than anything is looked for."""
-    size = float(np.abs(way * weights).max(initial=0.0))
+def limit_displacement(displacement: Array, weights: Array) -> Array:
+    """Limit a displacement (n,) to MAX_DISPLACEMENT."""
+    size = float(np.abs(displacement * weights).max(initial=0.0))
     if not np.isfinite(size):
-        return np.zeros(len(way))
-    return way * min(1.0, FARTHEST / size) if size > 0.0 else way
+        return np.zeros(len(displacement))
+    return displacement * min(1.0, MAX_DISPLACEMENT / size) if size > 0.0 else displacement
 
 
-def with_inertia(scene: PreparedScene, law: Linearised) -> tuple[Array, Array]:
-    """The displacements of the law that move mass, (n, f), and what any ask of rates, (n, n)."""
-    idle = idle_spins(scene, law)
+def massive_displacements(scene: PreparedScene, law: LinearisedEquations) -> tuple[Array, Array]:
+    """Return the displacements of the law that move mass, (n, f), and the rates that any displacement needs, (n, n)."""
+    massless_spins = find_massless_spins(scene, law)
     drift = law.drift @ np.linalg.pinv(law.tangent)
-    for spin in idle:
-        drift = drift - np.outer(law.tangent @ spin.along, spin.gained(law, np.eye(len(drift))))
-    return law.tangent @ complement(np.array([spin.along for spin in idle]), law.tangent.shape[1]), drift
+    for spin in massless_spins:
+        drift = drift - np.outer(law.tangent @ spin.tangent, spin.rate_change(law, np.eye(len(drift))))
+    return law.tangent @ orthogonal_complement(
+        np.array([spin.tangent for spin in massless_spins]), law.tangent.shape[1]
+    ), drift
 
 
-def weights_of(layout: Layout) -> Array:
-    """Of the undriven freedoms: 1 of turns, 1 / size of shifts, (n,)."""
-    place = places_of_rates(layout)
+def freedom_weights(layout: Layout) -> Array:
+    """Return the weights of the undriven freedoms: 1 for rotations, 1 / size for shifts, (n,)."""
+    place = rate_indices(layout)
     return np.asarray(layout.weights[place[place >= 0]])
 
 
-def stiffness(layout: Layout, law: Linearised, T: Array, drift: Array) -> tuple[Array, Array]:
-    """K on displacements T (n, f), and what pushes along them, (f,); drift (n, n): what displacements ask of rates.
+def find_stiffness(layout: Layout, law: LinearisedEquations, T: Array, drift: Array) -> tuple[Array, Array]:
+    """Return K on displacements T (n, f), and the remaining forces along them, (f,).
 
-    Seen from the frames of what goes on, as in reduced_equations.py: what stays there asks for the rates `stays`.
+    drift (n, n): rates that displacements need
+
+    Seen from the frames of what moves steadily, as in reduced_equations.py: what stays there needs the rates `rates`.
     """
-    spin, frame = frames(layout, law)
+    spin, frame = ball_rotations(layout, law)
     P, change = T.T @ law.mass, law.by_place @ T
     if drift.any() or (spin != frame).any():
         S = drift @ T
-        stays = S - T @ (np.linalg.pinv(T) @ (S + (spin - frame) @ T))
-        change = change + (law.by_rate - frame) @ stays
+        rates = S - T @ (np.linalg.pinv(T) @ (S + (spin - frame) @ T))
+        change = change + (law.by_rate - frame) @ rates
     K = -P @ change
-    return K, P @ (law.accelerations - frame @ rates_of_balls(layout, law))
+    return K, P @ (law.accelerations - frame @ ball_rates(layout, law))
 
 
-def echelon(tangent: Array, weights: Array) -> tuple[Array, Indices]:
-    """The same displacements (n, f), each with a coordinate in which the others have no part; which, (f,)."""
-    left = tangent * weights[:, None]
+def find_pivots(tangent: Array, weights: Array) -> tuple[Array, Indices]:
+    """Return the same displacements (n, f), each with a coordinate in which the others have no part, and these pivots,
+    (f,).
+    """
+    remainder = tangent * weights[:, None]
     pivots: list[int] = []
     for _ in range(tangent.shape[1]):
-        sizes = np.sum(left**2, axis=1)
+        sizes = np.sum(remainder**2, axis=1)
         k = int(np.argmax(sizes))
         pivots.append(k)
-        across = left[k] / np.sqrt(sizes[k])
-        left = left - np.outer(left @ across, across)
-    chosen = np.array(pivots, dtype=int)
-    return on_pivots(tangent, weights, chosen), chosen
+        direction = remainder[k] / np.sqrt(sizes[k])
+        remainder = remainder - np.outer(remainder @ direction, direction)
+    pivot_indices = np.array(pivots, dtype=int)
+    return normalise_on_pivots(tangent, weights, pivot_indices), pivot_indices
 
 
-def on_pivots(tangent: Array, weights: Array, pivots: Indices) -> Array:
-    """The same displacements by the coordinates named; what is rounding of a coordinate's part is none."""
+def normalise_on_pivots(tangent: Array, weights: Array, pivots: Indices) -> Array:
+    """Return the same displacements normalised on the given coordinates; parts within rounding become zero."""
     T = tangent * weights[:, None]
     if len(pivots):
         T = np.linalg.solve(T[pivots].T, T.T).T.astype(float)
@@ -222,39 +257,41 @@ def on_pivots(tangent: Array, weights: Array, pivots: Indices) -> Array:
     return np.asarray(T / weights[:, None])
 
 
-def eliminated(K: Array, changes: Array) -> Eliminated:
-    """A matrix (f, f) with what others that rounding does not tell from it differ from it by, (s, f, f)."""
+def eliminate(K: Array, changes: Array) -> Elimination:
+    """Eliminate a matrix (f, f), given the differences of others that rounding cannot distinguish from it, (s, f,
+    f).
+    """
     f = len(K)
     changes = changes[np.isfinite(changes).all(axis=(1, 2))] if f else changes
     if f and not len(changes):
         changes = np.full((1, f, f), tolerances.EIGENVALUE * f * np.abs(K).max())
-    known = tolerances.HELD * np.abs(changes).max(axis=0, initial=0.0)
+    entry_errors = tolerances.HELD * np.abs(changes).max(axis=0, initial=0.0)
     S, others = K.copy(), K + changes
     rows, columns = list(range(f)), list(range(f))
-    right, left = np.eye(f), np.eye(f)
-    taken: list[tuple[int, int]] = []
+    right_null, left_null = np.eye(f), np.eye(f)
+    pairs_taken: list[tuple[int, int]] = []
     while rows:
-        unsure = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
-        seen = np.where(np.abs(S) > unsure, np.abs(S), 0.0)
-        i, j = np.unravel_index(int(np.argmax(seen)), seen.shape)
-        if seen[i, j] == 0.0:
+        errors = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
+        significant = np.where(np.abs(S) > errors, np.abs(S), 0.0)
+        i, j = np.unravel_index(int(np.argmax(significant)), significant.shape)
+        if significant[i, j] == 0.0:
             break
-        taken.append((rows.pop(int(i)), columns.pop(int(j))))
-        right = without(right, int(j), S[i] / S[i, j])
-        left = without(left, int(i), S[:, j] / S[i, j])
-        S, others = schur(S[None], int(i), int(j))[0], schur(others, int(i), int(j))
-    unsure = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
-    pairs = np.array(taken, dtype=int).reshape(-1, 2)
-    return Eliminated(K, pairs[:, 0], pairs[:, 1], right, left, unsure, known)
+        pairs_taken.append((rows.pop(int(i)), columns.pop(int(j))))
+        right_null = remove_column(right_null, int(j), S[i] / S[i, j])
+        left_null = remove_column(left_null, int(i), S[:, j] / S[i, j])
+        S, others = schur_complement(S[None], int(i), int(j))[0], schur_complement(others, int(i), int(j))
+    errors = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
+    pairs = np.array(pairs_taken, dtype=int).reshape(-1, 2)
+    return Elimination(K, pairs[:, 0], pairs[:, 1], right_null, left_null, errors, entry_errors)
 
 
-def without(basis: Array, k: int, shares: Array) -> Array:
-    """A basis without its column k, of which the others take their shares."""
+def remove_column(basis: Array, k: int, shares: Array) -> Array:
+    """Return a basis without its column k, of which the others take their shares."""
     return np.asarray(np.delete(basis - np.outer(basis[:, k], shares), k, axis=1))
 
 
-def schur(matrices: Array, i: int, j: int) -> Array:
-    """Matrices (s, f, f) after one step of elimination by the entry i, j."""
+def schur_complement(matrices: Array, i: int, j: int) -> Array:
+    """Return matrices (s, f, f) after one step of elimination by the entry i, j."""
     pivot = matrices[:, i, j][:, None, None]
-    left = matrices - matrices[:, :, j][:, :, None] * (matrices[:, i, :][:, None, :] / pivot)
-    return np.asarray(np.delete(np.delete(left, i, axis=1), j, axis=2))
+    remainder = matrices - matrices[:, :, j][:, :, None] * (matrices[:, i, :][:, None, :] / pivot)
+    return np.asarray(np.delete(np.delete(remainder, i, axis=1), j, axis=2))

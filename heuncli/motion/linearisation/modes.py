@@ -1,4 +1,4 @@
-"""The modes of a scene as they are told: about which state, frequencies, damping, growth, and shapes by coordinates."""
+"""The modes of a scene as reported: about which state, frequencies, damping, growth, and shapes by coordinates."""
 
 from __future__ import annotations
 
@@ -12,26 +12,30 @@ from heuncli.results.results import Array
 
 @record
 class SceneModes:
-    """The modes of a scene; at: about which pose; shapes: of each mode its coordinates, the largest 1."""
+    """The modes of a scene.
+
+    reference: the pose they are about, "rest" or "state"
+    shapes: coordinates of each mode, the largest 1
+    """
 
     title: str
     at: Literal["rest", "state"]
-    steady: bool  # something moves steadily: in a frame that goes with it
+    steady: bool  # something moves steadily; the modes are seen from its frame
     held: bool  # there are drives, and they are held
     modes: tuple[Mode, ...]
     shapes: tuple[dict[str, complex], ...]
-    largest: tuple[tuple[str, ...], ...]  # of each mode the coordinates that move most, lengths by the scene's size
-    without: tuple[str, ...] = ()  # forces that were left out and drives that were held, as `forces.push`
+    largest: tuple[tuple[str, ...], ...]  # the coordinates that move most in each mode, lengths relative to the size
+    without: tuple[str, ...] = ()  # forces left out and drives held, as `forces.push`
 
-    def block(self) -> dict[str, Any]:
-        """As JSON has it."""
-        rows = [row(mode, shape) for mode, shape in zip(self.modes, self.shapes, strict=True)]
-        without = {"without": list(self.without)} if self.without else {}
-        return {"at": self.at, "steady": self.steady, **without, "modes": rows}
+    def to_block(self) -> dict[str, Any]:
+        """Return the modes as in the JSON output."""
+        rows = [mode_to_block(mode, shape) for mode, shape in zip(self.modes, self.shapes, strict=True)]
+        without = {"without": list(self.omitted_paths)} if self.omitted_paths else {}
+        return {"at": self.reference, "steady": self.is_steady, **without, "modes": rows}
 
 
-def row(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:
-    """A mode as JSON has it; error [1/s]: what growth and 2 pi frequency may be off by."""
+def mode_to_block(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:
+    """Return a mode as in the JSON output; error [1/s]: of growth and 2 pi frequency."""
     return {
         "frequency": mode.frequency,
         "damping": mode.damping,
@@ -42,16 +46,20 @@ def row(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:
     }
 
 
-def shape_of(x: Array, rows: dict[str, Array]) -> dict[str, complex]:
-    """A displacement by coordinates, its largest 1."""
-    found = {name: complex(row @ x) for name, row in rows.items()}
-    largest = max(found.values(), key=abs, default=0j)
-    return {name: value / largest if largest else value for name, value in found.items()}
+def make_shape(x: Array, rows: dict[str, Array]) -> dict[str, complex]:
+    """Return a displacement by coordinates, its largest 1."""
+    components = {name: complex(row @ x) for name, row in rows.items()}
+    largest = max(components.values(), key=abs, default=0j)
+    return {name: value / largest if largest else value for name, value in components.items()}
 
 
-def most(shape: dict[str, complex], size: float) -> tuple[str, ...]:
-    """The coordinates that move most, at most three that move by half of it; lengths by the scene's size."""
-    by = {name: abs(x) / (size if is_length(name) else 1.0) for name, x in shape.items()}
-    largest = max(by.values(), default=0.0)
-    names = sorted((name for name, x in by.items() if x >= 0.5 * largest), key=lambda name: -round(by[name], 9))
+def find_largest_coordinates(shape: dict[str, complex], size: float) -> tuple[str, ...]:
+    """Return the coordinates that move most, at most three that move by at least half of it; lengths relative to the
+    size.
+    """
+    magnitudes = {name: abs(x) / (size if is_length(name) else 1.0) for name, x in shape.items()}
+    largest = max(magnitudes.values(), default=0.0)
+    names = sorted(
+        (name for name, x in magnitudes.items() if x >= 0.5 * largest), key=lambda name: -round(magnitudes[name], 9)
+    )
     return tuple(names[:3]) or ("nothing",)

@@ -1,7 +1,7 @@
-"""A scene whose numbers are all moved by rounding, each for itself: what two of them differ in is not known.
+"""Perturb all numbers of a scene by rounding, independently; the difference of two such scenes is the rounding error.
 
-Masses, springs, lengths, directions and the constants of expressions are known no better than they are typed and were
-computed with. What cancels between them, inside a law or between laws, shows in such scenes by its terms.
+Masses, springs, lengths, directions and the constants of expressions are known no better than typed and computed. What
+cancels between them, inside a law or between laws, shows in such scenes by its terms.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import replace
-from heuncli.motion.linearisation.displacements import displaced
-from heuncli.multibody.tree.layout import Layout, places_of_rates
+from heuncli.motion.linearisation.displacements import displace
+from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
 
-# Of each number of a table by what it is moved: by its own size, of a vector the largest ...
-OWN = {
+# The scale of the perturbation of each number of a table: its own size, for a vector the largest component ...
+BY_OWN_SIZE = {
     "bodies": ("mass", "inertia"), "loads": ("vector", "stiffness", "length", "factor", "offset"),
     "closures": ("length",), "freedoms": (),
 }  # fmt: skip
-# ... by the scene's size: places in bodies ...
-PLACES = {"bodies": ("joint_in_parent",), "loads": ("p", "q"), "closures": ("p", "q"), "freedoms": ()}
-# ... or by 1: directions
-DIRECTIONS = {
+# ... the scene's size, for positions in bodies ...
+BY_SCENE_SIZE = {"bodies": ("joint_in_parent",), "loads": ("p", "q"), "closures": ("p", "q"), "freedoms": ()}
+# ... or 1, for directions
+BY_ONE = {
     "bodies": ("frame",),
     "loads": ("axis", "across", "mark"),
     "closures": ("e", "g"),
@@ -33,79 +33,81 @@ DIRECTIONS = {
 }
 
 
-class Rounding:
-    """A source of roundings, the same for the same number."""
+class RoundingSource:
+    """A reproducible source of rounding errors: the same seed number gives the same errors."""
 
     def __init__(self, number: int) -> None:
         self.rng = np.random.default_rng(number)
 
-    def of(self, count: int) -> Array:
-        """Some numbers of the size of rounding, none of them near zero, (count,)."""
+    def draw(self, count: int) -> Array:
+        """Draw numbers of the size of rounding, none of them near zero, (count,)."""
         x = self.rng.uniform(-1.0, 1.0, count)
         return np.asarray(tolerances.START_ROUNDING * 0.5 * (x + np.sign(x)))
 
 
-def rounded_scene(layout: Layout, number: int) -> Layout:
-    """A scene like this one but for rounding; number: which."""
-    source = Rounding(number)
+def make_rounded_scene(layout: Layout, number: int) -> Layout:
+    """Make a scene that differs from this one by rounding; number: which of several."""
+    source = RoundingSource(number)
     tables = {name: table.copy() for name, table in layout.tables.items()}
     for name, table in tables.items():
-        if name in OWN and len(table):
-            move(table, name, layout, source)
+        if name in BY_OWN_SIZE and len(table):
+            perturb_table(table, name, layout, source)
     gravity = layout.mechanism.gravity
-    by = source.of(3) * np.abs(gravity).max()
+    gravity_change = source.draw(3) * np.abs(gravity).max()
     if layout.flat:
-        by[2] = 0.0
+        gravity_change[2] = 0.0
     constants = np.array(layout.pack.constants)
-    pack = layout.pack.with_constants(array("d", constants * (1.0 + source.of(len(constants)))))
-    return replace(layout, tables=tables, pack=pack, mechanism=replace(layout.mechanism, gravity=gravity + by))
+    pack = layout.pack.with_constants(array("d", constants * (1.0 + source.draw(len(constants)))))
+    return replace(
+        layout, tables=tables, pack=pack, mechanism=replace(layout.mechanism, gravity=gravity + gravity_change)
+    )
 
 
-def move(table: Table, name: str, layout: Layout, source: Rounding) -> None:
-    """Move the numbers of a table, in place."""
-    for field in OWN[name]:
-        add(table, field, largest(table, field), layout.flat, source)
-    for field in PLACES[name]:
-        add(table, field, np.full(len(table), layout.size), layout.flat, source)
-    for field in DIRECTIONS[name]:
+def perturb_table(table: Table, name: str, layout: Layout, source: RoundingSource) -> None:
+    """Perturb the numbers of a table in place."""
+    for field in BY_OWN_SIZE[name]:
+        perturb_field(table, field, field_magnitude(table, field), layout.flat, source)
+    for field in BY_SCENE_SIZE[name]:
+        perturb_field(table, field, np.full(len(table), layout.size), layout.flat, source)
+    for field in BY_ONE[name]:
         if not (layout.flat and field == "frame"):
-            add(table, field, largest(table, field), layout.flat, source)
+            perturb_field(table, field, field_magnitude(table, field), layout.flat, source)
     if name == "bodies":
-        add(table, "first_moment", table["mass"] * layout.size, layout.flat, source)
+        perturb_field(table, "first_moment", table["mass"] * layout.size, layout.flat, source)
 
 
-def largest(table: Table, field: str) -> Array:
-    """The size of the numbers of a field, (rows,)."""
+def field_magnitude(table: Table, field: str) -> Array:
+    """Return the magnitude of the numbers of a field, (rows,)."""
     column = table[field]
     parts = [column[part] for part in column.dtype.names] if column.dtype.names else [column]
     return np.asarray(np.abs(np.array(parts)).max(axis=0))
 
 
-def add(table: Table, field: str, sizes: Array, flat: bool, source: Rounding) -> None:
-    """Move a field's numbers by rounding of a size each, in place; of vectors in a flat scene x and y."""
+def perturb_field(table: Table, field: str, sizes: Array, flat: bool, source: RoundingSource) -> None:
+    """Perturb a field's numbers in place by rounding of a size each; of vectors in a flat scene only x and y."""
     column = table[field]
     if not column.dtype.names:
-        column += sizes * source.of(len(table))
+        column += sizes * source.draw(len(table))
         return
-    across = flat and "z" in column.dtype.names and len(column.dtype.names) == 3
-    upright = (
-        (column["x"] == 0.0) & (column["y"] == 0.0) & (column["z"] != 0.0) if across else np.zeros(len(table), bool)
+    keeps_z = flat and "z" in column.dtype.names and len(column.dtype.names) == 3
+    is_upright = (
+        (column["x"] == 0.0) & (column["y"] == 0.0) & (column["z"] != 0.0) if keeps_z else np.zeros(len(table), bool)
     )
     for part in column.dtype.names:
-        if across and part == "z":
+        if keeps_z and part == "z":
             continue
-        column[part] += np.where(upright, 0.0, sizes * source.of(len(table)))
+        column[part] += np.where(is_upright, 0.0, sizes * source.draw(len(table)))
 
 
-def rounded_state(layout: Layout, state: Array, number: int) -> Array:
-    """A state displaced by the rounding of its coordinates, (n_state,)."""
-    place = places_of_rates(layout)
+def make_rounded_state(layout: Layout, state: Array, number: int) -> Array:
+    """Displace a state by the rounding of its coordinates, (n_state,)."""
+    place = rate_indices(layout)
     weights = layout.weights[place[place >= 0]]
-    large = np.ones(len(weights))
+    scale = np.ones(len(weights))
     order = {at: k for k, at in enumerate(place[place >= 0].tolist())}
     for freedom in layout.tables["freedoms"]:
         if not freedom["driven"]:
             k = order[int(freedom["u_at"])]
-            large[k] = max(1.0, abs(state[freedom["q_at"]]) * weights[k])
-    by = Rounding(number).of(len(weights)) * large / weights
-    return displaced(layout, state, by)
+            scale[k] = max(1.0, abs(state[freedom["q_at"]]) * weights[k])
+    displacement = RoundingSource(number).draw(len(weights)) * scale / weights
+    return displace(layout, state, displacement)

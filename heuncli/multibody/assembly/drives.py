@@ -1,4 +1,4 @@
-"""A drive's prescribed coordinate at one instant: the one place where the assembly meets expressions in time."""
+"""A drive's prescribed coordinate at one instant: the only place where the assembly evaluates expressions in time."""
 
 from __future__ import annotations
 
@@ -15,5 +15,5 @@ class CoordinateJet(NamedTuple):
 
 
 def drive_jet(expression: Expression, t: float) -> CoordinateJet:
-    """The expression and its first and second derivative at t."""
+    """Evaluate the expression and its first and second derivative at t."""
     return CoordinateJet(*expression.derivatives(t))

@@ -1,4 +1,4 @@
-"""What is said when a scene cannot be assembled: the joint, the gap and the two bodies."""
+"""Errors of the assembly: they name the joint, the gap and the two bodies."""
 
 from __future__ import annotations
 
@@ -14,31 +14,35 @@ from heuncli.results.results import Array
 
 
 def does_not_fit(mechanism: Mechanism, distance: Array, angle: Array, size: float, joints: Sequence[int]) -> SolveError:
-    """Poses: distance [m] and angle [rad] by which each joint stays open; the worst of some joints."""
+    """Make the error for poses that do not fit: distance [m] and angle [rad] by which joints stay open; names the worst
+    of `joints`.
+    """
     open_by = np.maximum(distance, size * angle)
     k = max(joints, key=open_by.__getitem__)
     joint = mechanism.joints[k]
-    apart = bool(distance[k] >= size * angle[k])
+    is_distance = bool(distance[k] >= size * angle[k])
     between = f"{_name(mechanism, joint.a)} and {_name(mechanism, joint.b)}"
-    if apart:
+    if is_distance:
         gap = f"its points on {between} stay {distance[k]:.3g} m from where they belong"
     else:
         gap = f"{between} stay turned by {math.degrees(angle[k]):.3g} deg from what it allows"
-    if all(_held(mechanism, i, apart) for i in (joint.a, joint.b)):
-        what = "position" if apart else "orientation"
+    if all(_is_held(mechanism, i, is_distance) for i in (joint.a, joint.b)):
+        what = "position" if is_distance else "orientation"
         return SolveError(Problem(
             "held-conflict", f"joint {joint.name} ({joint.kind}): {gap}; both are held",
-            hint=f"leave out the {what} of one of them" + _else(mechanism, k, joints), about=f"joints.{joint.name}",
+            hint=f"leave out the {what} of one of them" + _other_hints(mechanism, k, joints), entry_path=f"joints.{joint.name}",
         ))  # fmt: skip
     return SolveError(Problem(
         "does-not-fit", f"joint {joint.name} ({joint.kind}) cannot be closed: {gap}",
         hint="check the points and lengths; hold fewer values; or draw the bodies nearer with near:"
-        + _else(mechanism, k, joints), about=f"joints.{joint.name}",
+        + _other_hints(mechanism, k, joints), entry_path=f"joints.{joint.name}",
     ))  # fmt: skip
 
 
 def rates_do_not_fit(mechanism: Mechanism, speed: Array, spin: Array, size: float, joints: Sequence[int]) -> SolveError:
-    """Rates: what each joint lacks [m/s], [rad/s]; the worst of some joints."""
+    """Make the error for rates that do not fit: the residual of each joint [m/s], [rad/s]; names the worst of
+    `joints`.
+    """
     k = max(joints, key=np.maximum(speed, size * spin).__getitem__)
     joint = mechanism.joints[k]
     gap = f"{speed[k]:.3g} m/s" if speed[k] >= size * spin[k] else f"{spin[k]:.3g} rad/s"
@@ -48,60 +52,64 @@ def rates_do_not_fit(mechanism: Mechanism, speed: Array, spin: Array, size: floa
     )
     return SolveError(Problem(
         "rates-do-not-fit", message,
-        hint="hold fewer velocities; what is left out follows the joints" + _drives(mechanism, joints),
-        about=f"joints.{joint.name}",
+        hint="hold fewer velocities; what is left out follows the joints" + _drive_hint(mechanism, joints),
+        entry_path=f"joints.{joint.name}",
     ))  # fmt: skip
 
 
 def no_length(mechanism: Mechanism, joint: int) -> SolveError:
-    """A rod whose points coincide."""
+    """Make the error for a rod whose points coincide."""
     name = mechanism.joints[joint].name
     message = f"joint {name} (rod): its two points coincide at the start, so that it has no direction"
     hint = "give its length, or move one of the points"
-    return SolveError(Problem("no-length", message, hint=hint, about=f"joints.{name}"))
+    return SolveError(Problem("no-length", message, hint=hint, entry_path=f"joints.{name}"))
 
 
 def too_many(mechanism: Mechanism, island: AssemblyIsland, what: str) -> SolveError:
-    """An island beyond what is fitted at once."""
-    name = mechanism.joints[(island.closures or island.via)[0]].name
+    """Make the error for an island with more bodies than are fitted at once."""
+    name = mechanism.joints[(island.closures or island.tree_joints)[0]].name
     message = (
         f"the loop at joint {name} ties {len(island.members):,} "
         f"bodies together whose start {what} do not fit yet: more than are fitted at once"
     )
     return SolveError(Problem("too-many-together", message, hint=f"give the {what} of more of its bodies",
-                              about=f"joints.{name}"))  # fmt: skip
+                              entry_path=f"joints.{name}"))  # fmt: skip
 
 
 def singular_pose(mechanism: Mechanism, joint: int, joints: Sequence[int]) -> SolveError:
-    """No acceleration exists for the rates; joint: a closure of the loop concerned, joints: all of it."""
+    """Make the error for rates without accelerations; joint: a closure of the loop concerned, joints: all of the
+    loop.
+    """
     message = (
         f"the loop at joint {mechanism.joints[joint].name} stands in a singular pose (links in line, say), "
         "in which no acceleration belongs to its start velocities"
     )
     hint = "give the rate of one more joint of the loop; together they must be those of a motion through this pose"
-    hint += _drives(mechanism, joints)
-    return SolveError(Problem("singular-pose", message, hint=hint, about=f"joints.{mechanism.joints[joint].name}"))
+    hint += _drive_hint(mechanism, joints)
+    return SolveError(Problem("singular-pose", message, hint=hint, entry_path=f"joints.{mechanism.joints[joint].name}"))
 
 
 def _name(mechanism: Mechanism, body: int) -> str:
     return "ground" if body == GROUND else mechanism.bodies[body].name
 
 
-def _held(mechanism: Mechanism, body: int, apart: bool) -> bool:
+def _is_held(mechanism: Mechanism, body: int, is_distance: bool) -> bool:
     if body == GROUND:
         return True
     b = mechanism.bodies[body]
-    return b.rotation is not None and (not apart or b.position is not None)
+    return b.rotation is not None and (not is_distance or b.position is not None)
 
 
-def _else(mechanism: Mechanism, k: int, joints: Sequence[int]) -> str:
-    """What else may be changed: the drives of these joints, or what joint k holds at the start."""
+def _other_hints(mechanism: Mechanism, k: int, joints: Sequence[int]) -> str:
+    """Suggest what else may be changed: the drives of these joints, or what joint k holds at the start."""
     joint = mechanism.joints[k]
-    given = [n for n in ("angle", "travel") if getattr(joint, n) is not None]
-    return _drives(mechanism, joints) or (f"; or change the initial {given[0]} of the joint" if given else "")
+    initial_values = [n for n in ("angle", "travel") if getattr(joint, n) is not None]
+    return _drive_hint(mechanism, joints) or (
+        f"; or change the initial {initial_values[0]} of the joint" if initial_values else ""
+    )
 
 
-def _drives(mechanism: Mechanism, joints: Sequence[int]) -> str:
+def _drive_hint(mechanism: Mechanism, joints: Sequence[int]) -> str:
     names = [drive.name for k in joints if (drive := mechanism.joints[k].drive) is not None]
     if not names:
         return ""

@@ -6,40 +6,40 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.multibody.assembly.conditions import Ask, JointCondition
+from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows
 
 
 class JointGaps:
-    """The gaps of all joints at once, for any number of poses: joints of one ask are stacked."""
+    """Computes the gaps of all joints at once, for any number of poses: joints with the same constraint are stacked."""
 
-    def __init__(self, found: Sequence[JointCondition], asks: Sequence[Ask]) -> None:
-        self.count = len(found)
+    def __init__(self, conditions: Sequence[JointCondition], constraints: Sequence[JointConstraint]) -> None:
+        self.count = len(conditions)
         self.groups = []
-        for ask in sorted(set(asks)):
-            k = [i for i in range(len(found)) if asks[i] == ask]
+        for constraint in sorted(set(constraints)):
+            k = [i for i in range(len(conditions)) if constraints[i] == constraint]
             columns = {
-                name: np.array([getattr(found[i], name) for i in k])
+                name: np.array([getattr(conditions[i], name) for i in k])
                 for name in ("a", "b", "p", "q", "axis", "to_axis", "relative", "length", "path")
             }
-            self.groups.append((ask, np.array(k), columns))
+            self.groups.append((constraint, np.array(k), columns))
 
     def __call__(self, x: Array, R: Array) -> tuple[Array, Array]:
-        """Distances [m] and angles [rad] by which the joints are open, each (..., n_joints).
+        """Return the distances [m] and angles [rad] by which the joints are open, each (..., n_joints).
 
-        x (..., n+1, 3) and R (..., n+1, 3, 3): origins and attitudes, the ground last.
+        x (..., n+1, 3), R (..., n+1, 3, 3): origins and attitudes, the ground last
         """
         distance = np.zeros((*x.shape[:-2], self.count))
         angle = np.zeros_like(distance)
-        for ask, k, c in self.groups:
+        for constraint, k, c in self.groups:
             Ra, Rb = R[..., c["a"], :, :], R[..., c["b"], :, :]
             D = x[..., c["b"], :] + _apply(Rb, c["q"]) - x[..., c["a"], :] - _apply(Ra, c["p"])
-            if ask.hold == "curve":
-                D = D - _nearest(c["path"], Ra, D)
-            distance[..., k] = _distance(ask, D, _apply(Ra, c["axis"]), c["length"])
-            angle[..., k] = _angle(ask, Ra, Rb, c)
+            if constraint.hold == "curve":
+                D = D - _nearest_path_points(c["path"], Ra, D)
+            distance[..., k] = _distance(constraint, D, _apply(Ra, c["axis"]), c["length"])
+            angle[..., k] = _angle(constraint, Ra, Rb, c)
         return distance, angle
 
 
@@ -47,30 +47,30 @@ def _apply(R: Array, a: Array) -> Array:
     return np.asarray(np.einsum("...ij,...j->...i", R, a))
 
 
-def _nearest(paths: Array, Ra: Array, D: Array) -> Array:
-    """The place of each path that is nearest to its point, world axes, (..., n, 3); paths as objects."""
-    found = np.einsum("...ji,...j->...i", Ra, D)
+def _nearest_path_points(paths: Array, Ra: Array, D: Array) -> Array:
+    """Find the point of each path that is nearest to its joint's point, world axes, (..., n, 3); paths as objects."""
+    points = np.einsum("...ji,...j->...i", Ra, D)
     for i, path in enumerate(paths):
-        found[..., i, :] = path.at(path.nearest(found[..., i, :]))[0]
-    return _apply(Ra, found)
+        points[..., i, :] = path.at(path.nearest(points[..., i, :]))[0]
+    return _apply(Ra, points)
 
 
-def _distance(ask: Ask, D: Array, n: Array, length: Array) -> Array:
+def _distance(constraint: JointConstraint, D: Array, n: Array, length: Array) -> Array:
     along: Array = np.einsum("...i,...i->...", D, n)
-    if ask.hold == "plane":
+    if constraint.hold == "plane":
         return np.abs(along)
-    if ask.hold == "none":
+    if constraint.hold == "none":
         return np.zeros(along.shape)
-    if ask.hold == "line":
+    if constraint.hold == "line":
         D = D - along[..., None] * n
     size: Array = np.sqrt(np.einsum("...i,...i->...", D, D))
-    return np.abs(size - length) if ask.hold == "distance" else size
+    return np.abs(size - length) if constraint.hold == "distance" else size
 
 
-def _angle(ask: Ask, Ra: Array, Rb: Array, c: dict[str, Array]) -> Array:
-    if ask.turn in ("free", "alike"):
+def _angle(constraint: JointConstraint, Ra: Array, Rb: Array, c: dict[str, Array]) -> Array:
+    if constraint.turn in ("free", "alike"):
         return np.zeros(Ra.shape[:-2])
-    if ask.turn == "all":
+    if constraint.turn == "all":
         # sin from the skew part, cos from the trace: exact near zero and near half a turn
         E = np.swapaxes(Ra, -1, -2) @ Rb @ np.swapaxes(c["relative"], -1, -2)
         skew = np.stack([E[..., 2, 1] - E[..., 1, 2], E[..., 0, 2] - E[..., 2, 0], E[..., 1, 0] - E[..., 0, 1]], -1)
@@ -79,10 +79,10 @@ def _angle(ask: Ask, Ra: Array, Rb: Array, c: dict[str, Array]) -> Array:
     cos = np.einsum("...i,...i->...", n, m)
     sine = cross_rows(n, m)
     sin = np.sqrt(np.einsum("...i,...i->...", sine, sine))
-    return np.asarray(np.abs(np.arctan2(cos, sin)) if ask.turn == "square" else np.arctan2(sin, cos))
+    return np.asarray(np.abs(np.arctan2(cos, sin)) if constraint.turn == "square" else np.arctan2(sin, cos))
 
 
-def size_of(mechanism: Mechanism) -> float:
+def mean_arm(mechanism: Mechanism) -> float:
     """Mean distance of the joints' points from the centres of mass of their bodies [m]; 1 where that is zero."""
     arms = [
         point - mechanism.bodies[body].center

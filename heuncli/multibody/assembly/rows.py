@@ -1,10 +1,11 @@
-"""What a joint lacks, and which way the rates of its two bodies change that.
+"""The residual of a joint, and how the rates of its two bodies change it.
 
     D = P_b − P_a                     from the joint's place on `from` to the point on `to`, world [m]
     u = v_b − v_a                     velocity of `to` against `from`, both at P_b [m/s]
     F u = hold,  T (σ_b − σ_a) = turn     F (h, 3), T (k, 3) directions, world
+
 In the axes of `from` every gap changes as F u and T (σ_b − σ_a), however large it is (manual/theory.md, "Joints as
-rows"; the lever at P_b). The right sides are what is lacking: minus the gap, or what is missing in the rates, or in the
+rows"; the lever at P_b). The right sides are the residuals: minus the gap, or what is missing in the rates, or in the
 accelerations.
 """
 
@@ -16,18 +17,20 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record
-from heuncli.multibody.assembly.conditions import Ask, JointCondition, on_tangent
+from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint, condition_on_tangent
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import cross, inverse_jacobian, to_vector
+from heuncli.scene.shapes.rotations import cross_vectors, inverse_jacobian, vector_from_rotation
 
-NOTHING = np.zeros((0, 3))
-NONE = np.zeros(0)
+NO_ROWS = np.zeros((0, 3))
+NO_NUMBERS = np.zeros(0)
 NEARLY_OPPOSITE = -0.99  # cosine: beyond, the turn's own bend would outweigh what closes it
 
 
 @record
 class Rows:
-    """F (h, 3), T (k, 3), what is lacking (h,), (k,), and the levers (3,) from the bodies' pivots to P_b, world."""
+    """F (h, 3), T (k, 3), the residuals hold (h,) and turn (k,), and the levers (3,) from the bodies' pivots to P_b,
+    world.
+    """
 
     F: Array
     T: Array
@@ -38,12 +41,12 @@ class Rows:
 
 
 def pose_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
-    """Minus the gaps of a joint [m], [rad], in a pose; s (n+1, 3) pivots."""
-    d = on_tangent(d, x, R)
+    """Compute the rows of a joint in a pose, with minus its gaps [m], [rad]; s (n+1, 3) pivots."""
+    d = condition_on_tangent(d, x, R)
     Ra, Rb = R[d.a], R[d.b]
     P = x[d.b] + Rb @ d.q
     D = P - x[d.a] - Ra @ d.p
-    F = _held(d, d.pose, Ra, D)
+    F = _hold_directions(d, d.pose, Ra, D)
     hold = -(F @ D)
     if d.pose.hold == "distance":
         hold = hold + d.length
@@ -51,41 +54,43 @@ def pose_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
     return Rows(F, T, hold, turn, P - s[d.a], P - s[d.b])
 
 
-def _held(d: JointCondition, ask: Ask, Ra: Array, D: Array) -> Array:
+def _hold_directions(d: JointCondition, constraint: JointConstraint, Ra: Array, D: Array) -> Array:
     """F: unit rows, perpendicular to each other."""
-    if ask.hold == "point":
+    if constraint.hold == "point":
         return Ra.T
-    if ask.hold == "line":
-        return d.across @ Ra.T
-    if ask.hold == "plane":
+    if constraint.hold == "line":
+        return d.normals @ Ra.T
+    if constraint.hold == "plane":
         return (Ra @ d.axis)[None, :]
-    if ask.hold == "distance":
+    if constraint.hold == "distance":
         size = math.sqrt(float(D @ D))
         return (D / size if size > 0.0 else np.array([1.0, 0.0, 0.0]))[None, :]
-    return NOTHING
+    return NO_ROWS
 
 
 def _turn_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
-    """T and minus the gap: the vector of the smallest turn that is missing, so opposite axes are far from closed."""
+    """Compute T and minus the gap: the vector of the smallest missing rotation, so that opposite axes are far from
+    closed.
+    """
     if d.pose.turn == "all":
-        phi = to_vector(Ra.T @ Rb @ d.relative.T)
+        phi = vector_from_rotation(Ra.T @ Rb @ d.relative.T)
         return inverse_jacobian(phi) @ Ra.T, -phi
     if d.pose.turn == "axis":
         return _axis_gap(d, Ra, Rb)
     if d.pose.turn == "square":
         n, m = Ra @ d.axis, Rb @ d.to_axis
-        return cross(m, n)[None, :], np.array([-(n @ m)])
-    return NOTHING, NONE
+        return cross_vectors(m, n)[None, :], np.array([-(n @ m)])
+    return NO_ROWS, NO_NUMBERS
 
 
 def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
-    """T and minus the gap of two axes that are to agree, in the two directions across.
+    """Compute T and minus the gap of two axes that must agree, in the two directions across.
 
     The gap is the turn t = φ m from the axis of `from` to that of `to`.
     """
-    E = d.across @ Ra.T
+    E = d.normals @ Ra.T
     n, n_b = Ra @ d.axis, Rb @ d.to_axis
-    m = cross(n, n_b)
+    m = cross_vectors(n, n_b)
     sin, cos = math.sqrt(float(m @ m)), float(n @ n_b)
     if sin < tolerances.PARALLEL:
         if cos > 0.0:
@@ -94,40 +99,40 @@ def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     else:
         m = m / sin
     phi = math.atan2(sin, cos)
-    k = cross(m, n)
+    k = cross_vectors(m, n)
     T = np.outer(m, m) + np.outer(k, phi * (cos / sin * k - n)) if cos > NEARLY_OPPOSITE else np.outer(m, m)
     return E @ T, -phi * (E @ m)
 
 
-def _turned(d: JointCondition, Ra: Array, Rb: Array) -> Array:
-    """T of the rates, in a pose that is closed: unit rows, perpendicular to each other.
+def _turn_directions(d: JointCondition, Ra: Array, Rb: Array) -> Array:
+    """Compute T of the rates, in a closed pose: unit rows, perpendicular to each other.
 
-    Two axes turn alike where the one body turns against the other about no line but such as halve their bend.
+    A constant-velocity joint allows relative rotation only about lines in the plane that bisects its two axes.
     """
     if d.rate.turn == "all":
         return Ra.T
     if d.rate.turn == "axis":
-        return d.across @ Ra.T
+        return d.normals @ Ra.T
     if d.rate.turn == "square":
-        m = cross(Rb @ d.to_axis, Ra @ d.axis)
+        m = cross_vectors(Rb @ d.to_axis, Ra @ d.axis)
         return (m / math.sqrt(float(m @ m)))[None, :]
     if d.rate.turn == "alike":
         m = Ra @ d.axis + Rb @ d.to_axis
         return (m / math.sqrt(float(m @ m)))[None, :]
-    return NOTHING
+    return NO_ROWS
 
 
 def rate_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
-    """What a joint asks of the rates [m/s], [rad/s], in a closed pose (lacking, when all is at rest)."""
-    d = on_tangent(d, x, R)
+    """Compute the rows of a joint on the rates [m/s], [rad/s], in a closed pose; the right sides hold for rest."""
+    d = condition_on_tangent(d, x, R)
     Ra, Rb = R[d.a], R[d.b]
     P = x[d.b] + Rb @ d.q
-    F, T = _held(d, d.rate, Ra, P - x[d.a] - Ra @ d.p), _turned(d, Ra, Rb)
-    return Rows(F, T, *_given(d, F, T, 0), P - s[d.a], P - s[d.b])
+    F, T = _hold_directions(d, d.rate, Ra, P - x[d.a] - Ra @ d.p), _turn_directions(d, Ra, Rb)
+    return Rows(F, T, *_prescribed_rates(d, F, T, 0), P - s[d.a], P - s[d.b])
 
 
-def _given(d: JointCondition, F: Array, T: Array, order: int) -> tuple[Array, Array]:
-    """The prescribed rates (order 0) or accelerations (order 1) beside the rows."""
+def _prescribed_rates(d: JointCondition, F: Array, T: Array, order: int) -> tuple[Array, Array]:
+    """Return the prescribed rates (order 0) or accelerations (order 1) along the rows."""
     hold, turn = np.zeros(len(F)), np.zeros(len(T))
     if d.rate.hold == "point":
         hold = d.slip[order] * d.axis
@@ -138,35 +143,37 @@ def _given(d: JointCondition, F: Array, T: Array, order: int) -> tuple[Array, Ar
     return hold, turn
 
 
-def missing(d: JointCondition, row: Rows, v: Array, w: Array) -> tuple[Array, Array]:
-    """What the rates lack: hold − F u [m/s] and turn − T (σ_b − σ_a) [rad/s]; v, w (n+1, 3) of the pivots."""
+def rate_residuals(d: JointCondition, row: Rows, v: Array, w: Array) -> tuple[Array, Array]:
+    """Residuals of the rates: hold − F u [m/s] and turn − T (σ_b − σ_a) [rad/s]; v, w (n+1, 3) of the pivots."""
     hold, turn = row.hold, row.turn
     if len(row.F):
-        hold = hold - row.F @ (v[d.b] + cross(w[d.b], row.r_b) - v[d.a] - cross(w[d.a], row.r_a))
+        hold = hold - row.F @ (v[d.b] + cross_vectors(w[d.b], row.r_b) - v[d.a] - cross_vectors(w[d.a], row.r_a))
     if len(row.T):
         turn = turn - row.T @ (w[d.b] - w[d.a])
     return hold, turn
 
 
 def acceleration_rows(d: JointCondition, row: Rows, x: Array, R: Array, v: Array, w: Array) -> Rows:
-    """What a joint asks of the accelerations: −γ − g̈_t [m/s2], [rad/s2], from its rate rows and rates that fit them."""
-    d = on_tangent(d, x, R)
+    """Compute the rows of a joint on the accelerations: −γ − g̈_t [m/s2], [rad/s2], from its rate rows and rates that
+    fit them.
+    """
+    d = condition_on_tangent(d, x, R)
     wa, wb = w[d.a], w[d.b]
-    u = v[d.b] + cross(wb, row.r_b) - v[d.a] - cross(wa, row.r_a)
-    hold, turn = _given(d, row.F, row.T, 1)
+    u = v[d.b] + cross_vectors(wb, row.r_b) - v[d.a] - cross_vectors(wa, row.r_a)
+    hold, turn = _prescribed_rates(d, row.F, row.T, 1)
     if len(row.F):
-        centripetal = cross(wb, cross(wb, row.r_b)) - cross(wa, cross(wa, row.r_a))
-        hold = hold - row.F @ (centripetal - 2.0 * cross(wa, u))
+        centripetal = cross_vectors(wb, cross_vectors(wb, row.r_b)) - cross_vectors(wa, cross_vectors(wa, row.r_a))
+        hold = hold - row.F @ (centripetal - 2.0 * cross_vectors(wa, u))
         hold = hold + (row.F @ (R[d.a] @ d.bend)) * float(d.axis @ R[d.a].T @ u) ** 2
     if d.rate.hold == "distance":  # the part of u across the rod turns it
         D = x[d.b] + R[d.b] @ d.q - x[d.a] - R[d.a] @ d.p
         hold = hold - (u @ u - (row.F[0] @ u) ** 2) / (row.F[0] @ D)
     if d.rate.turn == "square":
         n, m = R[d.a] @ d.axis, R[d.b] @ d.to_axis
-        turn = turn - (wb - wa) @ (cross(cross(wb, m), n) + cross(m, cross(wa, n)))
+        turn = turn - (wb - wa) @ (cross_vectors(cross_vectors(wb, m), n) + cross_vectors(m, cross_vectors(wa, n)))
     elif d.rate.turn == "alike":
         n, m = R[d.a] @ d.axis, R[d.b] @ d.to_axis
-        turn = turn - (wb - wa) @ (cross(wa, n) + cross(wb, m)) / math.sqrt(float((n + m) @ (n + m)))
+        turn = turn - (wb - wa) @ (cross_vectors(wa, n) + cross_vectors(wb, m)) / math.sqrt(float((n + m) @ (n + m)))
     elif len(row.T):
-        turn = turn + row.T @ cross(wa, wb)
+        turn = turn + row.T @ cross_vectors(wa, wb)
     return Rows(row.F, row.T, hold, turn, row.r_a, row.r_b)

@@ -1,8 +1,8 @@
-"""Ropes that go slack, what flies off its path, rods free between limits, at the start: what they ask of it.
+"""Conditions at the start of one-sided joints: slack ropes, bodies that leave their path, rods free between limits.
 
-A rope shorter than the distance of its points as assembled without it is a rod; one that is longer is slack and asks
-for nothing; one that just reaches, or whose length is not given, is taut: its rate is kept where the velocities that
-are held let it. Where they do not, it is struck at once, or goes slack.
+A rope shorter than the distance of its points as assembled without it acts as a rod; a longer one is slack and sets no
+condition; one that just reaches, or whose length is not given, is taut: it keeps its rate where the held velocities
+allow it. Where they do not, an impact occurs at once, or it goes slack.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.records import replace
-from heuncli.multibody.assembly.conditions import Ask, JointCondition
+from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
-from heuncli.scene.expressions.beside import left
+from heuncli.scene.expressions.beside import left_normal
 
-NOTHING = Ask("none", "free")
+UNCONSTRAINED = JointConstraint("none", "free")
 Assemble = Callable[[list[JointCondition]], Assembly]
 
 
-def one_sided(mechanism: Mechanism) -> tuple[list[int], list[int]]:
-    """The ropes that go slack and what may lie beside its path; the rods whose length a stop limits: joints."""
+def find_one_sided_joints(mechanism: Mechanism) -> tuple[list[int], list[int]]:
+    """Find the joints that are ropes or one-sided paths, and the rods whose length a stop limits."""
     free = sorted({stop.joint for stop in mechanism.stops if stop.quantity == "length"})
     ropes = [
         k
@@ -33,38 +33,40 @@ def one_sided(mechanism: Mechanism) -> tuple[list[int], list[int]]:
     return ropes, free
 
 
-def assembled(mechanism: Mechanism, found: Sequence[JointCondition], size: float, assemble: Assemble) -> Assembly:
-    """The start, with ropes as taut as it finds them. Raises SolveError as `assemble` does."""
-    ropes, free = one_sided(mechanism)
-    asking = list(found)
+def assemble_with_ropes(
+    mechanism: Mechanism, conditions: Sequence[JointCondition], size: float, assemble: Assemble
+) -> Assembly:
+    """Assemble the start, with ropes as taut as they are found. Raises SolveError as `assemble` does."""
+    ropes, free = find_one_sided_joints(mechanism)
+    present_conditions = list(conditions)
     for k in (*ropes, *free):
-        asking[k] = replace(found[k], pose=NOTHING, rate=NOTHING)
-    start = assemble(asking)
-    near = tolerances.OPEN_GAP * size
+        present_conditions[k] = replace(conditions[k], pose=UNCONSTRAINED, rate=UNCONSTRAINED)
+    start = assemble(present_conditions)
+    tolerance = tolerances.OPEN_GAP * size
     short: set[int] = set()
-    while more := {k for k in set(ropes) - short if beyond(mechanism, start, k) > near}:
-        short |= more
-        for k in more:
-            asking[k] = replace(found[k], rate=NOTHING)
-        start = assemble(asking)
-    taut = [k for k in ropes if abs(beyond(mechanism, start, k)) <= near]
+    while stretched := {k for k in set(ropes) - short if rope_excess(mechanism, start, k) > tolerance}:
+        short |= stretched
+        for k in stretched:
+            present_conditions[k] = replace(conditions[k], rate=UNCONSTRAINED)
+        start = assemble(present_conditions)
+    taut = [k for k in ropes if abs(rope_excess(mechanism, start, k)) <= tolerance]
     if not taut:
         return start
-    kept = list(asking)
+    taut_conditions = list(present_conditions)
     for k in taut:
-        kept[k] = replace(asking[k], rate=found[k].rate)
+        taut_conditions[k] = replace(present_conditions[k], rate=conditions[k].rate)
     try:
-        return assemble(kept)
+        return assemble(taut_conditions)
     except SolveError as error:
         if error.problems[0].code != "rates-do-not-fit":
             raise
         return start
 
 
-def beyond(mechanism: Mechanism, start: Assembly, k: int) -> float:
-    """How far the points of a rope are farther apart than it is long [m]; 0 of one that is as long as they are.
+def rope_excess(mechanism: Mechanism, start: Assembly, k: int) -> float:
+    """Distance of a rope's points less its length [m]; 0 for a rope as long as this distance.
 
-    Of a path that pushes to its left: how far to the right of it its point is.
+    For a path that pushes to its left: how far its point is to the right of it.
     """
     joint = mechanism.joints[k]
     if joint.length is None and joint.path is None:
@@ -75,8 +77,8 @@ def beyond(mechanism: Mechanism, start: Assembly, k: int) -> float:
     ]
     D = places[1] - places[0]
     if joint.path is not None:
-        off = D if joint.a == GROUND else D @ start.rotation[joint.a]
-        r, slope, _ = joint.path.at(float(joint.path.nearest(off)))
-        return float((r - off) @ left(joint.path.normal, slope))
+        offset = D if joint.a == GROUND else D @ start.rotation[joint.a]
+        r, slope, _ = joint.path.evaluate(float(joint.path.find_nearest(offset)))
+        return float((r - offset) @ left_normal(joint.path.normal, slope))
     assert joint.length is not None
     return float(np.sqrt(D @ D)) - joint.length

@@ -1,7 +1,7 @@
-"""The walk outward: bodies placed one after another from what is held, each by one joint, in linear time.
+"""Place bodies outward from the held ones, one after another, each by one joint, in linear time.
 
-Each joint first turns the body it reaches by the smallest turn it asks for, about the body's pivot (the centre of mass;
-the origin where the position is held), then shifts it by the least amount. A body already placed is not touched again.
+Each joint first turns the body it reaches by the smallest turn needed, about the body's pivot (the centre of mass; the
+origin where the position is held), then shifts it by the least amount. A placed body is not moved again.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record
-from heuncli.multibody.assembly.conditions import Ask, JointCondition
+from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import orthonormal, turn_onto
+from heuncli.scene.shapes.rotations import orthonormalize, rotation_between
 
 
 @record
-class Tree:
-    """Who is reached through which joint, roots first.
+class PlacementTree:
+    """The order in which bodies are reached, roots first.
 
-    order: bodies as reached. via[body]: index of the joint, -1 for a root. parent[body]: the body before, -1 for the
-    ground or a root (via says which). depth[body]: joints between it and its root.
+    order: bodies as reached tree_joint[body]: index of the joint, -1 for a root parent[body]: the body before, -1 for
+    the ground or a root (tree_joint shows which) depth[body]: joints between it and its root
     """
 
     order: list[int]
@@ -33,24 +33,28 @@ class Tree:
     depth: list[int]
 
 
-def spanning(
-    mechanism: Mechanism, asks: Sequence[tuple[int, int, Ask]], held: Sequence[bool], first: Sequence[bool]
-) -> Tree:
-    """Breadth first from the ground and the held bodies; strong joints (Ask.strong) before line, plane and rod.
+def find_placement_tree(
+    mechanism: Mechanism,
+    constraints: Sequence[tuple[int, int, JointConstraint]],
+    is_held: Sequence[bool],
+    is_preferred: Sequence[bool],
+) -> PlacementTree:
+    """Search breadth first from the ground and the held bodies; strong joints (JointConstraint.is_strong) before line,
+    plane, rod.
 
-    A connected part without ground or held body starts from one body: with `first`, else one that is `to` of no joint,
-    else the heaviest. Ties go by name, so that the order of the file does not matter.
+    A connected part without ground or held body starts from one body: a preferred one, else one that is `to` of no
+    joint, else the heaviest. Ties are decided by name, so that the order of the file does not matter.
     """
     n = len(mechanism.bodies)
     names = [j.name for j in mechanism.joints]
     links: list[list[tuple[int, int, bool]]] = [[] for _ in range(n + 1)]
     is_to = [False] * (n + 1)
-    for k in sorted(range(len(asks)), key=names.__getitem__):
-        a, b, ask = asks[k]
+    for k in sorted(range(len(constraints)), key=names.__getitem__):
+        a, b, ask = constraints[k]
         if ask.hold == "none":
             continue
-        links[a].append((k, b, ask.strong))
-        links[b].append((k, a, ask.strong))
+        links[a].append((k, b, ask.is_strong))
+        links[b].append((k, a, ask.is_strong))
         is_to[b] = True
 
     order: list[int] = []
@@ -84,22 +88,24 @@ def spanning(
 
     bodies = mechanism.bodies
     strong.append(-1)
-    for i in sorted((i for i in range(n) if held[i]), key=lambda i: bodies[i].name):
+    for i in sorted((i for i in range(n) if is_held[i]), key=lambda i: bodies[i].name):
         reach(i, -1, -1)
     spread()
-    left = (i for i in range(n) if not reached[i])
-    for i in sorted(left, key=lambda i: (not first[i], is_to[i], -bodies[i].mass, bodies[i].name)):
+    unreached = (i for i in range(n) if not reached[i])
+    for i in sorted(unreached, key=lambda i: (not is_preferred[i], is_to[i], -bodies[i].mass, bodies[i].name)):
         if not reached[i]:
             reach(i, -1, -1)
             spread()
-    return Tree(order, via, parent, depth)
+    return PlacementTree(order, via, parent, depth)
 
 
 @record
 class AssemblyPoses:
-    """Where the bodies are while they are assembled: its arrays are written to. The last row is the ground.
+    """Poses of the bodies while they are assembled; its arrays are written to. The last row is the ground.
 
-    x (n+1, 3) origins, R (n+1, 3, 3). pivot (n+1, 3): the point turns are about, body axes. shifts, turns: who may.
+    x (n+1, 3): origins R (n+1, 3, 3): attitudes
+    pivot (n+1, 3): the point that turns are about, body axes
+    shifts, turns: which bodies may shift, and turn
     """
 
     x: Array
@@ -109,18 +115,18 @@ class AssemblyPoses:
     turns: list[bool]
 
     def copy(self) -> AssemblyPoses:
-        """Poses that may be changed while these stay; pivots and what may move are shared."""
+        """Copy the poses; pivots and the flags of what may move are shared."""
         return AssemblyPoses(self.x.copy(), self.R.copy(), self.pivot, self.shifts, self.turns)
 
-    def turn(self, body: int, new: Array) -> None:
-        """Give the body an attitude; its pivot stays."""
-        new = orthonormal(new)
+    def set_attitude(self, body: int, new: Array) -> None:
+        """Set the attitude of a body; its pivot stays."""
+        new = orthonormalize(new)
         self.x[body] += (self.R[body] - new) @ self.pivot[body]
         self.R[body] = new
 
 
-def start(mechanism: Mechanism) -> AssemblyPoses:
-    """Poses as held, else at near, else as drawn."""
+def start_poses(mechanism: Mechanism) -> AssemblyPoses:
+    """Return the poses as held, else at near, else as drawn."""
     n = len(mechanism.bodies)
     x, R, pivot = np.zeros((n + 1, 3)), np.tile(np.eye(3), (n + 1, 1, 1)), np.zeros((n + 1, 3))
     for i, b in enumerate(mechanism.bodies):
@@ -139,33 +145,35 @@ def start(mechanism: Mechanism) -> AssemblyPoses:
     )  # fmt: skip
 
 
-def place(poses: AssemblyPoses, d: JointCondition, body: int) -> None:
-    """Turn and shift the body at one end of a joint so that it fits the body at the other, as far as it may."""
+def place_body(poses: AssemblyPoses, d: JointCondition, body: int) -> None:
+    """Turn and shift the body at one end of a joint so that it fits the body at the other, as far as it may move."""
     R, x = poses.R, poses.x
     is_to = body == d.b
     if poses.turns[body] and d.pose.turn not in ("free", "alike"):
-        poses.turn(body, asked_attitude(d, R[d.a], R[d.b], is_to))
+        poses.set_attitude(body, required_attitude(d, R[d.a], R[d.b], is_to))
     if poses.shifts[body]:
         D = (x[d.b] + R[d.b] @ d.q) - (x[d.a] + R[d.a] @ d.p)
         if d.path is not None:  # to the nearest place
-            D = D - R[d.a] @ d.path.at(d.path.nearest(R[d.a].T @ D))[0]
-        shift = to_close(d, R[d.a] @ d.axis, D)
+            D = D - R[d.a] @ d.path.evaluate(d.path.find_nearest(R[d.a].T @ D))[0]
+        shift = closing_shift(d, R[d.a] @ d.axis, D)
         x[body] += shift if is_to else -shift
 
 
-def asked_attitude(d: JointCondition, Ra: Array, Rb: Array, is_to: bool) -> Array:
-    """The attitude of `to` (or of `from`), nearest its present one, that the joint's turn asks for, (3, 3)."""
+def required_attitude(d: JointCondition, Ra: Array, Rb: Array, is_to: bool) -> Array:
+    """The attitude of `to` (or of `from`) that satisfies the joint's turn condition, nearest to the present one, (3,
+    3).
+    """
     if d.pose.turn == "all":
         return Ra @ d.relative if is_to else Rb @ d.relative.T
     n, m = Ra @ d.axis, Rb @ d.to_axis
     if not is_to:
         n, m = m, n
     if d.pose.turn == "square":
-        n = _square(m, n)
-    return turn_onto(m, n) @ (Rb if is_to else Ra)
+        n = _nearest_perpendicular(m, n)
+    return rotation_between(m, n) @ (Rb if is_to else Ra)
 
 
-def _square(m: Array, n: Array) -> Array:
+def _nearest_perpendicular(m: Array, n: Array) -> Array:
     """The unit vector perpendicular to n nearest to m; where m is along n, toward a world axis."""
     s = m - (m @ n) * n
     size = float(np.sqrt(s @ s))
@@ -177,7 +185,7 @@ def _square(m: Array, n: Array) -> Array:
     return s / size
 
 
-def to_close(d: JointCondition, n: Array, D: Array) -> Array:
+def closing_shift(d: JointCondition, n: Array, D: Array) -> Array:
     """The least shift of the `to` point that closes the hold, (3,); n the axis, D from its place on `from`, world."""
     hold = d.pose.hold
     if hold in ("point", "curve"):
@@ -191,8 +199,10 @@ def to_close(d: JointCondition, n: Array, D: Array) -> Array:
     return (d.length - size) * e
 
 
-def walk(poses: AssemblyPoses, tree: Tree, found: Sequence[JointCondition], only: Sequence[int] | None = None) -> None:
+def place_bodies(
+    poses: AssemblyPoses, tree: PlacementTree, conditions: Sequence[JointCondition], only: Sequence[int] | None = None
+) -> None:
     """Place the bodies of the tree outward, or `only` those given (in the order of the tree)."""
     for body in tree.order if only is None else only:
-        if tree.via[body] >= 0:
-            place(poses, found[tree.via[body]], body)
+        if tree.tree_joint[body] >= 0:
+            place_body(poses, conditions[tree.tree_joint[body]], body)

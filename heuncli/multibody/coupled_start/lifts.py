@@ -1,4 +1,4 @@
-"""Whether the discs of cams stand at the start where they have a lift, which of some covers a part of a turn."""
+"""Check that the discs of cams are on their lift at the start, for lifts that cover only part of a turn."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from heuncli.multibody.tree.layout import Layout
 
 
 def require_lifts(layout: Layout, t: float) -> None:
-    """Raise SolveError (path-ends) for every cam whose disc stands off its lift."""
-    problems = list(off_lifts(layout, t))
+    """Raise SolveError [path-ends] for every cam whose disc is off its lift."""
+    problems = list(iter_lift_problems(layout, t))
     if problems:
         raise SolveError(*problems)
 
 
-def off_lifts(layout: Layout, t: float) -> Iterator[Problem]:
-    """The problems of such cams; a disc that is driven stands where its drive says."""
+def iter_lift_problems(layout: Layout, t: float) -> Iterator[Problem]:
+    """Yield the problems of such cams; a driven disc is where its drive puts it."""
     for coupling in layout.mechanism.couplings:
         part = coupling.rows[0].parts[0] if coupling.rows else None
         if part is None or part.cam is None or part.cam.lift.period:
@@ -31,4 +31,4 @@ def off_lifts(layout: Layout, t: float) -> Iterator[Problem]:
         message = f"the disc of cam {coupling.name} stands at {joint.name}.angle = {math.degrees(angle):.6g} deg, off "
         message += f"its lift, which covers {first:.6g} to {last:.6g} deg"
         hint = "turn it onto its lift (initial, or the drive), or give the lift a period"
-        yield Problem("path-ends", message, hint=hint, about=f"couplings.{coupling.name}")
+        yield Problem("path-ends", message, hint=hint, entry_path=f"couplings.{coupling.name}")

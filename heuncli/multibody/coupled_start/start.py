@@ -1,8 +1,8 @@
-"""The start of a scene with couplings: assembled by its joints, then changed as little as couplings ask for.
+"""Find the start of a scene with couplings: assembled by its joints, then changed as little as the couplings need.
 
-A coupling of coordinates starts as it is assembled, and asks for rates alone; where it tells a pose (a rope's length, a
-sum of coordinates) it moves what nothing holds. What carries the coupled bodies moves only where these cannot meet
-their couplings by themselves.
+A coupling of coordinates starts as it is assembled and constrains rates only; where it determines a pose (a rope's
+length, a sum of coordinates) it moves bodies that nothing holds. The bodies that carry the coupled ones move only where
+these cannot satisfy their couplings by themselves.
 """
 
 from __future__ import annotations
@@ -12,118 +12,129 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import replace
 from heuncli.multibody.coupled_start.errors import poses_do_not_fit, rates_do_not_fit, too_many
-from heuncli.multibody.coupled_start.fit import AskedRows, CoupledFit
-from heuncli.multibody.coupled_start.freedoms import Freedoms, concerned
+from heuncli.multibody.coupled_start.fit import CoupledFit, StartRows
+from heuncli.multibody.coupled_start.freedoms import Freedoms, find_coupled_bodies
 from heuncli.multibody.coupled_start.released import ReleasedBodies
-from heuncli.multibody.coupled_start.told import told, unasked
+from heuncli.multibody.coupled_start.told import format_coupling_changes, format_unprescribed_motions
 from heuncli.multibody.mechanism.model import Assembly
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.prepare import PreparedScene, arranged
+from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.multibody.tree.starts import JointStart, joint_start
 from heuncli.results.results import Array, Indices
 
-TOGETHER = 2000  # freedoms that are fitted at once: dense matrices of them must fit into memory and patience
+MAX_FREEDOMS = 2000  # freedoms that are fitted at once: their dense matrices must fit into memory, and be fast enough
 
 
-def asked_of(scene: PreparedScene) -> AskedRows:
-    """The rows that a start has to meet: of the joints those that always hold, of the couplings all that bear.
+def find_start_rows(scene: PreparedScene) -> StartRows:
+    """Find the rows that a start has to satisfy: of the joints those that always hold, of the couplings all that are
+    active.
 
-    A rope that may go slack asks for its length where its points are too far apart, and for its rate where it is taut.
+    A rope that may go slack sets its length where its points are too far apart, and its rate where it is taut.
     """
     layout, joints = scene.layout, len(scene.mechanism.joints)
     slack = {contact.row for contact in layout.contacts}
-    own = [r for r, k in enumerate(layout.rows) if k < joints and r not in slack]
-    coupled = [row for coupling in scene.mechanism.couplings for row in coupling.rows]
-    numbered = dict(zip((r for r, k in enumerate(layout.rows) if k >= joints), coupled, strict=True))
+    joint_rows = [r for r, k in enumerate(layout.rows) if k < joints and r not in slack]
+    row_definitions = [row for coupling in scene.mechanism.couplings for row in coupling.rows]
+    coupled_rows = dict(zip((r for r, k in enumerate(layout.rows) if k >= joints), row_definitions, strict=True))
     taut = np.zeros(0)
-    if slack & numbered.keys():
+    if slack & coupled_rows.keys():
         freedoms = Freedoms(layout, 0.0, ())
-        taut = freedoms.measured(layout.y0).gaps
-    near = tolerances.OPEN_GAP * layout.size
-    poses = [r for r, row in numbered.items() if row.length is not None and (r not in slack or taut[r] > near)]
-    rates = [r for r in numbered if r not in slack or taut[r] >= -near]
-    return AskedRows(*(np.array(rows, dtype=int) for rows in (own, poses, rates)))
+        taut = freedoms.measure(layout.y0).gaps
+    tolerance = tolerances.OPEN_GAP * layout.size
+    poses = [r for r, row in coupled_rows.items() if row.length is not None and (r not in slack or taut[r] > tolerance)]
+    rates = [r for r in coupled_rows if r not in slack or taut[r] >= -tolerance]
+    return StartRows(*(np.array(rows, dtype=int) for rows in (joint_rows, poses, rates)))
 
 
-def fitted(scene: PreparedScene, t: float, asked: AskedRows) -> PreparedScene:
-    """The scene from a start that meets the rows asked for, laid out anew where that is another one.
+def fit_start(scene: PreparedScene, t: float, start_rows: StartRows) -> PreparedScene:
+    """Return the scene with a start that satisfies these rows; it is laid out again if the start has changed.
 
     Raises SolveError: does-not-fit, rates-do-not-fit, too-many-together.
     """
-    rows = np.concatenate([asked.poses, asked.rates]).tolist()
-    fit = CoupledFit(scene, t, asked, concerned(scene.layout, rows))
-    moved = _posed(scene, fit, asked)
-    hurried, started = _hurried(scene, fit, asked)
-    if not moved and not hurried:
+    rows = np.concatenate([start_rows.poses, start_rows.rates]).tolist()
+    fit = CoupledFit(scene, t, start_rows, find_coupled_bodies(scene.layout, rows))
+    poses_changed = _fit_poses(scene, fit, start_rows)
+    rates_changed, motion_sentences = _fit_rates(scene, fit, start_rows)
+    if not poses_changed and not rates_changed:
         return scene
-    start = fit.now()[1]
-    start = replace(start, chosen=(*start.chosen, *told(scene, start)), started=(*start.started, *started))
-    if not moved:
-        return arranged(scene.mechanism, start)
-    starts = _counted(scene, fit.state, start)
-    return arranged(scene.mechanism, start, spanning=scene.layout.spanning, starts=starts)
+    start = fit.measure_present()[1]
+    start = replace(
+        start,
+        start_choices=(*start.start_choices, *format_coupling_changes(scene, start)),
+        start_motions=(*start.start_motions, *motion_sentences),
+    )
+    if not poses_changed:
+        return lay_out_scene(scene.mechanism, start)
+    starts = _joint_starts(scene, fit.state, start)
+    return lay_out_scene(scene.mechanism, start, spanning=scene.layout.spanning, starts=starts)
 
 
-def _posed(scene: PreparedScene, fit: CoupledFit, asked: AskedRows) -> bool:
-    """Whether poses had to change for the rows; they have."""
+def _fit_poses(scene: PreparedScene, fit: CoupledFit, start_rows: StartRows) -> bool:
+    """Fit the poses to the rows; return whether they had to change."""
     limit = tolerances.OPEN_GAP
-    if not len(asked.poses) or fit.gap() <= limit:
+    if not len(start_rows.poses) or fit.largest_gap() <= limit:
         return False
-    released, before = ReleasedBodies(scene.layout, asked.poses), fit.state
+    released, before = ReleasedBodies(scene.layout, start_rows.poses), fit.state
     while True:
-        _release(scene, fit, released, asked.poses)
-        left = fit.fit_poses()
-        if fit.gap() <= limit:
+        _release_bodies(scene, fit, released, start_rows.poses)
+        gaps = fit.fit_poses()
+        if fit.largest_gap() <= limit:
             break
-        if not released.widen(asked.poses[np.abs(left) > limit * scene.layout.size]):
-            raise poses_do_not_fit(scene.layout, asked.poses, left)
+        if not released.widen(start_rows.poses[np.abs(gaps) > limit * scene.layout.size]):
+            raise poses_do_not_fit(scene.layout, start_rows.poses, gaps)
         fit.state = before
     fit.polish(limit)
     return True
 
 
-def _hurried(scene: PreparedScene, fit: CoupledFit, asked: AskedRows) -> tuple[bool, tuple[str, ...]]:
-    """Whether rates had to change for the rows; they have. And sentences on what moves though no rate asks for it."""
-    limit = tolerances.OPEN_RATE * fit.speed()
-    before = fit.now()[0].rates[asked.rates] * fit.lengths(asked.rates)
+def _fit_rates(scene: PreparedScene, fit: CoupledFit, start_rows: StartRows) -> tuple[bool, tuple[str, ...]]:
+    """Fit the rates to the rows; return whether they had to change, and sentences on bodies that move unprescribed."""
+    limit = tolerances.OPEN_RATE * fit.scene_speed()
+    before = fit.measure_present()[0].rates[start_rows.rates] * fit.length_factors(start_rows.rates)
     if not np.any(np.abs(before) > limit):
         return False, ()
-    released, state = ReleasedBodies(scene.layout, asked.rates), fit.state
+    released, state = ReleasedBodies(scene.layout, start_rows.rates), fit.state
     while True:
-        _release(scene, fit, released, asked.rates)
-        left = fit.fit_rates()
-        is_open = np.abs(left) > tolerances.OPEN_RATE * max(fit.speed(), limit / tolerances.OPEN_RATE)
+        _release_bodies(scene, fit, released, start_rows.rates)
+        residuals = fit.fit_rates()
+        is_open = np.abs(residuals) > tolerances.OPEN_RATE * max(fit.scene_speed(), limit / tolerances.OPEN_RATE)
         if not np.any(is_open):
             break
-        if not released.widen(asked.rates[is_open]):
-            raise rates_do_not_fit(scene.layout, asked.rates, left)
+        if not released.widen(start_rows.rates[is_open]):
+            raise rates_do_not_fit(scene.layout, start_rows.rates, residuals)
         fit.state = state
     fitted_state, fit.state = fit.state, state
-    started = unasked(scene, fit, fitted_state, released)
+    motion_sentences = format_unprescribed_motions(scene, fit, fitted_state, released)
     fit.state = fitted_state
-    return True, started
+    return True, motion_sentences
 
 
-def _release(scene: PreparedScene, fit: CoupledFit, released: ReleasedBodies, rows: Indices) -> None:
+def _release_bodies(scene: PreparedScene, fit: CoupledFit, released_bodies: ReleasedBodies, rows: Indices) -> None:
     """Let the released bodies move. Raises SolveError: too-many-together."""
-    fit.release(released.places)
-    if len(fit.freedoms.answers) > TOGETHER:
-        raise too_many(scene.layout, int(rows[0]), len(released.places))
+    fit.release_bodies(released_bodies.places)
+    if len(fit.freedoms.answers) > MAX_FREEDOMS:
+        raise too_many(scene.layout, int(rows[0]), len(released_bodies.places))
 
 
-def _counted(scene: PreparedScene, state: Array, start: Assembly) -> tuple[JointStart, ...]:
-    """Where the joints stand at a start that coordinates have moved to, angles counted on from where they were zero."""
+def _joint_starts(scene: PreparedScene, state: Array, start: Assembly) -> tuple[JointStart, ...]:
+    """Return the starts of the joints after the coordinates have moved, with angles counted on continuously from their
+    zero.
+    """
     mechanism, layout = scene.mechanism, scene.layout
-    found = []
+    starts = []
     for k, joint in enumerate(mechanism.joints):
-        at = joint_start(mechanism, start, joint)
-        near = _angle(layout, k, state)
-        found.append(at if near is None else replace(at, R_ref=layout.starts[k].R_ref, angle=near))
-    return tuple(found)
+        joint_start_values = joint_start(mechanism, start, joint)
+        angle = _tree_angle(layout, k, state)
+        starts.append(
+            joint_start_values
+            if angle is None
+            else replace(joint_start_values, R_ref=layout.starts[k].R_ref, angle=angle)
+        )
+    return tuple(starts)
 
 
-def _angle(layout: Layout, joint: int, state: Array) -> float | None:
-    """The angle of a joint of the tree in a state; None where it is driven, cut or has none."""
+def _tree_angle(layout: Layout, joint: int, state: Array) -> float | None:
+    """Return the angle of a joint of the tree in a state; None where it is driven, cut or has none."""
     for freedom in layout.freedoms:
         if freedom.joint == joint and freedom.quantity == "angle" and freedom.q >= 0:
             return float(state[freedom.q])

@@ -1,4 +1,4 @@
-"""Wheels at the start: a disc that lies flat on its plane touches it everywhere, and rolls in no direction."""
+"""Check wheels at the start: a disc that lies flat on its plane touches it everywhere and cannot roll."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.multibody.mechanism.model import Assembly, Mechanism
-from heuncli.multibody.tree.starts import pose
+from heuncli.multibody.tree.starts import body_state
 
 
 def require_upright(mechanism: Mechanism, start: Assembly) -> None:
-    """Raise SolveError [does-not-fit] for discs whose axles stand on their planes at the start."""
+    """Raise SolveError [does-not-fit] for discs whose axles are normal to their planes at the start."""
     for coupling in mechanism.couplings:
         part = coupling.rows[0].parts[0] if coupling.rows else None  # of a rope they are found later
         if part is None or part.kind != "touches":
             continue
-        n, k = pose(start, part.a)[1] @ part.e, pose(start, part.b)[1] @ part.g
+        n, k = body_state(start, part.a)[1] @ part.e, body_state(start, part.b)[1] @ part.g
         across = np.cross(n, k)
         if float(across @ across) <= 1.0 - tolerances.ALONG_SQUARED:
             message = f"the wheel {coupling.name} lies flat on its plane: it touches everywhere, and has no way to roll"
             hint = "turn it up, by its orientation; what lies on a plane is three joints of type plane"
-            raise SolveError(Problem("does-not-fit", message, hint=hint, about=f"rolling.{coupling.name}"))
+            raise SolveError(Problem("does-not-fit", message, hint=hint, entry_path=f"rolling.{coupling.name}"))

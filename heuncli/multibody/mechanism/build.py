@@ -1,4 +1,6 @@
-"""Spec -> Mechanism: names become numbers, tuples arrays, shapes mass properties; nothing is solved here."""
+"""Build the mechanism from the spec: names become numbers, tuples arrays, shapes mass properties; nothing is solved
+here.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +10,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from heuncli.base.joint_kinds import TYPES, Kind
+from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.records import replace
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.directions import unit
+from heuncli.multibody.mechanism.directions import unit_vector
 from heuncli.multibody.mechanism.model import (
     GROUND,
     Blow,
@@ -29,71 +31,74 @@ from heuncli.multibody.mechanism.model import (
     Spread,
     Stop,
 )
-from heuncli.multibody.stages import ANEW, Stages
+from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Array
-from heuncli.scene.expressions.programs import Expression, is_of_point
+from heuncli.scene.expressions.programs import Expression, is_point_name
 from heuncli.scene.file_format import models as m
-from heuncli.scene.shapes.inertia import properties
+from heuncli.scene.shapes.inertia import split_pseudo_inertia
 
 if TYPE_CHECKING:
-    from heuncli.scene.shapes.forms import Form
+    from heuncli.scene.shapes.forms import CompositeSolid
 
 
-def forms_of(spec: m.Spec, stages: Stages = ANEW) -> dict[str, Form]:
-    """The forms of the bodies that are built from shapes; stages: each is one."""
+def make_forms(spec: m.Spec, stages: Stages = NO_CACHE) -> dict[str, CompositeSolid]:
+    """Make the forms of the bodies that are built from shapes, each in a stage of its own."""
     shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
     if not shapes:
         return {}
-    from heuncli.scene.shapes.forms import form  # 8 ms that only they are worth
+    from heuncli.scene.shapes.forms import make_composite_solid  # 8 ms that only they are worth
 
-    return {name: stages.run(form, of, of=name) for name, of in shapes.items()}
+    return {name: stages.run(make_composite_solid, body_shapes, key=name) for name, body_shapes in shapes.items()}
 
 
-def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechanism:
-    """The mechanism of a validated spec; forms: of the bodies that are built from shapes.
+def build(spec: m.Spec, forms: dict[str, CompositeSolid], stages: Stages = NO_CACHE) -> Mechanism:
+    """Build the mechanism of a validated spec; forms: of the bodies that are built from shapes.
 
-    stages: each body and each joint is one.
+    stages: each body and each joint is a stage of its own
     """
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
     joints = {name: (k, TYPES[j.kind]) for k, (name, j) in enumerate(spec.joints.items())}
     drives = {drive.joint: drive for drive in spec.drives.values()}
     planar = spec.space == "planar"
-    bodies = tuple(stages.run(body, b, forms.get(name), of=name) for name, b in spec.bodies.items())
+    bodies = tuple(stages.run(build_body, b, forms.get(name), key=name) for name, b in spec.bodies.items())
     last = max(spec.analysis.times, default=0.0)
-    made = tuple(
-        driven(stages.run(joint, j, index[j.a], index[j.b], planar, of=name), drives.get(name), last)
+    built_joints = tuple(
+        attach_drive(stages.run(build_joint, j, index[j.a], index[j.b], planar, key=name), drives.get(name), last)
         for name, j in spec.joints.items()
     )
-    made = numbered(made)
-    loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
+    built_joints = number_paths(built_joints)
+    loads = tuple(part for name, f in spec.forces.items() for part in build_load_parts(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
     conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
-    points = points_used(spec, values, index)
-    stops = tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values()))
+    points = find_named_points(spec, values, index)
+    stops = tuple(build_stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values()))
     if planar:
-        told = {stop.joint for stop in stops} | coordinates_used(loads, values, joints)
-        seen = {point.body for point in points.values()}
-        told |= {joints[joint][0] for joint in coupled(spec)}
-        seen |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
-        told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
-        made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
+        determined = {stop.joint for stop in stops} | find_used_joints(loads, values, joints)
+        watched_bodies = {point.body for point in points.values()}
+        determined |= {joints[joint][0] for joint in find_coupled_joints(spec)}
+        watched_bodies |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
+        determined |= {k for k, j in enumerate(built_joints) if not watched_bodies.isdisjoint((j.a, j.b))}
+        built_joints = tuple(to_spun_pin(j, bodies) if k not in determined else j for k, j in enumerate(built_joints))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.multibody.mechanism.build_couplings import couplings_of, loads_beside  # few scenes have them
+        from heuncli.multibody.mechanism.build_couplings import (  # few scenes have them
+            build_coupling_loads,
+            build_couplings,
+        )
 
         number = {name: k for name, (k, _) in joints.items()}
-        couplings = couplings_of(spec, made, bodies, number)
-        loads += loads_beside(spec, made, bodies, number)
+        couplings = build_couplings(spec, built_joints, bodies, number)
+        loads += build_coupling_loads(spec, built_joints, bodies, number)
     return Mechanism(
         title=spec.title,
         planar=planar,
         gravity=np.array(spec.gravity),
         bodies=bodies,
-        joints=made,
+        joints=built_joints,
         loads=loads,
-        blows=tuple(blow(b, index) for b in spec.impulses.values()),
+        impulses=tuple(build_impulse(b, index) for b in spec.impulses.values()),
         stops=stops,
         conditions=conditions,
         points=points,
@@ -102,52 +107,52 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     )
 
 
-def optional(value: m.Vec | m.Matrix | None) -> Array | None:
-    """An array, or None for what was left out."""
+def to_array(value: m.Vec | m.Matrix | None) -> Array | None:
+    """Return an array, or None where the value is not given."""
     return None if value is None else np.array(value, dtype=float)
 
 
-def directed(value: m.Directed[m.Vec] | None) -> Directed | None:
-    """A vector with its frame, or None."""
+def make_directed(value: m.Directed[m.Vec] | None) -> Directed | None:
+    """Return a vector with its frame, or None."""
     return None if value is None else Directed(np.array(value.vector), value.in_body)
 
 
-def body(b: m.Body[m.Vec, m.Matrix], shape: Form | None) -> Body:
-    """One body, its mass properties given or those of its shapes."""
+def build_body(b: m.Body[m.Vec, m.Matrix], shape: CompositeSolid | None) -> Body:
+    """Build a body, with its mass properties as given or from its shapes."""
     if shape is not None:
-        mass, center, inertia = properties(shape.whole())
+        mass, center, inertia = split_pseudo_inertia(shape.whole_inertia())
     else:
         mass, center, inertia = b.mass, np.array(b.center), np.array(b.inertia)
     return Body(
         name=b.name, mass=mass, center=center, inertia=inertia,
         points={name: np.array(p) for name, p in b.points.items()},
-        position=optional(b.position), rotation=optional(b.rotation), velocity=directed(b.velocity),
-        angular_velocity=directed(b.angular_velocity), near_position=optional(b.near_position),
-        near_rotation=optional(b.near_rotation),
+        position=to_array(b.position), rotation=to_array(b.rotation), velocity=make_directed(b.velocity),
+        angular_velocity=make_directed(b.angular_velocity), near_position=to_array(b.near_position),
+        near_rotation=to_array(b.near_rotation),
     )  # fmt: skip
 
 
-def with_values(drive: m.Drive, last: float) -> m.Drive:
-    """A drive whose value is that of its coordinate; of one by its rate the integral, for a run up to `last` [s]."""
+def integrate_rate_drive(drive: m.Drive, last: float) -> m.Drive:
+    """Return a drive by the value of its coordinate; a drive by rate is integrated, for a run up to `last` [s]."""
     if not drive.by_rate:
         return drive
-    from heuncli.scene.expressions.integrals import integral  # few scenes have them
+    from heuncli.scene.expressions.integrals import integrate_rate  # few scenes have them
 
-    return replace(drive, value=integral(drive.value, last), by_rate=False, from_start=True)
-
-
-def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
-    """A joint with its drive; last: the end of the run [s]."""
-    return joint if drive is None else replace(joint, drive=with_values(drive, last))
+    return replace(drive, value=integrate_rate(drive.value, last), by_rate=False, from_start=True)
 
 
-def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
-    """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
-    axis = unit(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
+def attach_drive(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
+    """Attach a drive to its joint; last: the end of the run [s]."""
+    return joint if drive is None else replace(joint, drive=integrate_rate_drive(drive, last))
+
+
+def build_joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
+    """Build a joint between two bodies, without its drive; in a planar scene as its planar kind."""
+    axis = unit_vector(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
     return Joint(
         name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
         a=a, p=np.array(j.p), b=b, q=np.array(j.q),
-        axis=axis, to_axis=unit(j.to_axis) if j.to_axis_given else axis, to_axis_given=j.to_axis_given,
+        axis=axis, to_axis=unit_vector(j.to_axis) if j.to_axis_given else axis, to_axis_given=j.to_axis_given,
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
@@ -155,40 +160,40 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
     )  # fmt: skip
 
 
-def numbered(joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
-    """Joints of which those along paths have their numbers."""
+def number_paths(joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
+    """Number the joints that run along paths."""
     count = itertools.count()
-    return tuple(joint if joint.path is None else replace(joint, way=next(count)) for joint in joints)
+    return tuple(joint if joint.path is None else replace(joint, path_index=next(count)) for joint in joints)
 
 
-def coupled(spec: m.Spec) -> set[str]:
-    """The joints whose coordinates are coupled."""
+def find_coupled_joints(spec: m.Spec) -> set[str]:
+    """Return the joints whose coordinates are coupled."""
     ropes = [coupling for coupling in spec.couplings.values() if coupling.type == "rope"]
-    gripped = frozenset[str]().union(*(rope.gripped for rope in ropes))
+    gripped = frozenset[str]().union(*(rope.gripped_bodies for rope in ropes))
     found = {name for name, joint in spec.joints.items() if not gripped.isdisjoint((joint.a, joint.b))}
     return found | {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
-def coordinates_used(
-    loads: tuple[Load, ...], values: Sequence[Expression], joints: dict[str, tuple[int, Kind]]
+def find_used_joints(
+    loads: tuple[Load, ...], values: Sequence[Expression], joints: dict[str, tuple[int, JointKind]]
 ) -> set[int]:
-    """The joints in which loads act, or whose coordinates values name."""
+    """Return the joints in which loads act, or whose coordinates appear in values."""
     acting = {load.joint for load in loads if isinstance(load, JointLoad)}
     return acting | {joints[name][0] for e in values for name, _ in e.uses if name in joints}
 
 
-def points_used(spec: m.Spec, values: Sequence[Expression], index: dict[str, int]) -> dict[str, NamedPoint]:
-    """The points that values name, by their names there."""
+def find_named_points(spec: m.Spec, values: Sequence[Expression], index: dict[str, int]) -> dict[str, NamedPoint]:
+    """Return the points that appear in values, by their names there."""
     found = {}
-    for name in dict.fromkeys(name for e in values for name, _ in e.uses if is_of_point(name)):
+    for name in dict.fromkeys(name for e in values for name, _ in e.uses if is_point_name(name)):
         _, body, point = name.split(".")
         owner = spec.ground.points if body == "ground" else spec.bodies[body].points
         found[name] = NamedPoint(index[body], np.array(owner[point]), np.eye(3), np.zeros(3))
     return found
 
 
-def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
-    """A pin of the plane; at the centre of a body without inertia one whose angle nothing determines or asks for."""
+def to_spun_pin(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
+    """Turn a pin at the centre of a body without inertia into a "spun pin" if nothing determines or uses its angle."""
     given = (joint.angle, joint.rate, joint.drive)
     if joint.kind != "pin" or joint.to_axis_given or any(value is not None for value in given):
         return joint
@@ -198,10 +203,12 @@ def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
     return joint
 
 
-def parts_of(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> tuple[Load, ...]:
-    """An applied load: of a distributed one the parts that grow towards its one end and its other."""
+def build_load_parts(
+    name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, JointKind]]
+) -> tuple[Load, ...]:
+    """Build an applied load; a distributed one as two parts, each growing towards one of its ends."""
     if not isinstance(f, m.Distributed):
-        return (load(name, f, index, joints),)
+        return (build_load(name, f, index, joints),)
     start, end = np.array(f.from_), np.array(f.to)
     spreads = (f.vector, Spread(start, end)), (f.to_vector, Spread(end, start))
     return tuple(
@@ -210,8 +217,8 @@ def parts_of(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tup
     )
 
 
-def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:
-    """One applied load that is not distributed."""
+def build_load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, JointKind]]) -> Load:
+    """Build an applied load that is not distributed."""
     match f:
         case m.PointForce():
             return PointLoad(name, "force", index[f.on.body], np.array(f.on.point), f.vector, f.frame == "body")
@@ -225,7 +232,7 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
         case m.Bushing():
-            return bushing(name, f, index)
+            return build_bushing(name, f, index)
         case m.Torque() | m.Motor():
             return JointLoad(name, "torque", joints[f.joint][0], f.value)
         case m.TurnSpring():
@@ -241,16 +248,16 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case m.Friction():
-            return friction(name, f, joints[f.joint][0])
+            return build_friction(name, f, joints[f.joint][0])
         case m.Distributed():
             raise TypeError("a distributed load is two loads")
 
 
-def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
-    """Six springs and dampers."""
+def build_bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
+    """Build a bushing: six springs and dampers."""
 
     def arrays(of: m.Elastic[m.Vec]) -> Elastic:
-        return Elastic(np.array(of.stiffness), np.array(of.damping), np.array(of.preload), of.given)
+        return Elastic(np.array(of.stiffness), np.array(of.damping), np.array(of.preload), of.extra_load)
 
     a, b = f.from_, f.to
     return BushingLoad(
@@ -259,8 +266,8 @@ def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
     )  # fmt: skip
 
 
-def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
-    """Friction of a given size, or by what of the joint's own load presses."""
+def build_friction(name: str, f: m.Friction, joint: int) -> JointLoad:
+    """Build friction of a given size, or in proportion to the joint's own load."""
     if f.coefficient is None:
         of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
         return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
@@ -272,13 +279,13 @@ def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
     return JointLoad(name, "friction", joint, None, 0.0, f.coefficient, speed, presses=presses, reach=reach)
 
 
-def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
-    """One impulse or impulsive couple."""
+def build_impulse(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
+    """Build an impulse or impulsive couple."""
     return Blow(
-        b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
+        b.name, index[b.body], to_array(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
     )  # fmt: skip
 
 
-def stop(s: m.Stop[str], joint: int) -> Stop:
-    """A stop or a latch of a joint's coordinate."""
+def build_stop(s: m.Stop[str], joint: int) -> Stop:
+    """Build a stop or a latch of a joint's coordinate."""
     return Stop(s.name, joint, s.quantity, s.low, s.high, s.restitution, s.latch)

@@ -1,7 +1,7 @@
-"""Couplings: conditions between bodies that no joint makes, as sums of conditions of two bodies each.
+"""Couplings: constraints between bodies other than joints, as sums of conditions of two bodies each.
 
-Gears, belts, screws, ropes, cams and wheels are all of them such: what they hold is told here in the numbers that the
-kernel reads (kernel/scene.py, Closure), and nothing behind this knows their kinds but what tells of them.
+Gears, belts, screws, ropes, cams and wheels are couplings. Their conditions are given here in the numbers that the
+kernel reads (kernel/scene.py, Closure); later code does not depend on their kinds, except to report on them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from heuncli.scene.file_format import couplings as spec
 
 GROUND = -1
 Place = Array | tuple[float, float, float]
-NOWHERE = (0.0, 0.0, 0.0)
+NO_VECTOR = (0.0, 0.0, 0.0)
 CouplingKind = Literal[
     "guide", "dot", "rod", "turn", "mesh", "cam", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls",
     "strand", "arc", "wound",
@@ -27,7 +27,7 @@ CouplingKind = Literal[
 
 
 class Coordinate(NamedTuple):
-    """A joint's coordinate and how many times it is taken."""
+    """A joint's coordinate and its factor."""
 
     joint: int
     quantity: Literal["angle", "travel"]
@@ -36,10 +36,11 @@ class Coordinate(NamedTuple):
 
 @record
 class CamShape:
-    """What a cam part has besides: the lift over the disc's angle, and what of the follower touches it.
+    """The additional data of a cam part: the lift over the disc's angle, and the shape of the follower.
 
-    swings: whether the follower turns, about g through `pivot` of the carrier (3,), or slides along g. radius: of its
-    roller about q, 0: a point. face: the normal of its flat face through q, its axes (3,); None: it has none.
+    swings: whether the follower turns, about g through `pivot` of the carrier (3,), or slides along g
+    radius: of its roller about q, 0: a point
+    face: the normal of its flat face through q, its axes (3,), or None
     """
 
     lift: Path
@@ -51,62 +52,66 @@ class CamShape:
 
 @record
 class CouplingPart:
-    """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
+    """A condition of the two bodies a and b; the meaning of its fields for each kind is described at the kernel's
+    Closure.
 
-    p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates:
-    those that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's.
-    apart: of a mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work,
-    whatever moves, and stands in the axes of c, too. radius: of a wheel; of what of a rope lies on
-    a sheave, below zero where it runs round clockwise about e. strand: of that the place among the row's parts of the
-    strand that arrives. other_axis: of a strand between two sheaves the axis of b, parallel to e.
-    on_a: of a mesh the point of c at which its load counts as standing on a; None: p.
+    p, q: points of a and b, body axes (for meshes and cams p is a point of the carrier c)
+    e, g: directions
+    coordinates: those that measure its gap: one for a turn, one or two for a mesh, the disc's and the follower's for a
+    cam
+    separating_force: of a mesh, the additional force that pushes b away from a, for a multiplier of 1 or of -1, in the
+    axes of c; it does no work
+    radius: of a wheel; of the sheave on which a rope lies, below zero where the rope runs clockwise about e
+    strand: of a rope on a sheave, the index of the strand that arrives among the row's parts
+    other_axis: of a strand between two sheaves the axis of b, parallel to e
+    on_a: of a mesh the point of c at which its load counts as acting on a, or None for p
     """
 
     kind: CouplingKind
     a: int
     b: int
-    p: Array | tuple[float, float, float] = NOWHERE
-    q: Array | tuple[float, float, float] = NOWHERE
-    e: Array | tuple[float, float, float] = NOWHERE
-    g: Array | tuple[float, float, float] = NOWHERE
+    p: Array | tuple[float, float, float] = NO_VECTOR
+    q: Array | tuple[float, float, float] = NO_VECTOR
+    e: Array | tuple[float, float, float] = NO_VECTOR
+    g: Array | tuple[float, float, float] = NO_VECTOR
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
-    apart: Array | tuple[float, float, float] = NOWHERE
+    apart: Array | tuple[float, float, float] = NO_VECTOR
     cam: CamShape | None = None
     radius: float = 0.0
     strand: int = 0
-    other_axis: Array | tuple[float, float, float] = NOWHERE
+    other_axis: Array | tuple[float, float, float] = NO_VECTOR
     on_a: Array | None = None
 
     @property
-    def holds_speed(self) -> bool:
-        """Whether it holds a speed and no pose."""
+    def constrains_speed(self) -> bool:
+        """Whether it constrains a speed and no pose."""
         return self.kind in ("rolls", "rolls_aside", "ball_rolls")
 
     @property
-    def turns_its_bodies(self) -> bool:
-        """Whether it holds how its bodies turn, and not only where points of theirs are."""
+    def constrains_rotation(self) -> bool:
+        """Whether it constrains the rotation of its bodies, and not only the positions of points."""
         return self.kind not in ("guide", "rod")
 
     @property
     def is_couple(self) -> bool:
-        """Whether its load is a couple alone."""
+        """Whether its load is a pure couple."""
         return self.kind in ("dot", "turn")
 
     @property
-    def lies(self) -> bool:
-        """Whether it is of a rope what lies on a sheave, and loads nothing."""
+    def lies_on_sheave(self) -> bool:
+        """Whether it is the section of a rope that lies on a sheave, which has no load."""
         return self.kind in ("arc", "wound")
 
     @property
-    def counts_alone(self) -> bool:
-        """Whether it counts by coordinates for another part, and loads nothing."""
+    def has_no_load(self) -> bool:
+        """Whether it only adds coordinates to another part, without a load."""
         return self.kind == "mesh" and self.a == self.b
 
     @property
-    def places(self) -> tuple[tuple[int, Array], ...]:
-        """Bodies with the points at which it looks at them, body axes."""
+    def body_points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points that it refers to, body axes."""
         if self.is_couple:
             return ()
         if self.kind == "mesh":
@@ -117,16 +122,18 @@ class CouplingPart:
 
     @property
     def bodies(self) -> tuple[int, ...]:
-        """All bodies that it looks at."""
+        """All bodies that it refers to."""
         return (self.a, self.b, self.c) if self.kind in ("mesh", "cam", "wound") else (self.a, self.b)
 
 
 @record
 class CoupledRow:
-    """One scalar condition: the sum of its parts is the length; None: as it is at the assembled start.
+    """One scalar condition: the sum of its parts is the length; None: as in the assembled start.
 
-    law: what is added to the length in time. weight: of its gap [m per unit], 0: the scene's size. tension_only: its
-    multiplier is never above zero; with restitution it opens and closes, without the run ends where it would push.
+    law: added to the length in time
+    weight: of its gap [m per unit], 0: the scene's size
+    tension_only: its multiplier is never above zero; with restitution it opens and closes, without it the run ends
+    where it would push
     """
 
     parts: tuple[CouplingPart, ...]
@@ -138,15 +145,15 @@ class CoupledRow:
 
     @property
     def is_couple(self) -> bool:
-        """Whether its loads are couples alone."""
+        """Whether its loads are pure couples."""
         return all(part.is_couple for part in self.parts)
 
 
 @record
 class Coupling:
-    """A coupling and its conditions; given: as the spec means it.
+    """A coupling and its conditions; entry: its entry in the spec.
 
-    stretched: of a rope that stretches what would be its condition; a load pulls along its parts (RopeLoad).
+    stretched_row: of an elastic rope, what would be its condition; a load pulls along its parts (RopeLoad)
     """
 
     name: str
@@ -155,36 +162,36 @@ class Coupling:
     stretched: CoupledRow | None = None
 
     @property
-    def carriers(self) -> tuple[CoupledRow, ...]:
-        """What it loads the bodies by: its conditions, or what a load pulls along."""
-        return self.rows if self.stretched is None else (self.stretched,)
+    def loading_rows(self) -> tuple[CoupledRow, ...]:
+        """The rows along which it loads the bodies: its conditions, or the row of an elastic rope."""
+        return self.rows if self.stretched_row is None else (self.stretched_row,)
 
     @property
     def bodies(self) -> frozenset[int]:
-        """All bodies that it looks at, without the ground."""
-        return self.ends - {GROUND}
+        """All bodies that it refers to, without the ground."""
+        return self.bodies_and_ground - {GROUND}
 
     @property
-    def ends(self) -> frozenset[int]:
-        """The same, with the ground where it looks at that."""
-        return frozenset(i for row in self.carriers for part in row.parts for i in part.bodies)
+    def bodies_and_ground(self) -> frozenset[int]:
+        """All bodies that it refers to, including the ground."""
+        return frozenset(i for row in self.loading_rows for part in row.parts for i in part.bodies)
 
     @property
     def law(self) -> Expression | None:
-        """What prescribes a rope's length in time; None where that stays, or the rope stretches."""
-        return self.given.law if isinstance(self.given, spec.Rope) and not self.given.stretches else None
+        """The law of a rope's length in time; None where that is constant, or the rope is elastic."""
+        return self.entry.law if isinstance(self.entry, spec.Rope) and not self.entry.is_elastic else None
 
     @property
-    def pulls(self) -> bool:
-        """Whether it is a belt with a pretension, which is a load of its name."""
-        return isinstance(self.given, spec.Belt) and self.given.pretension > 0.0
+    def has_pretension(self) -> bool:
+        """Whether it is a belt with a pretension, which is a load of the same name."""
+        return isinstance(self.entry, spec.Belt) and self.entry.pretension > 0.0
 
     @property
     def has_load(self) -> bool:
-        """Whether there is a load of its name beside what it holds: a pretension, or what rubs in a thread."""
-        return self.pulls or (isinstance(self.given, spec.Screw) and self.given.friction is not None)
+        """Whether there is a load of its name besides its conditions: a pretension, or the friction of a thread."""
+        return self.has_pretension or (isinstance(self.entry, spec.Screw) and self.entry.friction is not None)
 
     @property
     def joints(self) -> frozenset[int]:
-        """The joints whose coordinates it counts by."""
+        """The joints whose coordinates it contains."""
         return frozenset(x.joint for row in self.rows for part in row.parts for x in part.coordinates)

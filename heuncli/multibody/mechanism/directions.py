@@ -1,4 +1,4 @@
-"""Directions as they are computed with: of length 1, however they were written."""
+"""Directions as unit vectors."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Vec
 
 
-def unit(vector: Vec) -> Array:
-    """The direction of a vector that the spec layer found not to be zero."""
+def unit_vector(vector: Vec) -> Array:
+    """Normalize a vector; the spec layer has checked that it is not zero."""
     v = np.array(vector, dtype=float)
     v = v / np.abs(v).max()
     along: Array = v / np.sqrt(v @ v)

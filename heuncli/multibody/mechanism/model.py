@@ -1,9 +1,8 @@
 """The mechanism as plain SI arrays: bodies, joints, drives and loads, before any tree is chosen.
 
-Vectors are (3,) float64. Bodies and joints are called by their numbers, in the order of the spec; body -1 is the
-ground. Values in time stay expressions (scene/expressions/programs.py). Bodies, joints, drives, blows, stops and
-conditions have the classes of the spec (scene/file_format/models.py); its kinds of loads become five, by where they
-act.
+Vectors are (3,) float64. Bodies and joints are identified by number, in the order of the spec; body -1 is the ground.
+Values in time stay expressions (scene/expressions/programs.py). Bodies, joints, drives, impulses, stops and conditions
+use the classes of the spec (scene/file_format/models.py); its kinds of loads become five, by where they act.
 """
 
 from __future__ import annotations
@@ -25,11 +24,11 @@ from heuncli.scene.file_format.models import SIMULTANEOUS, Condition, ImpactMode
 
 GROUND = -1
 if TYPE_CHECKING:
-    Directed = models.Directed[Array]
+    Directed = models.FramedVector[Array]
     Body = models.Body[Array, Array]
     Elastic = models.Elastic[Array]
     Joint = models.Joint[int, Array]
-    Blow = models.Blow[int, Array]
+    Blow = models.AppliedImpulse[int, Array]
     Stop = models.Stop[int]
 else:  # a record made by such an alias would be told of it, and refuse: 3 us each
     Directed, Body, Joint, Blow, Stop = models.Directed, models.Body, models.Joint, models.Blow, models.Stop
@@ -38,9 +37,10 @@ else:  # a record made by such an alias would be told of it, and refuse: 3 us ea
 
 @record
 class Spread:
-    """How a force is spread along a line of its body: densest at `start`, falling evenly to nothing at `end`.
+    """A triangular distribution of a force along a line of its body: largest at `start`, falling linearly to zero at
+    `end`.
 
-    Both in the axes of the body that has the load; its resultant acts a third of the way from the start. So the force
+    Both in the axes of the body that has the load; its resultant acts at a third of the length from the start. A force
     per length q there makes a force q l/2.
     """
 
@@ -55,7 +55,7 @@ class Spread:
 
     @property
     def center(self) -> Array:
-        """Where the resultant acts."""
+        """The point where the resultant acts."""
         return np.asarray((2.0 * self.start + self.end) / 3.0)
 
 
@@ -63,8 +63,8 @@ class Spread:
 class PointLoad:
     """A force [N] at a body's point, or a couple [N m] on it (point None or where the couple enters).
 
-    Two of one name that are spread, one from either end, make a distributed load: q(s) = q0 (1 - s/l) + q1 s/l. Of a
-    rigid body's motion their resultants are all that counts; `vector` is then q0 or q1 [N/m].
+    Two of one name with a spread, one from either end, make a distributed load: q(s) = q0 (1 - s/l) + q1 s/l. For the
+    motion of a rigid body only their resultants count; `vector` is then q0 or q1 [N/m].
     """
 
     name: str
@@ -77,7 +77,7 @@ class PointLoad:
 
     @property
     def factor(self) -> float:
-        """By which the vector makes the force."""
+        """Factor from the vector to the force."""
         return 1.0 if self.spread is None else self.spread.half_length
 
     @property
@@ -98,9 +98,10 @@ class PointLoad:
 
 @record
 class PairLoad:
-    """A spring or actuator along the line between two points; value [N], positive pushes apart; None for a spring.
+    """A spring or actuator along the line between two points; value [N], positive pushes the points apart; None for a
+    spring.
 
-    p, q: the points on the bodies a and b, their axes [m]; stiffness [N/m], length: relaxed [m], damping [N s/m].
+    p, q: the points on the bodies a and b, their axes [m] stiffness [N/m], length: relaxed [m], damping [N s/m]
     """
 
     name: str
@@ -158,7 +159,7 @@ class JointLoad:
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
-        """None of its own: it acts at its joint."""
+        """Empty: it acts at its joint."""
         return ()
 
 
@@ -166,8 +167,9 @@ class JointLoad:
 class BushingLoad:
     """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
 
-    p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in
-    b that agree with them where it is not turned.
+    p, q: the points on the bodies a and b, their axes [m]
+    frame (3, 3): its axes in a, as columns
+    to_frame (3, 3): the axes in b that coincide with them where it is not turned
     """
 
     name: str
@@ -184,7 +186,7 @@ class BushingLoad:
     @property
     def values(self) -> tuple[Expression, ...]:
         """Its values in time: of the shift, of the turn."""
-        return (*self.shift.given, *self.turn.given)
+        return (*self.shift.extra_load, *self.turn.extra_load)
 
     @property
     def is_conservative(self) -> bool:
@@ -199,10 +201,12 @@ class BushingLoad:
 
 @record
 class RopeLoad:
-    """A rope that stretches: value [N], with the sign of a closure's multiplier, times the unit loads of its parts.
+    """An elastic rope: value [N], with the sign of a closure's multiplier, times the unit loads of its parts.
 
-    It has the name of its coupling. stiffness [N/m] is that at the length [m] without load, which `law` tells in time
-    if it is given; only_pulls: it keeps no work where it is shorter.
+    It has the name of its coupling.
+
+    stiffness [N/m]: at the unloaded length [m], which `law` gives in time if it is not None
+    only_pulls: it stores no energy where it is shorter
     """
 
     name: str
@@ -217,7 +221,7 @@ class RopeLoad:
 
     @property
     def values(self) -> tuple[Expression, ...]:
-        """Its values in time: the pull, then the length without load where that varies."""
+        """Its values in time: the pull, then the unloaded length where that varies."""
         return (self.value,) if self.law is None else (self.value, self.law)
 
     @property
@@ -228,15 +232,18 @@ class RopeLoad:
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it acts on them, body axes."""
-        return tuple(place for part in self.parts if not part.lies for place in part.places)
+        return tuple(place for part in self.parts if not part.lies_on_sheave for place in part.body_points)
 
 
 @record
 class ThreadLoad:
-    """What rubs in a thread between the bodies a and b, by what its flanks press with along its axis; ON b at q.
+    """Friction in a thread between the bodies a and b, from the axial force on its flanks; ON b at q.
 
-    coupling: its number. q: a point of b on the axis, axis: in a, body axes [m]; coefficient [m]: of the torque by what
-    presses; factor [1/m]: of the force along the axis by that torque; speed: where tanh(rate/speed) bends.
+    coupling: its number
+    q: a point of b on the axis; axis: in a, body axes [m]
+    coefficient [m]: torque per axial force
+    factor [1/m]: axial force per torque
+    speed: of the transition tanh(rate/speed)
     """
 
     name: str
@@ -252,7 +259,7 @@ class ThreadLoad:
 
     @property
     def values(self) -> tuple[Expression, ...]:
-        """None: it has no value in time."""
+        """Empty: it has no value in time."""
         return ()
 
     @property
@@ -269,15 +276,16 @@ class ThreadLoad:
 Load = PointLoad | PairLoad | JointLoad | BushingLoad | ThreadLoad | RopeLoad
 
 
-def path_of_load(load: Load) -> str:
-    """Where a load stands in the spec, or in the results."""
+def load_path(load: Load) -> str:
+    """Return the path of a load in the spec and in the results."""
     return f"{'couplings' if isinstance(load, RopeLoad | ThreadLoad) else 'forces'}.{load.name}"
 
 
 class Law(NamedTuple):
-    """What prescribes a coordinate or a length in time.
+    """The law that prescribes a coordinate or a length in time.
 
-    owner: as of `Mechanism.owner`; name: of the drive, or of the rope that is drawn in and paid out.
+    owner: number as in `Mechanism.owner_path`
+    name: of the drive, or of the rope that is drawn in and paid out
     """
 
     owner: int
@@ -288,16 +296,16 @@ class Law(NamedTuple):
 
     @property
     def path(self) -> str:
-        """Where it stands in the spec."""
-        return f"couplings.{self.name}.length" if self.of_rope else f"drives.{self.name}"
+        """Its path in the spec."""
+        return f"couplings.{self.name}.length" if self.is_rope else f"drives.{self.name}"
 
 
 @record
 class NamedPoint:
-    """A point whose place and velocity expressions name; place: on the body, its axes [m].
+    """A point whose position and velocity appear in expressions; place: on the body, its axes [m].
 
-    axes (3, 3): the directions x, y, z along which it is told, as rows, in the axes of the mechanism; offset (3,): of
-    its place along them, where these are not the world's (reduction/plane).
+    axes (3, 3): the directions x, y, z of its components, as rows, in the axes of the mechanism
+    offset (3,): added to its position along them, where these are not the world's (reduction/plane)
     """
 
     body: int
@@ -310,7 +318,8 @@ class NamedPoint:
 class Mechanism:
     """A scene, ready to be assembled; gravity (3,): acceleration, world axes [m/s^2].
 
-    points: those that expressions name, by their names there; impacts: how blows go through contacts that touch.
+    points: those that appear in expressions, by their names there
+    impacts: how impulses pass through closed contacts
     """
 
     title: str
@@ -326,66 +335,72 @@ class Mechanism:
     couplings: tuple[Coupling, ...] = ()
     impacts: ImpactModel = SIMULTANEOUS
 
-    def owner(self, k: int) -> str:
-        """What a closure row belongs to, as a path: the joint of a number, or after these the coupling."""
+    def owner_path(self, k: int) -> str:
+        """Return the path of a closure row's owner: of joint k, or of a coupling for numbers after those of the
+        joints.
+        """
         joints = len(self.joints)
         if k < joints:
             return f"joints.{self.joints[k].name}"
         coupling = self.couplings[k - joints]
-        return f"{'rolling' if coupling.given.type == 'wheel' else 'couplings'}.{coupling.name}"
+        return f"{'rolling' if coupling.entry.type == 'wheel' else 'couplings'}.{coupling.name}"
 
     @property
     def laws(self) -> tuple[Law, ...]:
         """The laws of all drives, then of the ropes whose lengths are driven."""
         drives = ((k, joint.drive) for k, joint in enumerate(self.joints) if joint.drive is not None)
         found = [Law(k, drive.name, drive.quantity, drive.value) for k, drive in drives]
-        for owner, own in enumerate(self.couplings, len(self.joints)):
-            if own.law is not None:
-                found.append(Law(owner, own.name, "length", own.law, of_rope=True))
+        for owner, coupling in enumerate(self.couplings, len(self.joints)):
+            if coupling.law is not None:
+                found.append(Law(owner, coupling.name, "length", coupling.law, is_rope=True))
         return tuple(found)
 
-    def load_rows(self) -> Iterator[tuple[Load, slice]]:
-        """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion.
+    def iter_load_rows(self) -> Iterator[tuple[Load, slice]]:
+        """Yield the loads, each with its rows in the kernel's table of loads: one per motion for a load in a joint.
 
-        Of a bushing its shift and its turn.
+        A bushing has two, its shift and its turn.
         """
-        at = 0
+        first_row = 0
         for load in self.loads:
             count = 1
             if isinstance(load, JointLoad):
-                count = len(JOINTS[self.joints[load.joint].kind].moved_by(load.kind))
+                count = len(JOINTS[self.joints[load.joint].kind].motions_for_load(load.kind))
             elif isinstance(load, BushingLoad):
                 count = 2
-            yield load, slice(at, at + count)
-            at += count
+            yield load, slice(first_row, first_row + count)
+            first_row += count
 
-    def block_of(self, load: Load) -> str:
-        """The block of the spec that a load belongs to: belts pull their pulleys, threads rub, ropes stretch."""
-        if isinstance(load, PairLoad) and any(own.name == load.name and own.pulls for own in self.couplings):
+    def spec_block(self, load: Load) -> str:
+        """Return the block of the spec that a load belongs to; those of belts, threads and elastic ropes are
+        `couplings`.
+        """
+        if isinstance(load, PairLoad) and any(
+            coupling.name == load.name and coupling.has_pretension for coupling in self.couplings
+        ):
             return "couplings"
-        return path_of_load(load).partition(".")[0]
+        return load_path(load).partition(".")[0]
 
-    def row_of_rope(self, name: str) -> int:
-        """Which row of that table is a rope's that stretches; -1: none, for loads are left out of the scene."""
-        return next((own.start for x, own in self.load_rows() if isinstance(x, RopeLoad) and x.name == name), -1)
+    def rope_load_row(self, name: str) -> int:
+        """Return the row of an elastic rope in that table; -1 if there is none, because the scene has no loads."""
+        return next((rows.start for x, rows in self.iter_load_rows() if isinstance(x, RopeLoad) and x.name == name), -1)
 
     @property
-    def rubbing(self) -> tuple[JointLoad | ThreadLoad, ...]:
-        """Friction that hangs on what its joint or its thread carries."""
+    def joint_friction(self) -> tuple[JointLoad | ThreadLoad, ...]:
+        """Friction that depends on the load of its joint or its thread."""
         return tuple(
             load
             for load in self.loads
             if isinstance(load, ThreadLoad) or (isinstance(load, JointLoad) and load.presses is not None)
         )
 
-    def rubs_in(self, load: JointLoad | ThreadLoad) -> str:
-        """Such friction and where it rubs, as paths: a load in a joint, or what a thread has itself."""
+    def describe_friction(self, load: JointLoad | ThreadLoad) -> str:
+        """Return the path of such friction and of its joint; a thread has only its own."""
         if isinstance(load, ThreadLoad):
             return f"couplings.{load.name}"
         return f"forces.{load.name} in joints.{self.joints[load.joint].name}"
 
-    def expressions(self) -> Iterator[Expression]:
-        """The values in time of the loads, then the laws of drives and ropes, then the conditions."""
+    def iter_expressions(self) -> Iterator[Expression]:
+        """Yield the values in time of the loads, then the laws of drives and ropes, then the conditions."""
         for load in self.loads:
             yield from load.values
         for law in self.laws:
@@ -398,10 +413,11 @@ class Mechanism:
 class Assembly:
     """Poses and rates at the start that fit all joints, world axes.
 
-    position (n, 3) and velocity (n, 3) of the bodies' origins, rotation (n, 3, 3), angular_velocity (n, 3);
-    chosen: sentences on what was chosen for the user; gap: largest closure gap [m]; moved: the bodies that had to leave
-    the place in which they are drawn, each with its way; started: sentences on velocities that nothing in the spec
-    asks for, or that one may expect otherwise.
+    position, velocity (n, 3): of the bodies' origins rotation (n, 3, 3), angular_velocity (n, 3)
+    start_choices: sentences on start values that heun has chosen
+    gap: largest closure gap [m]
+    displaced_bodies: the bodies that had to leave their place in the drawing, each with its displacement
+    start_motions: sentences on velocities that nothing in the spec prescribes, or that may be unexpected
     """
 
     position: Array

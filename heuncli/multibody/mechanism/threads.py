@@ -1,15 +1,20 @@
-"""Screws: a thread between what turns and what slides along the same axis.
+"""Screws: a thread between a body that turns and one that slides along the same axis.
 
-    travel = lead / (2 pi) angle                       in the coordinates of the joints, less where they started
-    f = e,  m = lead / (2 pi) n                        per unit of thrust ON what slides, along its travel
-The thread's two flanks both carry, so that thrust and torque may have either sign. What rubs on them, at the mean
-radius r, is mu times what presses square to the flank, against the sliding along it. Of the slope lambda, of
-tan(lambda) = |lead| / (2 pi r), and of N, what the condition presses with along the axis (its multiplier), it is
+    travel = lead / (2 pi) angle                       in the coordinates of the joints, relative to the start
+    f = e,  m = lead / (2 pi) n                        per unit of thrust ON the sliding body, along its travel
+
+Both flanks of the thread carry, so that thrust and torque may have either sign. The friction on them, at the mean
+radius r, is mu times the normal force on the flank, against the sliding along it. With the slope lambda, tan(lambda) =
+|lead| / (2 pi r), and the axial force N of the condition (its multiplier), it is
+
     mu r |N|              about the axis               mu tan(lambda) |N|              along it
+
 since both share the cosine of lambda. With tan(rho) = mu that is the square thread's law, exactly:
+
     M / F = r (tan(lambda) +- mu) / (1 -+ mu tan(lambda)) = r tan(lambda +- rho)
-Shigley, Mechanical Engineering Design, power screws, (8-1), (8-2). A flank that is inclined by beta presses with
-1 / cos(beta) more (scene/file_format/resolve_couplings.py).
+
+Shigley, Mechanical Engineering Design, power screws, (8-1), (8-2). On a flank that is inclined by beta the normal force
+is larger by 1 / cos(beta) (scene/file_format/resolve_couplings.py).
 """
 
 from __future__ import annotations
@@ -20,70 +25,77 @@ from collections.abc import Sequence
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.multibody.mechanism.couplings import Coordinate, CoupledRow
-from heuncli.multibody.mechanism.gearing import GearMember, line_on, members, mesh_parts
+from heuncli.multibody.mechanism.gearing import GearMember, find_gears, joint_line, mesh_parts
 from heuncli.multibody.mechanism.model import Body, Joint, ThreadLoad
 from heuncli.scene.file_format import couplings as c
-from heuncli.scene.shapes.rotations import cross
+from heuncli.scene.shapes.rotations import cross_vectors
 
 
-def screw_row(given: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]) -> CoupledRow:
-    """The condition of a thread; of: the joint that turns and the one that slides, or a cylinder twice.
+def screw_row(
+    entry: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], joint_pair: tuple[int, int]
+) -> CoupledRow:
+    """Make the condition of a thread; joint_pair: the joint that turns and the one that slides, or a cylinder twice.
 
     Raises Finding.
     """
-    by = given.lead / math.tau
-    if of[0] == of[1]:
-        joint = joints[of[0]]
+    lead_per_radian = entry.lead / math.tau
+    if joint_pair[0] == joint_pair[1]:
+        joint = joints[joint_pair[0]]
         if joint.kind != "cylinder":
             raise Finding("screw-joints", f"joint {joint.name} is a {joint.kind}",
                           "a thread is in a cylinder, or between a pin and a slide: of: [spindle, nut]")  # fmt: skip
-        counted = [Coordinate(of[0], "travel", 1.0), Coordinate(of[0], "angle", -by)]
-        return CoupledRow(mesh_parts(joint.a, joint.b, joint.a, joint.p, joint.axis, -by * joint.axis, counted))
-    carrier, spindle, nut = spindle_and_nut(joints, bodies, of)
-    skew = cross(spindle.axis, nut.axis)
+        coordinates = [Coordinate(joint_pair[0], "travel", 1.0), Coordinate(joint_pair[0], "angle", -lead_per_radian)]
+        return CoupledRow(
+            mesh_parts(joint.a, joint.b, joint.a, joint.p, joint.axis, -lead_per_radian * joint.axis, coordinates)
+        )
+    carrier, spindle, nut = find_spindle_and_nut(joints, bodies, joint_pair)
+    skew = cross_vectors(spindle.axis, nut.axis)
     if float(skew @ skew) > tolerances.TYPED_AXES**2:
         raise Finding("screw-joints", "the nut does not slide along the axis of the spindle", "correct the axes")
-    counted = [Coordinate(x.joint, x.quantity, x.ratio * nut.sign) for x in nut.coordinates]
-    counted += [Coordinate(x.joint, x.quantity, -by * x.ratio * spindle.sign) for x in spindle.coordinates]
-    f, m = nut.sign * nut.axis, by * spindle.sign * spindle.axis
-    if spindle.along is not None:  # a spindle that slides takes its thread with it
-        counted.append(Coordinate(spindle.along.joint, "travel", -float(f @ spindle.axis) * spindle.along.ratio))
-    return CoupledRow(mesh_parts(spindle.body, nut.body, carrier, spindle.point, f, m, counted))
+    coordinates = [Coordinate(x.joint, x.quantity, x.ratio * nut.sign) for x in nut.coordinates]
+    coordinates += [
+        Coordinate(x.joint, x.quantity, -lead_per_radian * x.ratio * spindle.sign) for x in spindle.coordinates
+    ]
+    f, m = nut.sign * nut.axis, lead_per_radian * spindle.sign * spindle.axis
+    if spindle.travel is not None:  # a spindle that slides takes its thread with it
+        coordinates.append(Coordinate(spindle.travel.joint, "travel", -float(f @ spindle.axis) * spindle.travel.ratio))
+    return CoupledRow(mesh_parts(spindle.body, nut.body, carrier, spindle.point, f, m, coordinates))
 
 
-def spindle_and_nut(
-    joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
+def find_spindle_and_nut(
+    joints: Sequence[Joint], bodies: Sequence[Body], joint_pair: tuple[int, int]
 ) -> tuple[int, GearMember, GearMember]:
-    """The carrier of both, what turns in it, and what slides. Raises Finding."""
-    carrier, first, second = members(joints, bodies, of)
+    """Return the carrier of both, the body that turns in it, and the body that slides. Raises Finding."""
+    carrier, first, second = find_gears(joints, bodies, joint_pair)
     if first.turns == second.turns:
         raise Finding("screw-joints", "of the two joints one has to turn and the other to slide",
                       "name a pin and a slide; two that turn are a gear, two that slide a ratio")  # fmt: skip
     return (carrier, first, second) if first.turns else (carrier, second, first)
 
 
-def friction_of(
+def thread_friction(
     name: str,
     coupling: int,
-    given: c.Screw,
-    rubs: c.ThreadFriction,
+    entry: c.Screw,
+    friction: c.ThreadFriction,
     joints: Sequence[Joint],
     bodies: Sequence[Body],
-    of: tuple[int, int],
+    joint_pair: tuple[int, int],
 ) -> ThreadLoad:
-    """What rubs in a thread, ON the spindle, or in a cylinder ON its `to`; of: as of its condition, which there is.
+    """Make the friction in a thread, ON the spindle, or in a cylinder ON its `to`; joint_pair as in `screw_row`,
+    checked there.
 
-    The thread holds the sliding of b as seen from a at `rise` times its turning about the axis: the force along the
-    axis is rise / r^2 times the torque, which is against the turning.
+    The thread holds the sliding of b relative to a at `rise` times its rotation about the axis: the axial force is rise
+    / r^2 times the torque, which acts against the rotation.
     """
-    by, torque = given.lead / math.tau, rubs.coefficient * rubs.radius
-    if of[0] == of[1]:
-        joint = joints[of[0]]
-        a, b, q, axis, rise = joint.a, joint.b, joint.q, joint.axis, by
+    lead_per_radian, torque = entry.lead / math.tau, friction.coefficient * friction.radius
+    if joint_pair[0] == joint_pair[1]:
+        joint = joints[joint_pair[0]]
+        a, b, q, axis, rise = joint.a, joint.b, joint.q, joint.axis, lead_per_radian
     else:
-        _, spindle, nut = spindle_and_nut(joints, bodies, of)
+        _, spindle, nut = find_spindle_and_nut(joints, bodies, joint_pair)
         a, b = nut.body, spindle.body
         turning, sliding = (joints[member.coordinates[0].joint] for member in (spindle, nut))
-        q, axis = line_on(turning, bodies, b)[0], line_on(sliding, bodies, a)[1]
-        rise = -by * spindle.sign * nut.sign * float(spindle.axis @ nut.axis)
-    return ThreadLoad(name, coupling, a, b, q, axis, torque, rise / rubs.radius**2, rubs.speed)
+        q, axis = joint_line(turning, bodies, b)[0], joint_line(sliding, bodies, a)[1]
+        rise = -lead_per_radian * spindle.sign * nut.sign * float(spindle.axis @ nut.axis)
+    return ThreadLoad(name, coupling, a, b, q, axis, torque, rise / friction.radius**2, friction.speed)

@@ -1,4 +1,4 @@
-"""The steps of reduction, one after the other: each makes the scene that the one before it left smaller still."""
+"""Apply the steps of reduction one after the other; each one reduces the scene that the previous one has made."""
 
 from __future__ import annotations
 
@@ -7,50 +7,50 @@ from importlib import import_module
 
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.reduction.model import Reduced, Reduction
-from heuncli.multibody.stages import ANEW, Stages
+from heuncli.multibody.reduction.model import ReducedScene, Reduction
+from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.prepare import PreparedScene
 
 
-def any_alike(scene: PreparedScene) -> bool:
-    """Whether a joint bends in any plane, and so is none of a flat scene."""
-    return any(JOINTS[joint.kind].turns_alike for joint in scene.mechanism.joints)
+def has_constant_velocity_joint(scene: PreparedScene) -> bool:
+    """Whether the scene has a constant-velocity joint, which may bend in any plane, so that the scene is not flat."""
+    return any(JOINTS[joint.kind].is_constant_velocity for joint in scene.mechanism.joints)
 
 
-# in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
+# in their order: the module in this package whose `step` it is, and whether it may apply to a scene
 STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
     ("welded_bodies", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
     ("immobile_bodies", lambda scene: any(k < len(scene.mechanism.joints) for k in scene.layout.rows)),
     ("spins", lambda scene: bool(scene.layout.bodies["ball"].any())),
-    ("plane.step", lambda scene: bool(scene.mechanism.bodies) and not any_alike(scene)),
+    ("plane.step", lambda scene: bool(scene.mechanism.bodies) and not has_constant_velocity_joint(scene)),
 )
 
 
-def whole(mechanism: Mechanism) -> list[str]:
-    """Why a scene is moved as it is given, in sentences; none where it may be made smaller."""
-    why = []
-    if mechanism.rubbing:
-        why.append("friction hangs on what joints carry, and in a smaller scene they carry less")
-    if any(own.stretched is not None for own in mechanism.couplings):
-        why.append("ropes that stretch pull at bodies that a smaller scene might be without")
-    return [f"the scene is moved as it is given: {reason}" for reason in why]
+def reasons_against_reduction(mechanism: Mechanism) -> list[str]:
+    """Return the reasons why a scene must not be reduced, as sentences; empty if it may be."""
+    reasons = []
+    if mechanism.joint_friction:
+        reasons.append("friction hangs on what joints carry, and in a smaller scene they carry less")
+    if any(coupling.stretched_row is not None for coupling in mechanism.couplings):
+        reasons.append("ropes that stretch pull at bodies that a smaller scene might be without")
+    return [f"the scene is moved as it is given: {reason}" for reason in reasons]
 
 
-def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:
-    """The smallest scene that moves as this one does; stages: each step is one."""
-    if reasons := whole(scene.mechanism):
-        return Reduced((), tuple(reasons))
+def reduce(scene: PreparedScene, stages: Stages = NO_CACHE) -> ReducedScene:
+    """Find the smallest scene that moves as this one does; each step is a stage."""
+    if reasons := reasons_against_reduction(scene.mechanism):
+        return ReducedScene((), tuple(reasons))
     steps: list[Reduction] = []
-    kept: list[str] = []
+    exceptions: list[str] = []
     for name, concerns in STEPS:
         if not concerns(scene):
             continue
         step = import_module(f"heuncli.multibody.reduction.{name}").step  # few scenes need it
-        found = stages.run(step, scene)
-        if isinstance(found, Reduction):
-            steps.append(found)
-            kept += found.kept
-            scene = found.scene
+        result = stages.run(step, scene)
+        if isinstance(result, Reduction):
+            steps.append(result)
+            exceptions += result.exceptions
+            scene = result.scene
         else:
-            kept += found
-    return Reduced(tuple(steps), tuple(kept))
+            exceptions += result
+    return ReducedScene(tuple(steps), tuple(exceptions))

@@ -1,9 +1,10 @@
-"""A smaller scene that moves as a larger one does: what is integrated in its place.
+"""A smaller scene that moves as a larger one does, and is integrated in its place.
 
     y = embed(t, y'),   y' = restrict(t, y)        states of the larger and of the smaller scene
-The smaller scene has the same loads, drives, blows, stops and contacts, in the same order, so that the branches of
-expressions and what is held mean the same in both; a load whose body is part of the ground acts on the ground. It has
-the same size, so that tolerances mean the same. What is told of an instant comes from the larger scene, at y.
+
+The smaller scene has the same loads, drives, impulses, stops and contacts, in the same order, so that the branches of
+expressions and the closed contacts mean the same in both; a load whose body is part of the ground acts on the ground.
+It has the same size, so that tolerances mean the same. Results at an instant are computed from the larger scene, at y.
 """
 
 from __future__ import annotations
@@ -19,10 +20,11 @@ from heuncli.results.results import Array
 class Reduction:
     """One step to a smaller scene.
 
-    embed: instants (n_t,) and states (n_t, n') of the smaller scene to those of the larger, (n_t, n); restrict: an
-    instant and a state (n,) of the larger one to that of the smaller, (n',). told: what was left out, why that changes
-    nothing; hidden: what cannot be told from the smaller scene; kept: what might have been left out, and was not;
-    sentences.
+    embed: maps instants (n_t,) and states (n_t, n') of the smaller scene to those of the larger, (n_t, n)
+    restrict: maps an instant and a state (n,) of the larger scene to that of the smaller, (n',)
+    explanations: sentences on what was left out, and why that changes nothing
+    limitations: sentences on what the smaller scene cannot show
+    exceptions: sentences on what might have been left out, and was not
     """
 
     scene: PreparedScene
@@ -34,33 +36,33 @@ class Reduction:
 
 
 @record
-class Reduced:
-    """The smallest scene that was found, and what stands between its states and those of the scene as it is given.
+class ReducedScene:
+    """The smallest scene that was found, as the steps that lead to it from the given scene.
 
-    kept: why what a reader might expect to be left out was not; sentences.
+    exceptions: sentences why parts that a reader might expect to be left out were not
     """
 
     steps: tuple[Reduction, ...]
     kept: tuple[str, ...]
 
     @property
-    def told(self) -> tuple[str, ...]:
-        """What was left out, and why that changes nothing."""
-        return tuple(sentence for step in self.steps for sentence in step.told)
+    def explanations(self) -> tuple[str, ...]:
+        """Sentences on what was left out, and why that changes nothing."""
+        return tuple(sentence for step in self.steps for sentence in step.explanations)
 
     @property
-    def hidden(self) -> tuple[str, ...]:
-        """What cannot be told from the smaller scene."""
-        return tuple(sentence for step in self.steps for sentence in step.hidden)
+    def limitations(self) -> tuple[str, ...]:
+        """Sentences on what the smaller scene cannot show."""
+        return tuple(sentence for step in self.steps for sentence in step.limitations)
 
     def embed(self, times: Array, states: Array) -> Array:
-        """States of the scene as it is given, (n_t, n), from those of the smallest."""
+        """Map states of the smallest scene to those of the given scene, (n_t, n)."""
         for step in reversed(self.steps):
             states = step.embed(times, states)
         return states
 
     def restrict(self, t: float, state: Array) -> Array:
-        """A state of the smallest scene from one of the scene as it is given."""
+        """Map a state of the given scene to one of the smallest."""
         for step in self.steps:
             state = step.restrict(t, state)
         return state

@@ -1,9 +1,10 @@
-"""A scene in which bodies are part of others, or of the ground: the same tree, joints and loads, seen from there.
+"""Make a scene in which bodies are part of others, or of the ground: the same tree, joints and loads in the new axes.
 
     x_S = R_SB x_B + p_SB        a point of body B in the axes of the body S, or of the ground, that it is part of
+
 A joint's axes turn with its body, and so does the attitude at which its angle is zero: R_ref' = R_SA R_ref R_SB^T, so
-that all its coordinates stay what they were; only where a plane's two directions are chosen anew do the coordinates
-along them turn. A joint between two points of one body is gone, and what acts in it acts on the ground.
+that all its coordinates stay what they were; only where a plane's two directions are chosen again do the coordinates
+along them turn. A joint between two points of one body is dropped, and loads in it act on the ground.
 """
 
 from __future__ import annotations
@@ -31,171 +32,188 @@ from heuncli.multibody.mechanism.model import (
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.pack import lay_out
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.multibody.tree.spanning import Hang, Spanning
-from heuncli.multibody.tree.starts import GivenTree, JointStart
+from heuncli.multibody.tree.spanning import SpanningTree, TreeLink
+from heuncli.multibody.tree.starts import JointStart, PresetTree
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 
 
 @record
-class PlaceInBody:
-    """Where a body stands in what it is part of: that body (-1: the ground), its attitude R and origin p there."""
+class BodyPlacement:
+    """The placement of a body in the one that it is part of: that body (-1: the ground), its attitude R and origin p
+    there.
+    """
 
     body: int
     R: Array
     p: Array
 
-    def point(self, x: Array) -> Array:
-        """A point of the body."""
+    def transform_point(self, x: Array) -> Array:
+        """Transform a point of the body."""
         return np.asarray(self.R @ x + self.p)
 
-    def holds(self, inner: PlaceInBody) -> PlaceInBody:
-        """Where a body stands that stands so in this one."""
-        return PlaceInBody(self.body, self.R @ inner.R, self.point(inner.p))
+    def compose(self, inner: BodyPlacement) -> BodyPlacement:
+        """Return the placement of a body that is placed in this one."""
+        return BodyPlacement(self.body, self.R @ inner.R, self.transform_point(inner.p))
 
 
-WHOLE = PlaceInBody(GROUND, np.eye(3), np.zeros(3))  # the ground in itself
+GROUND_PLACEMENT = BodyPlacement(GROUND, np.eye(3), np.zeros(3))  # the ground in itself
 
 
 @record
-class Parts:
-    """Of each body what it is part of, by its number in the larger scene; roots: the bodies that are not in others.
+class BodyParts:
+    """The placement of each body in the one that it is part of, by its number in the larger scene.
 
-    A part's body is numbered as in the larger scene.
+    roots: the bodies that are not part of others
+
+    The bodies of placements are numbered as in the larger scene.
     """
 
-    of: tuple[PlaceInBody, ...]
+    of: tuple[BodyPlacement, ...]
     roots: tuple[int, ...]
 
-    def at(self, body: int) -> PlaceInBody:
-        """Of a body, or of the ground."""
-        return WHOLE if body == GROUND else self.of[body]
+    def get_placement(self, body: int) -> BodyPlacement:
+        """Return the placement of a body, or of the ground."""
+        return GROUND_PLACEMENT if body == GROUND else self.placements[body]
 
-    def inside(self, joint: Joint) -> bool:
+    def is_internal(self, joint: Joint) -> bool:
         """Whether both ends of a joint are points of one body."""
-        return self.at(joint.a).body == self.at(joint.b).body
+        return self.get_placement(joint.a).body == self.get_placement(joint.b).body
 
-    def holds_all(self, own: Coupling) -> bool:
-        """Whether all that a coupling looks at is of one body."""
-        return len({self.at(i).body for i in own.ends}) == 1
+    def contains_coupling(self, coupling: Coupling) -> bool:
+        """Whether all bodies of a coupling are parts of one body."""
+        return len({self.get_placement(i).body for i in coupling.bodies_and_ground}) == 1
 
 
-def restated(scene: PreparedScene, parts: Parts, bodies: Sequence[Body]) -> PreparedScene:
-    """The scene of those bodies that are roots, in the state in which the larger one starts (but for y0)."""
+def make_smaller_scene(scene: PreparedScene, parts: BodyParts, bodies: Sequence[Body]) -> PreparedScene:
+    """Make the scene of the bodies that are roots, in the state in which the larger one starts (except y0)."""
     mechanism, layout, start = scene.mechanism, scene.layout, scene.start
     number = {old: new for new, old in enumerate(parts.roots)} | {GROUND: GROUND}
-    left = [k for k, joint in enumerate(mechanism.joints) if not parts.inside(joint)]
-    joint_number = {k: n for n, k in enumerate(left)}
+    remaining = [k for k, joint in enumerate(mechanism.joints) if not parts.is_internal(joint)]
+    joint_number = {k: n for n, k in enumerate(remaining)}
     smaller = replace(
         mechanism,
         bodies=tuple(bodies),
-        joints=tuple(joint_of(layout, parts, number, k) for k in left),
-        loads=tuple(load_of(load, parts, number, joint_number) for load in mechanism.loads),
-        blows=tuple(blow_of(blow, parts, number) for blow in mechanism.blows),
+        joints=tuple(restate_joint(layout, parts, number, k) for k in remaining),
+        loads=tuple(restate_load(load, parts, number, joint_number) for load in mechanism.loads),
+        impulses=tuple(restate_impulse(blow, parts, number) for blow in mechanism.impulses),
         stops=tuple(replace(stop, joint=joint_number[stop.joint]) for stop in mechanism.stops),
-        points={name: point_of(point, parts, number) for name, point in mechanism.points.items()},
-        couplings=couplings_of(layout, parts, number, joint_number) if mechanism.couplings else (),
+        points={name: restate_point(point, parts, number) for name, point in mechanism.points.items()},
+        couplings=restate_couplings(layout, parts, number, joint_number) if mechanism.couplings else (),
     )
-    idle = tuple(replace(spin, body=number[spin.body]) for spin in scene.idle if spin.body in number)
+    idle_spins = tuple(replace(spin, body=number[spin.body]) for spin in scene.idle_spins if spin.body in number)
     inertias = np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
-    for spin in idle:
-        inertias[spin.body] += spin.lent
-    own = list(parts.roots)
-    begun = replace(
-        start, position=start.position[own], rotation=start.rotation[own], velocity=start.velocity[own],
-        angular_velocity=start.angular_velocity[own],
+    for spin in idle_spins:
+        inertias[spin.body] += spin.artificial_inertia
+    roots = list(parts.roots)
+    smaller_start = replace(
+        start, position=start.position[roots], rotation=start.rotation[roots], velocity=start.velocity[roots],
+        angular_velocity=start.angular_velocity[roots],
     )  # fmt: skip
-    tree = tree_of(layout, parts, number, joint_number)
-    laid_out = lay_out(smaller, begun, inertias, layout.size, layout.work_at >= 0, tree)
-    return PreparedScene(smaller, begun, idle, laid_out)
+    tree = make_smaller_tree(layout, parts, number, joint_number)
+    laid_out = lay_out(smaller, smaller_start, inertias, layout.size, layout.work_at >= 0, tree)
+    return PreparedScene(smaller, smaller_start, idle_spins, laid_out)
 
 
-def tree_of(layout: Layout, parts: Parts, number: dict[int, int], joint_number: dict[int, int]) -> GivenTree:
-    """The tree of the smaller scene: the larger one's without the bodies that have become part of others."""
-    hangs = [
-        Hang(number[h.body], number[parts.at(h.parent).body], joint_number.get(h.joint, -1), h.reverse)
-        for h in layout.spanning.hangs
-        if h.body in number
+def make_smaller_tree(
+    layout: Layout, parts: BodyParts, number: dict[int, int], joint_number: dict[int, int]
+) -> PresetTree:
+    """Make the tree of the smaller scene: the larger one's without the bodies that have become part of others."""
+    links = [
+        TreeLink(
+            number[link.body],
+            number[parts.get_placement(link.parent).body],
+            joint_number.get(link.joint, -1),
+            link.reverse,
+        )
+        for link in layout.spanning.links
+        if link.body in number
     ]
     cut = tuple(joint_number[k] for k in layout.spanning.cut if k in joint_number)
-    starts = tuple(start_of(layout, parts, k) for k in joint_number)
-    return GivenTree(Spanning(tuple(hangs), cut), starts)
+    starts = tuple(restate_joint_start(layout, parts, k) for k in joint_number)
+    return PresetTree(SpanningTree(tuple(links), cut), starts)
 
 
-def start_of(layout: Layout, parts: Parts, k: int) -> JointStart:
-    """Where a joint stands at the start, its attitude between what its bodies are part of."""
+def restate_joint_start(layout: Layout, parts: BodyParts, k: int) -> JointStart:
+    """Return the start of a joint, with its attitude between the bodies that its own are part of."""
     joint, start = layout.mechanism.joints[k], layout.starts[k]
-    return replace(start, R_ref=parts.at(joint.a).R @ start.R_ref @ parts.at(joint.b).R.T)
+    return replace(start, R_ref=parts.get_placement(joint.a).R @ start.R_ref @ parts.get_placement(joint.b).R.T)
 
 
-def joint_of(layout: Layout, parts: Parts, number: dict[int, int], k: int) -> Joint:
-    """A joint between what its bodies are part of; a rod keeps the length that it has."""
+def restate_joint(layout: Layout, parts: BodyParts, number: dict[int, int], k: int) -> Joint:
+    """Return a joint between the bodies that its own are part of; a rod keeps its length."""
     joint = layout.mechanism.joints[k]
-    a, b = parts.at(joint.a), parts.at(joint.b)
+    a, b = parts.get_placement(joint.a), parts.get_placement(joint.b)
     length = joint.length
     if length is None and k in layout.rows:
         row = layout.tables["closures"][layout.rows.index(k)]
         length = float(row["length"]) if row["kind"] == kernel.ROD else None
     return replace(
-        joint, a=number[a.body], p=a.point(joint.p), axis=a.R @ joint.axis,
-        b=number[b.body], q=b.point(joint.q), to_axis=b.R @ joint.to_axis, length=length,
-        path=None if joint.path is None else joint.path.turned(a.R),
+        joint, a=number[a.body], p=a.transform_point(joint.p), axis=a.R @ joint.axis,
+        b=number[b.body], q=b.transform_point(joint.q), to_axis=b.R @ joint.to_axis, length=length,
+        path=None if joint.path is None else joint.path.rotate(a.R),
     )  # fmt: skip
 
 
-def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict[int, int]) -> Load:
-    """A load on what its bodies are part of."""
+def restate_load(load: Load, parts: BodyParts, number: dict[int, int], joint_number: dict[int, int]) -> Load:
+    """Return a load on the bodies that its own are part of."""
     if isinstance(load, PointLoad):
-        part = parts.at(load.body)
-        point = None if load.point is None else part.point(load.point)
-        vector = turned(part, load) if load.in_body else load.vector
+        part = parts.get_placement(load.body)
+        point = None if load.point is None else part.transform_point(load.point)
+        vector = rotate_load(part, load) if load.in_body else load.vector
         return replace(load, body=number[part.body], point=point, vector=vector)
     if isinstance(load, PairLoad):
-        a, b = parts.at(load.a), parts.at(load.b)
-        return replace(load, a=number[a.body], p=a.point(load.p), b=number[b.body], q=b.point(load.q))
-    if isinstance(load, BushingLoad):
-        a, b = parts.at(load.a), parts.at(load.b)
+        a, b = parts.get_placement(load.a), parts.get_placement(load.b)
         return replace(
-            load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,
-            b=number[b.body], q=b.point(load.q), to_frame=b.R @ load.to_frame,
+            load, a=number[a.body], p=a.transform_point(load.p), b=number[b.body], q=b.transform_point(load.q)
+        )
+    if isinstance(load, BushingLoad):
+        a, b = parts.get_placement(load.a), parts.get_placement(load.b)
+        return replace(
+            load, a=number[a.body], p=a.transform_point(load.p), frame=a.R @ load.frame,
+            b=number[b.body], q=b.transform_point(load.q), to_frame=b.R @ load.to_frame,
         )  # fmt: skip
     assert isinstance(load, JointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
-    nothing = Expression.of(0.0)
-    value = load.value if load.kind == "torque" and load.value is not None else nothing
-    return PointLoad(load.name, "couple", GROUND, None, (value, nothing, nothing), False)
+    zero = Expression.from_number(0.0)
+    value = load.value if load.kind == "torque" and load.value is not None else zero
+    return PointLoad(load.name, "couple", GROUND, None, (value, zero, zero), False)
 
 
-def couplings_of(
-    layout: Layout, parts: Parts, number: dict[int, int], joint_number: dict[int, int]
+def restate_couplings(
+    layout: Layout, parts: BodyParts, number: dict[int, int], joint_number: dict[int, int]
 ) -> tuple[Coupling, ...]:
-    """The couplings between what their bodies are part of; no joint whose coordinate they count is inside a body."""
-    from heuncli.multibody.reduction.restated_couplings import SeenFrom, couplings_seen  # few scenes have them
-
-    seen = SeenFrom(
-        body=lambda i: number[parts.at(i).body],
-        joint=lambda k: joint_number[k],
-        point=lambda i, p: parts.at(i).point(np.asarray(p)),
-        direction=lambda i, e: np.asarray(parts.at(i).R @ np.asarray(e)),
+    """Return the couplings between the bodies that theirs are part of; no joint that they count is inside a body."""
+    from heuncli.multibody.reduction.restated_couplings import (  # few scenes have them
+        SceneTransform,
+        transform_couplings,
     )
-    return couplings_seen(layout, lambda own: seen)
+
+    transform = SceneTransform(
+        body=lambda i: number[parts.get_placement(i).body],
+        joint=lambda k: joint_number[k],
+        point=lambda i, p: parts.get_placement(i).transform_point(np.asarray(p)),
+        direction=lambda i, e: np.asarray(parts.get_placement(i).R @ np.asarray(e)),
+    )
+    return transform_couplings(layout, lambda own: transform)
 
 
-def turned(part: PlaceInBody, load: PointLoad) -> tuple[Expression, Expression, Expression]:
-    """The components of a load that is fixed in a body in the axes of what it is part of.
+def rotate_load(part: BodyPlacement, load: PointLoad) -> tuple[Expression, Expression, Expression]:
+    """Return the components of a body-fixed load in the axes of the body that its own is part of.
 
-    What is not constant can stand in the same axes only, or on the ground, which it does not move (`bound_to_axes`).
+    A load that varies can only be expressed in the same axes, or on the ground, which it does not move
+    (`bodies_with_varying_loads`).
     """
     constants = [value.constant for value in load.vector]
     if None in constants or np.array_equal(part.R, np.eye(3)):
         return load.vector
     x, y, z = (part.R @ np.array(constants, dtype=float)).tolist()
-    return Expression.of(x), Expression.of(y), Expression.of(z)
+    return Expression.from_number(x), Expression.from_number(y), Expression.from_number(z)
 
 
-def bound_to_axes(mechanism: Mechanism) -> set[int]:
-    """The bodies with loads that vary and are fixed in their axes: only in those can such loads be stated."""
+def bodies_with_varying_loads(mechanism: Mechanism) -> set[int]:
+    """Return the bodies with loads that vary and are fixed in their axes: such loads can only be expressed in these."""
     return {
         load.body
         for load in mechanism.loads
@@ -203,15 +221,15 @@ def bound_to_axes(mechanism: Mechanism) -> set[int]:
     }
 
 
-def point_of(point: NamedPoint, parts: Parts, number: dict[int, int]) -> NamedPoint:
-    """A point that expressions name on what its body is part of."""
-    part = parts.at(point.body)
-    return replace(point, body=number[part.body], place=part.point(point.place))
+def restate_point(point: NamedPoint, parts: BodyParts, number: dict[int, int]) -> NamedPoint:
+    """Return a point that expressions use, on the body that its own is part of."""
+    part = parts.get_placement(point.body)
+    return replace(point, body=number[part.body], place=part.transform_point(point.place))
 
 
-def blow_of(blow: Blow, parts: Parts, number: dict[int, int]) -> Blow:
-    """A blow on what its body is part of."""
-    part = parts.at(blow.body)
-    point = None if blow.point is None else part.point(blow.point)
-    vector = part.R @ blow.vector if blow.in_body else blow.vector
-    return replace(blow, body=number[part.body], point=point, vector=vector)
+def restate_impulse(impulse: Blow, parts: BodyParts, number: dict[int, int]) -> Blow:
+    """Return an impulse on the body that its own is part of."""
+    part = parts.get_placement(impulse.body)
+    point = None if impulse.point is None else part.transform_point(impulse.point)
+    vector = part.R @ impulse.vector if impulse.in_body else impulse.vector
+    return replace(impulse, body=number[part.body], point=point, vector=vector)

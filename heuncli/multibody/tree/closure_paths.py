@@ -1,7 +1,7 @@
-"""Where the numbers of each closure row stand: the bodies on its path, the answers these make, what fills it.
+"""Index the numbers of each closure row: the bodies on its path, their answers, and the fill-in.
 
 A row of the closure Jacobian has numbers for the freedoms of the bodies on its path, which is between its two ends and
-the ground. Taking earlier rows out of it fills in those of the bodies that they reach.
+the ground. Eliminating earlier rows from it fills in those of the bodies that they reach.
 """
 
 from __future__ import annotations
@@ -9,19 +9,22 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 
-from heuncli.multibody.tree.rows import BodyRow, ClosurePlaces
+from heuncli.multibody.tree.rows import BodyRow, ClosureIndices
 
 
-def places_of(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[list[ClosurePlaces], array[int], int]:
-    """Of each closure row, by its path, where its indices stand; these indices; how long all columns are together.
+def index_rows(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[list[ClosureIndices], array[int], int]:
+    """Return, for each closure row by its path, where its indices are; these indices; and the total length of all
+    columns.
 
-    paths: places in the tree, tips first. Rows of one path share their indices.
+    paths: tree indices, tips first
+
+    Rows with the same path share their indices.
     """
     indices = array("i")
     shared: dict[tuple[int, ...], tuple[int, int, int, int]] = {}
-    places: list[ClosurePlaces] = []
+    places: list[ClosureIndices] = []
     column = 0
-    coupled, filled = fill_in(paths)
+    coupled, filled = find_fill_in(paths)
 
     def put(data: Sequence[int]) -> int:
         indices.extend(data)
@@ -35,7 +38,7 @@ def places_of(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[li
             shared[key] = put(path), put(answers + more), len(answers), len(answers) + len(more)
         path_at, answers_at, count, filled_count = shared[key]
         places.append(
-            ClosurePlaces(
+            ClosureIndices(
                 path=path_at,
                 path_count=len(path),
                 column=column,
@@ -51,11 +54,11 @@ def places_of(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[li
     return places, indices, column
 
 
-def fill_in(paths: Sequence[list[int]]) -> tuple[list[list[int]], list[list[int]]]:
-    """For each row the earlier rows (and itself) that may fill it when they are taken out of it, and what they fill.
+def find_fill_in(paths: Sequence[list[int]]) -> tuple[list[list[int]], list[list[int]]]:
+    """Return for each row the earlier rows (and itself) whose elimination may fill it, and the bodies that they fill.
 
-    A row meets the earlier ones whose bodies are on its path, or on what those have filled. Filled are the bodies that
-    are not on its own path, tips first.
+    A row meets the earlier ones whose bodies are on its path, or among those filled before. Filled bodies are those not
+    on its own path, tips first.
     """
     group: dict[int, int] = {}  # body -> the group of rows that reaches it
     rows: dict[int, list[int]] = {}
@@ -63,17 +66,17 @@ def fill_in(paths: Sequence[list[int]]) -> tuple[list[list[int]], list[list[int]
     coupled: list[list[int]] = []
     filled: list[list[int]] = []
     for r, path in enumerate(paths):
-        met = sorted({group[i] for i in path if i in group})
-        into = met[0] if met else r
-        rows.setdefault(into, [])
-        bodies.setdefault(into, set())
-        for other in met[1:]:
-            rows[into] += rows.pop(other)
-            bodies[into] |= bodies.pop(other)
-        rows[into].append(r)
-        bodies[into] |= set(path)
-        for i in bodies[into]:
-            group[i] = into
-        coupled.append(sorted(rows[into]))
-        filled.append(sorted(bodies[into] - set(path), reverse=True))
+        met_groups = sorted({group[i] for i in path if i in group})
+        target = met_groups[0] if met_groups else r
+        rows.setdefault(target, [])
+        bodies.setdefault(target, set())
+        for other in met_groups[1:]:
+            rows[target] += rows.pop(other)
+            bodies[target] |= bodies.pop(other)
+        rows[target].append(r)
+        bodies[target] |= set(path)
+        for i in bodies[target]:
+            group[i] = target
+        coupled.append(sorted(rows[target]))
+        filled.append(sorted(bodies[target] - set(path), reverse=True))
     return coupled, filled

@@ -1,4 +1,4 @@
-"""The closure rows of couplings: sums of conditions of two bodies, which the kernel has in a table of their own."""
+"""The closure rows of couplings: sums of conditions of two bodies, which the kernel keeps in a table of their own."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.multibody.mechanism.model import Assembly
 from heuncli.multibody.tree.rows import ZERO, ClosureRow, Program, Vector
-from heuncli.multibody.tree.starts import pose
+from heuncli.multibody.tree.starts import body_state
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
@@ -19,16 +19,18 @@ KINDS = {
     "cam": kernel.CAM, "strand": kernel.STRAND, "arc": kernel.ARC, "wound": kernel.WOUND,
 }  # fmt: skip
 
-InTree = Callable[[int], int]  # a body's place in the tree
+TreeIndex = Callable[[int], int]  # a body's place in the tree
 Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
 
 
-def part_row(
-    part: CouplingPart, first: int, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+def make_part_row(
+    part: CouplingPart, first: int, in_tree: TreeIndex, relative: Relative, freedoms: Mapping[tuple[int, str], int]
 ) -> ClosureRow:
-    """A condition of two bodies as the kernel's part; first: its row's first; freedoms: of the joints' coordinates."""
-    counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
-    (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
+    """Make the kernel's row for a condition of two bodies; first: its row's first part; freedoms: of the joints'
+    coordinates.
+    """
+    coordinates = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
+    (freedom, ratio), (freedom_b, ratio_b) = [*coordinates, (0, 0.0), (0, 0.0)][:2]
     return ClosureRow(
         kind=KINDS[part.kind],
         a=in_tree(part.a),
@@ -49,8 +51,8 @@ def part_row(
     )
 
 
-def with_lift(row: ClosureRow, part: CouplingPart, first: int, relative: Relative) -> ClosureRow:
-    """The row of a cam with its lift, the first piece of which stands there; of any other part as it is."""
+def add_lift(row: ClosureRow, part: CouplingPart, first: int, relative: Relative) -> ClosureRow:
+    """Add the lift to the row of a cam, where its first piece is at `first`; other parts are returned unchanged."""
     cam = part.cam
     if cam is None:
         return row
@@ -61,26 +63,26 @@ def with_lift(row: ClosureRow, part: CouplingPart, first: int, relative: Relativ
     )  # fmt: skip
 
 
-def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
-    """The sum of the parts' gaps at the start; coordinates: of the joints there."""
-    return sum(part.factor * _gap(part, start, coordinates) for part in row.parts)
+def assembled_length(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    """Sum of the parts' gaps at the start; coordinates: of the joints there."""
+    return sum(part.factor * _part_gap(part, start, coordinates) for part in row.parts)
 
 
-def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
-    if part.holds_speed:
+def _part_gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    if part.constrains_speed:
         return 0.0
     if part.coordinates:
         return sum(x.ratio * coordinates[x.joint, x.quantity] for x in part.coordinates)
-    xa, Ra, _, _ = pose(start, part.a)
-    xb, Rb, _, _ = pose(start, part.b)
+    xa, Ra, _, _ = body_state(start, part.a)
+    xb, Rb, _, _ = body_state(start, part.b)
     D, e = xb + Rb @ part.q - xa - Ra @ part.p, Ra @ part.e
     if part.kind == "rod":
         return math.sqrt(float(D @ D))
     return float(e @ (Rb @ part.g if part.kind == "dot" else D))
 
 
-def sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> ClosureRow:
-    """The row that is the sum of its parts, from the first of them on; program: what its length has besides in time."""
+def make_sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> ClosureRow:
+    """Make the row that is the sum of its parts, from the first one on; program: added to its length in time."""
     return ClosureRow(
         kind=kernel.SUM,
         a=-1,
@@ -95,6 +97,6 @@ def sum_row(row: CoupledRow, length: float, first: int, size: float, program: Pr
     )
 
 
-def ends(row: CoupledRow) -> set[int]:
-    """The bodies that the row's load acts on."""
+def loaded_bodies(row: CoupledRow) -> set[int]:
+    """Return the bodies that the row's load acts on."""
     return {i for part in row.parts for i in (part.a, part.b)} - {GROUND}

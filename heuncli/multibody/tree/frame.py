@@ -1,4 +1,4 @@
-"""What of a layout hangs on no value of a load: the tree, its rows, the start."""
+"""The part of a layout that does not depend on the value of any load: the tree, its rows, the start."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from heuncli.base.records import fields, record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.multibody.tree.layout import Contact, Freedom, Island, Layout
-from heuncli.multibody.tree.rows import VariableRow, table_of
-from heuncli.multibody.tree.spanning import Spanning
+from heuncli.multibody.tree.rows import VariableRow, make_kernel_table
+from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
@@ -21,12 +21,12 @@ from heuncli.scene.expressions.programs import Pack
 
 @record
 class LayoutFrame:
-    """A layout without its mechanism, its programs and its tables of loads, of what is watched, and of variables.
+    """A layout without its mechanism, its programs and its tables of loads, of watched values, and of variables.
 
-    The fields are those of Layout; indices as an array, which can be locked.
+    The fields are those of Layout; indices as an array, which can be made read-only.
     """
 
-    spanning: Spanning
+    spanning: SpanningTree
     place: dict[int, int]
     reference: Array
     freedoms: tuple[Freedom, ...]
@@ -48,36 +48,38 @@ class LayoutFrame:
     flat: bool
 
     def relative(self, body: int, point: Array) -> Array:
-        """A body's point from its joint point, body axes; a ground point as it is."""
+        """Return a body's point relative to its joint point, body axes; a ground point is returned unchanged."""
         return point if body == GROUND else point - self.reference[self.place[body]]
 
     def in_tree(self, body: int) -> int:
-        """A body's place in the tree."""
+        """Return a body's index in the tree."""
         return body if body == GROUND else self.place[body]
 
 
-def frame_of(layout: Layout) -> LayoutFrame:
-    """What stands of a layout without loads."""
-    own = {name: getattr(layout, name) for name in LayoutFrame.__annotations__}
-    return LayoutFrame(**own | {"indices": np.array(layout.indices)})
+def make_frame(layout: Layout) -> LayoutFrame:
+    """Return the part of a layout that does not depend on loads."""
+    values = {name: getattr(layout, name) for name in LayoutFrame.__annotations__}
+    return LayoutFrame(**values | {"indices": np.array(layout.indices)})
 
 
-def layout_of(frame: LayoutFrame, mechanism: Mechanism, pack: Pack, loads: dict[str, Table]) -> Layout:
-    """A layout of a frame; pack: the programs; loads: the tables that a frame is without."""
-    own = fields(frame) | {"indices": array("i", frame.indices.tobytes()), "tables": frame.tables | loads}
-    return Layout(mechanism=mechanism, pack=pack, **own)
+def make_layout(frame: LayoutFrame, mechanism: Mechanism, pack: Pack, loads: dict[str, Table]) -> Layout:
+    """Make a layout from a frame; pack: the programs; loads: the tables that a frame does not have."""
+    values = fields(frame) | {"indices": array("i", frame.indices.tobytes()), "tables": frame.tables | loads}
+    return Layout(mechanism=mechanism, pack=pack, **values)
 
 
-def without_loads(layout: Layout) -> Layout:
-    """A layout with the tables of a scene to which no load is applied, and in which no condition is watched."""
-    return replace(layout, tables=layout.tables | no_loads())
+def remove_loads(layout: Layout) -> Layout:
+    """Return a layout with the tables of a scene without loads and watched conditions."""
+    return replace(layout, tables=layout.tables | empty_load_tables())
 
 
 @cache
-def no_loads() -> dict[str, Table]:
-    """Tables that a frame is without, of a scene without loads: the time is a variable of all of them."""
+def empty_load_tables() -> dict[str, Table]:
+    """Return the tables that a frame does not have, for a scene without loads: the time is a variable of all of
+    them.
+    """
     return {
-        "loads": table_of(kernel.Load, []),
-        "variables": table_of(kernel.Variable, [VariableRow()]),
-        "watches": table_of(kernel.Watch, []),
+        "loads": make_kernel_table(kernel.Load, []),
+        "variables": make_kernel_table(kernel.Variable, [VariableRow()]),
+        "watches": make_kernel_table(kernel.Watch, []),
     }

@@ -1,4 +1,4 @@
-"""Which closure rows hold a speed and no pose: those of wheels that roll."""
+"""Find the closure rows that constrain a speed and no pose: those of rolling wheels."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from heuncli.results.results import Mask
 SPEEDS = (kernel.ROLLS, kernel.ROLLS_ASIDE, kernel.BALL_ROLLS)
 
 
-def holds_speed(layout: Layout) -> Mask:
-    """(rows,): a wheel's row is the sum of one part."""
+def find_speed_rows(layout: Layout) -> Mask:
+    """Return which rows constrain a speed, (rows,); a wheel's row is the sum of one part."""
     closures, parts = layout.tables["closures"], layout.tables["parts"]
     sums = closures["kind"] == kernel.SUM
-    found = np.zeros(len(closures), dtype=bool)
-    found[sums] = np.isin(parts["kind"][closures["part"][sums]], SPEEDS)
-    return found
+    is_speed = np.zeros(len(closures), dtype=bool)
+    is_speed[sums] = np.isin(parts["kind"][closures["part"][sums]], SPEEDS)
+    return is_speed

@@ -1,9 +1,9 @@
-"""Spins that no law determines: thin rods and point masses held and loaded on their own axis only.
+"""Find spins that no law determines: of thin rods and point masses that are held and loaded on their own axis only.
 
-Balls hold no spin, other joints none about an axis of theirs, but where they tell its angle it has to be determined.
-Such a spin is harmless: accelerations and reactions do not depend on it (manual/theory.md, "Thin rods"). For the motion
-the body is given some inertia about that axis and no spin; a moment about it would have no answer and is looked for
-afterwards.
+Balls do not hold a spin, other joints do not hold one about an axis of theirs; but where they measure its angle it must
+be determined. Such a spin is harmless: accelerations and reactions do not depend on it (manual/theory.md, "Thin rods").
+For the motion the body gets an artificial inertia about that axis and no spin; a moment about it would have no solution
+and is searched for afterwards.
 """
 
 from __future__ import annotations
@@ -21,42 +21,43 @@ Z = np.array([0.0, 0.0, 1.0])
 
 @record
 class IdleSpin:
-    """A body's axes (body components, (k, 3), k = 1 or 3) of undetermined spin, and the inertia lent to it."""
+    """A body's axes (body components, (k, 3), k = 1 or 3) of undetermined spin, and its artificial inertia."""
 
     body: int
     axes: Array
     lent: Array
 
 
-def idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
-    """The bodies with an undetermined spin."""
-    points, free = attachments(mechanism)
-    found = []
+def find_idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
+    """Find the bodies with an undetermined spin."""
+    points, free = find_attachments(mechanism)
+    spins = []
     for i, body in enumerate(mechanism.bodies):
-        null, largest = without_inertia(body, size)
+        null, largest = find_massless_axes(body, size)
         for axis in free.get(i, ()):
             along = len(null) and float(np.sum(np.square(null @ axis))) >= tolerances.ALONG_SQUARED
             null = axis[None, :] if along else null[:0]
         if i not in free or not len(null):
             continue
         arms = [p - body.center for p in points[i]]
-        far = max(arms, key=lambda d: float(d @ d), default=np.zeros(3))
-        reach = float(np.sqrt(far @ far))
+        farthest = max(arms, key=lambda d: float(d @ d), default=np.zeros(3))
+        reach = float(np.sqrt(farthest @ farthest))
         if reach > tolerances.ON_AXIS * size:
-            n = far / reach
-            off = max(float(np.sqrt(np.sum(np.square(d - (d @ n) * n)))) for d in arms)
-            if off > tolerances.ON_AXIS * size or np.sum(np.square(null @ n)) < tolerances.ALONG_SQUARED:
+            n = farthest / reach
+            distance = max(float(np.sqrt(np.sum(np.square(d - (d @ n) * n)))) for d in arms)
+            if distance > tolerances.ON_AXIS * size or np.sum(np.square(null @ n)) < tolerances.ALONG_SQUARED:
                 continue
             null = n[None, :]
-        lent = max(largest, body.mass * max(reach, tolerances.LENT_REACH * size) ** 2)
-        found.append(IdleSpin(i, null, lent * null.T @ null))
-    return found
+        moment = max(largest, body.mass * max(reach, tolerances.LENT_REACH * size) ** 2)
+        spins.append(IdleSpin(i, null, moment * null.T @ null))
+    return spins
 
 
-def attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int, list[Array]]]:
-    """Of each body the points where joints and forces act, and the only axes about which its joints let it turn.
+def find_attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int, list[Array]]]:
+    """Return for each body the points where joints and forces act, and the only axes about which its joints let it
+    turn.
 
-    A body that a joint holds altogether has no entry among the axes, one on balls alone an empty one. Body axes.
+    A body whose rotation a joint holds has no entry among the axes, one on balls alone an empty entry. Body axes.
     """
     points: dict[int, list[Array]] = {i: [] for i in range(len(mechanism.bodies))}
     free: dict[int, list[Array]] = {i: [] for i in range(len(mechanism.bodies))}
@@ -66,11 +67,11 @@ def attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int,
             if end < 0:
                 continue
             points[end].append(point)
-            if kind.wanders and end == joint.a:
+            if kind.has_moving_contact and end == joint.a:
                 free.pop(end, None)
             elif kind.turns and "angle" not in kind.coordinates and end in free:
                 free[end].append(Z if kind.turns == ("z",) else axis)
-            elif not kind.ball:
+            elif not kind.is_ball:
                 free.pop(end, None)
     for load in mechanism.loads:
         if isinstance(load, PointLoad) and load.kind == "couple":
@@ -79,17 +80,19 @@ def attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int,
             if end >= 0:
                 points[end].append(point)
     for coupling in mechanism.couplings:
-        for part in (part for row in coupling.carriers for part in row.parts if part.turns_its_bodies):
+        for part in (part for row in coupling.loading_rows for part in row.parts if part.constrains_rotation):
             free.pop(part.a, None)
             free.pop(part.b, None)
-    for named in mechanism.points.values():
-        if named.body >= 0:
-            points[named.body].append(named.place)
+    for named_point in mechanism.points.values():
+        if named_point.body >= 0:
+            points[named_point.body].append(named_point.place)
     return points, free
 
 
-def without_inertia(body: Body, size: float) -> tuple[Array, float]:
-    """The principal axes about which a body has no inertia (body components, (k, 3)); its largest moment of inertia."""
+def find_massless_axes(body: Body, size: float) -> tuple[Array, float]:
+    """Return the principal axes about which a body has no inertia (body components, (k, 3)), and its largest moment of
+    inertia.
+    """
     scale = max(float(np.trace(body.inertia)), tolerances.POINT_MASS * body.mass * size * size)
     moments, axes = np.linalg.eigh(body.inertia)
     return axes[:, moments <= tolerances.NO_INERTIA * scale].T, float(moments[-1])

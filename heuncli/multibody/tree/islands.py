@@ -1,6 +1,6 @@
-"""Islands: the closed loops that share bodies. What one loop carries depends on the others of its island, on no more.
+"""Islands: closed loops that share bodies. The loads in a loop depend only on the other loops of its island.
 
-A self-stress lives in one island, so each is looked at alone and measured by its own length.
+A self-stress is within one island, so each is examined alone and scaled by its own length.
 """
 
 from __future__ import annotations
@@ -15,29 +15,31 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import CoupledRow
 from heuncli.multibody.mechanism.model import GROUND
 from heuncli.multibody.tree.layout import Island, Layout
-from heuncli.multibody.tree.rows import IslandRow, table_of
+from heuncli.multibody.tree.rows import IslandRow, make_kernel_table
 from heuncli.results.results import Array
 
 
-def with_islands(layout: Layout) -> Layout:
-    """The layout with its islands, for the kernel, too, which measures rows and freedoms by them."""
-    found = islands(layout)
+def add_islands(layout: Layout) -> Layout:
+    """Add the islands to the layout and to the kernel's tables, where they scale rows and freedoms."""
+    islands_found = find_islands(layout)
     measure = np.zeros(layout.answer_count)
     rows = []
-    for island in found:
+    for island in islands_found:
         measure[island.freedoms] = np.where(island.turns, 1.0 / island.length, 1.0)
         layout.tables["closures"]["measure"][island.rows] = np.where(island.couples, island.length, 1.0)
-        at = len(layout.indices)
+        first_index = len(layout.indices)
         layout.indices.extend(island.rows.tolist() + island.freedoms.tolist())
         n = len(island.rows)
-        rows.append(IslandRow(rows=at, row_count=n, freedoms=at + n, freedom_count=len(island.freedoms)))
-    tables = layout.tables | {"islands": table_of(kernel.Island, rows)}
-    return replace(layout, islands=tuple(found), measure=measure, tables=tables)
+        rows.append(
+            IslandRow(rows=first_index, row_count=n, freedoms=first_index + n, freedom_count=len(island.freedoms))
+        )
+    tables = layout.tables | {"islands": make_kernel_table(kernel.Island, rows)}
+    return replace(layout, islands=tuple(islands_found), measure=measure, tables=tables)
 
 
-def islands(layout: Layout) -> list[Island]:
-    """All islands, in the order of their first rows."""
-    loops = {k: loop_of(layout, k) for k in dict.fromkeys((*layout.spanning.cut, *layout.rows))}
+def find_islands(layout: Layout) -> list[Island]:
+    """Return all islands, in the order of their first rows."""
+    loops = {k: loop_bodies(layout, k) for k in dict.fromkeys((*layout.spanning.cut, *layout.rows))}
     group = {k: k for k in loops}
 
     def root(k: int) -> int:
@@ -55,26 +57,30 @@ def islands(layout: Layout) -> list[Island]:
         rows, bodies = found.setdefault(root(k), ([], set()))
         rows.append(r)
         bodies |= loops[k]
-    return [_island(layout, np.array(rows), sorted(bodies)) for rows, bodies in found.values()]
+    return [_make_island(layout, np.array(rows), sorted(bodies)) for rows, bodies in found.values()]
 
 
-def loop_of(layout: Layout, joint: int) -> set[int]:
-    """Bodies (tree order) around the loop of a cut joint: on the path to one of its ends and not to the other."""
+def loop_bodies(layout: Layout, joint: int) -> set[int]:
+    """Return the bodies (tree order) around the loop of a cut joint: on the path to one of its ends and not to the
+    other.
+    """
     mechanism = layout.mechanism
     if joint >= len(mechanism.joints):
         return set().union(
-            *(loop_of_coupling(layout, row) for row in mechanism.couplings[joint - len(mechanism.joints)].rows)
+            *(coupling_loop_bodies(layout, row) for row in mechanism.couplings[joint - len(mechanism.joints)].rows)
         )
     cut = mechanism.joints[joint]
-    return set(layout.path(cut.a)) ^ set(layout.path(cut.b))
+    return set(layout.path_to_root(cut.a)) ^ set(layout.path_to_root(cut.b))
 
 
-def loop_of_coupling(layout: Layout, row: CoupledRow) -> set[int]:
-    """Bodies whose freedoms a coupling's row may move: of each of its parts those of a loop through its two ends."""
-    return {i for part in row.parts for i in set(layout.path(part.a)) ^ set(layout.path(part.b))}
+def coupling_loop_bodies(layout: Layout, row: CoupledRow) -> set[int]:
+    """Return the bodies whose freedoms a coupling's row may move: for each part those of a loop through its two
+    ends.
+    """
+    return {i for part in row.parts for i in set(layout.path_to_root(part.a)) ^ set(layout.path_to_root(part.b))}
 
 
-def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
+def _make_island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
     freedoms: list[int] = []
     turns: list[bool] = []
     for body in layout.bodies[bodies]:
@@ -91,7 +97,7 @@ def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
 
 
 def is_couple(layout: Layout, r: int) -> bool:
-    """Whether the load of a closure row is a couple, of a sum all of its parts'."""
+    """Whether the load of a closure row is a couple; for a sum, the loads of all its parts."""
     row = layout.tables["closures"][r]
     parts = layout.tables["parts"][row["part"] : row["part"] + row["part_count"]]
     kinds = parts["kind"] if row["kind"] == kernel.SUM else row["kind"]
@@ -99,18 +105,19 @@ def is_couple(layout: Layout, r: int) -> bool:
 
 
 def mean_lever(layout: Layout, joints: Collection[int]) -> float:
-    """Mean distance of the joints' points from the centres of their bodies [m]; without any, the scene's size.
+    """Mean distance of the joints' points from the centres of their bodies [m]; the scene's size if there are none.
 
-    Points on one axis, seen along it, are apart by rounding: measured by that, rounding of their rows held a turn.
+    Distances that are only rounding, such as those of points on one axis seen along it, do not count as a lever: scaled
+    by them, the rounding of the rows would hold a rotation.
     """
     bodies = layout.mechanism.bodies
     count = len(layout.mechanism.joints)
-    of = [layout.mechanism.joints[k] for k in joints if k < count]
+    island_joints = [layout.mechanism.joints[k] for k in joints if k < count]
     parts = [
         part for k in joints if k >= count for row in layout.mechanism.couplings[k - count].rows for part in row.parts
     ]
-    places = [(b, p) for j in of for b, p in ((j.a, j.p), (j.b, j.q))]
-    places += [(b, np.asarray(p)) for part in parts for b, p in part.places]
+    places = [(b, p) for j in island_joints for b, p in ((j.a, j.p), (j.b, j.q))]
+    places += [(b, np.asarray(p)) for part in parts for b, p in part.body_points]
     arms = [p - bodies[b].center for b, p in places if b != GROUND]
     mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
     return mean if mean > tolerances.GAP_ROUNDING * layout.size else layout.size

@@ -1,4 +1,4 @@
-"""Where the coordinates that stops limit stand at the start."""
+"""Check the coordinates that stops limit at the start."""
 
 from __future__ import annotations
 
@@ -7,56 +7,56 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
 from heuncli.multibody.mechanism.model import Assembly, Mechanism, Stop
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.starts import distance
+from heuncli.multibody.tree.starts import point_distance
 
 
-def start_within_limits(layout: Layout, start: Assembly) -> None:
-    """Raise SolveError [beyond-stop] with all stops beyond whose limits the scene starts."""
+def require_within_limits(layout: Layout, start: Assembly) -> None:
+    """Raise SolveError [beyond-stop] with all stops whose limits the start exceeds."""
     mechanism = layout.mechanism
-    found = []
+    problems = []
     for stop in mechanism.stops:
-        value = coordinate(layout, start, stop)
+        value = stop_coordinate(layout, start, stop)
         slack = tolerances.AT_LIMIT * (1.0 if stop.quantity == "angle" else layout.size)
         if stop.low is not None and value < stop.low - slack:
-            found.append(_beyond(mechanism, stop, value, stop.low, "below"))
+            problems.append(_limit_problem(mechanism, stop, value, stop.low, "below"))
         if stop.high is not None and value > stop.high + slack:
-            found.append(_beyond(mechanism, stop, value, stop.high, "above"))
-    if found:
-        raise SolveError(*found)
+            problems.append(_limit_problem(mechanism, stop, value, stop.high, "above"))
+    if problems:
+        raise SolveError(*problems)
 
 
-def coordinate(layout: Layout, start: Assembly, stop: Stop) -> float:
-    """The angle [rad], travel [m] or length [m] that a stop limits, at the start."""
+def stop_coordinate(layout: Layout, start: Assembly, stop: Stop) -> float:
+    """Return the angle [rad], travel [m] or length [m] that a stop limits, at the start."""
     joint = layout.mechanism.joints[stop.joint]
     if stop.quantity == "length":
-        return distance(start, joint)
-    at = layout.starts[stop.joint]
-    return at.angle if stop.quantity == "angle" else at.travel
+        return point_distance(start, joint)
+    joint_start = layout.starts[stop.joint]
+    return joint_start.angle if stop.quantity == "angle" else joint_start.travel
 
 
-def at_rest_on_stops(mechanism: Mechanism, layout: Layout, start: Assembly) -> Mechanism | None:
-    """The mechanism with rates of zero where the ones that were chosen drive what stands at a stop into it.
+def rest_on_stops(mechanism: Mechanism, layout: Layout, start: Assembly) -> Mechanism | None:
+    """Set chosen rates to zero that would drive a body at a stop into it; None if there are none.
 
-    None where there are none such. Rates that are given, or follow from given ones, strike.
+    Rates that are given, or follow from given ones, cause an impact.
     """
-    joints, found = list(mechanism.joints), False
+    joints, has_changed = list(mechanism.joints), False
     for stop in mechanism.stops:
-        joint, at = mechanism.joints[stop.joint], layout.starts[stop.joint]
-        near = tolerances.AT_LIMIT * (1.0 if stop.quantity == "angle" else layout.size)
-        rate, held = (at.rate, joint.rate) if stop.quantity == "angle" else (at.speed, joint.speed)
-        value = coordinate(layout, start, stop)
-        low = stop.low is not None and value <= stop.low + near and rate < 0.0
-        high = stop.high is not None and value >= stop.high - near and rate > 0.0
+        joint, joint_start = mechanism.joints[stop.joint], layout.starts[stop.joint]
+        tolerance = tolerances.AT_LIMIT * (1.0 if stop.quantity == "angle" else layout.size)
+        rate, held = (joint_start.rate, joint.rate) if stop.quantity == "angle" else (joint_start.speed, joint.speed)
+        value = stop_coordinate(layout, start, stop)
+        low = stop.low is not None and value <= stop.low + tolerance and rate < 0.0
+        high = stop.high is not None and value >= stop.high - tolerance and rate > 0.0
         if stop.quantity != "length" and held is None and (low or high):
-            found = True
+            has_changed = True
             joints[stop.joint] = replace(joint, **{"rate" if stop.quantity == "angle" else "speed": 0.0})
-    return replace(mechanism, joints=tuple(joints)) if found else None
+    return replace(mechanism, joints=tuple(joints)) if has_changed else None
 
 
-def _beyond(mechanism: Mechanism, stop: Stop, value: float, limit: float, side: str) -> Problem:
+def _limit_problem(mechanism: Mechanism, stop: Stop, value: float, limit: float, side: str) -> Problem:
     joint = mechanism.joints[stop.joint].name
     unit = "rad" if stop.quantity == "angle" else "m"
     starts = f"{joint}.{stop.quantity} starts at {value:.9g} {unit}"
     message = f"{starts}, {side} the limit {limit:.9g} {unit} of stop {stop.name}"
     return Problem("beyond-stop", message, hint=f"start the joint {joint} within its limits, or change the limits",
-                   about=f"stops.{stop.name}")  # fmt: skip
+                   entry_path=f"stops.{stop.name}")  # fmt: skip

@@ -1,4 +1,4 @@
-"""The tables of a layout's loads, of the values in time that are watched, and of the variables that these name."""
+"""The tables of a layout's loads, of the watched values in time, and of the variables that these use."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from heuncli.multibody.mechanism.model import (
     RopeLoad,
     ThreadLoad,
 )
-from heuncli.multibody.stages import ANEW, Stages
-from heuncli.multibody.tree.frame import LayoutFrame, layout_of, no_loads
+from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.tree.frame import LayoutFrame, empty_load_tables, make_layout
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.rows import NO_PROGRAM, ZERO, LoadRow, Program, VariableRow, WatchRow, table_of
-from heuncli.multibody.tree.tables import Table, flat
+from heuncli.multibody.tree.rows import NO_PROGRAM, ZERO, LoadRow, Program, VariableRow, WatchRow, make_kernel_table
+from heuncli.multibody.tree.tables import Table, flat_dtype
 from heuncli.scene.expressions.programs import LOADS, Expression, Pack, Variable
-from heuncli.scene.shapes.rotations import perpendicular
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
 JOINT_LOADS = {  # of the turning, of the sliding
     "torque": (kernel.TORQUE, kernel.THRUST),
@@ -38,84 +38,90 @@ JOINT_LOADS = {  # of the turning, of the sliding
     "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
 }
 PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
-ONE = (1.0, 0.0, 0.0)  # of friction without a size of its own, by what presses
+ONE = (1.0, 0.0, 0.0)  # of friction that is proportional to a normal force
 Components = tuple[Program, Program, Program]
 
 
 class ValuePrograms(NamedTuple):
-    """The values in time of a mechanism: their pack, and where the program of each stands, by its identity.
+    """The values in time of a mechanism: their pack, and the program of each expression by its identity.
 
-    drives: that of each joint's drive, then of each coupling's law. Theirs come first in the pack: where they stand
-    hangs on no load.
+    drives: of each joint's drive, then of each coupling's law. These come first in the pack, so that their positions do
+    not depend on the loads.
     """
 
     pack: Pack
     at: dict[int, Program]
     drives: tuple[Program, ...]
 
-    def of(self, e: Expression) -> Program:
-        """That of a load's value; none where it does not vary."""
-        return self.at[id(e)] if e.constant is None else NO_PROGRAM
+    def find_program(self, e: Expression) -> Program:
+        """Return the program of a load's value; NO_PROGRAM if it is constant."""
+        return self.by_identity[id(e)] if e.constant is None else NO_PROGRAM
 
-    def more(self, mechanism: Mechanism) -> ValuePrograms:
-        """With those of another mechanism, whose own come after these."""
-        for e in mechanism.expressions():
-            if e.constant is None and id(e) not in self.at:
-                self.at[id(e)] = self.pack.add(e)
-        return self._replace(drives=drives_of(mechanism, self.at))
+    def extend(self, mechanism: Mechanism) -> ValuePrograms:
+        """Add the programs of another mechanism after these."""
+        for e in mechanism.iter_expressions():
+            if e.constant is None and id(e) not in self.by_identity:
+                self.by_identity[id(e)] = self.pack.add(e)
+        return self._replace(drives=drive_programs(mechanism, self.by_identity))
 
 
-def programs_of(mechanism: Mechanism) -> ValuePrograms:
-    """Every expression in time."""
+def make_programs(mechanism: Mechanism) -> ValuePrograms:
+    """Make the programs of every expression in time."""
     pack = Pack()
-    at = {id(law.value): pack.add(law.value) for law in mechanism.laws}
-    drives = drives_of(mechanism, at)
-    at |= {id(e): pack.add(e) for e in applied(mechanism) if e.constant is None}
-    return ValuePrograms(pack, at, drives)
+    by_identity = {id(law.value): pack.add(law.value) for law in mechanism.laws}
+    drives = drive_programs(mechanism, by_identity)
+    by_identity |= {id(e): pack.add(e) for e in applied_expressions(mechanism) if e.constant is None}
+    return ValuePrograms(pack, by_identity, drives)
 
 
-def drives_of(mechanism: Mechanism, at: dict[int, Program]) -> tuple[Program, ...]:
-    """The program of the law of each joint and coupling."""
-    laws = {law.owner: at[id(law.value)] for law in mechanism.laws}
+def drive_programs(mechanism: Mechanism, by_identity: dict[int, Program]) -> tuple[Program, ...]:
+    """Return the program of the law of each joint and coupling."""
+    laws = {law.owner: by_identity[id(law.value)] for law in mechanism.laws}
     return tuple(laws.get(k, NO_PROGRAM) for k in range(len(mechanism.joints) + len(mechanism.couplings)))
 
 
-def applied(mechanism: Mechanism) -> list[Expression]:
-    """The values of the loads, then of the conditions."""
+def applied_expressions(mechanism: Mechanism) -> list[Expression]:
+    """Return the values of the loads, then of the conditions."""
     return [*(e for load in mechanism.loads for e in load.values), *(c.value for c in mechanism.conditions)]
 
 
-def named_in(mechanism: Mechanism) -> frozenset[str]:
-    """The joints and points that these name."""
-    return frozenset(name for e in applied(mechanism) for name, _ in e.uses)
+def find_used_names(mechanism: Mechanism) -> frozenset[str]:
+    """Return the joints and points that these use."""
+    return frozenset(name for e in applied_expressions(mechanism) for name, _ in e.uses)
 
 
-def with_loads(frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms, stages: Stages = ANEW) -> Layout:
-    """The layout of a frame with the loads and conditions of its mechanism; stages: but for their values it is one."""
-    placed = tuple(tuple(programs.of(e) for e in load.values) for load in mechanism.loads)
-    found = stages.run(load_table, mechanism, frame, placed).copy()
-    vector = found["vector"].view(flat(found.dtype["vector"]))
-    for load, rows in mechanism.load_rows():
+def lay_out_loads(
+    frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms, stages: Stages = NO_CACHE
+) -> Layout:
+    """Make the layout of a frame with the loads and conditions of its mechanism; the table without the values is a
+    stage.
+    """
+    load_programs = tuple(tuple(programs.find_program(e) for e in load.values) for load in mechanism.loads)
+    loads = stages.run(make_load_table, mechanism, frame, load_programs).copy()
+    vector = loads["vector"].view(flat_dtype(loads.dtype["vector"]))
+    for load, rows in mechanism.iter_load_rows():
         if isinstance(load, BushingLoad):
             vector[rows] = load.shift.preload, load.turn.preload
             continue
         for i, e in enumerate(load.values):
             vector[rows, i] = 0.0 if e.constant is None else e.constant
-    tables = no_loads() | {"loads": found}
+    tables = empty_load_tables() | {"loads": loads}
     if programs.pack.code:
-        tables["watches"] = table_of(kernel.Watch, watch_rows(mechanism, programs))
+        tables["watches"] = make_kernel_table(kernel.Watch, make_watch_rows(mechanism, programs))
     if len(programs.pack.variables) > 1:
-        tables["variables"] = table_of(kernel.Variable, variable_rows(frame, mechanism, programs.pack.variables))
-    return layout_of(frame, mechanism, programs.pack, tables)
+        tables["variables"] = make_kernel_table(
+            kernel.Variable, make_variable_rows(frame, mechanism, programs.pack.variables)
+        )
+    return make_layout(frame, mechanism, programs.pack, tables)
 
 
-def load_table(mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> Table:
-    """The table of loads without those values that do not vary; programs: of each load's values."""
-    return table_of(kernel.Load, _LoadRows(mechanism, frame, programs).made)
+def make_load_table(mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> Table:
+    """Make the table of loads without constant values; programs: of each load's values."""
+    return make_kernel_table(kernel.Load, _LoadRowBuilder(mechanism, frame, programs).made)
 
 
-class _LoadRows:
-    """Makes the rows of the loads; lives for one call of load_table."""
+class _LoadRowBuilder:
+    """Builds the rows of the loads; used for one call of make_load_table."""
 
     def __init__(self, mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> None:
         self.mechanism, self.frame = mechanism, frame
@@ -125,25 +131,25 @@ class _LoadRows:
             x, y, z = (own + (NO_PROGRAM,) * (3 - len(own)))[:3]
             values = x, y, z
             if isinstance(load, PointLoad):
-                self._point_load(load, values)
+                self._add_point_load(load, values)
             elif isinstance(load, PairLoad):
-                self._pair_load(load, values)
+                self._add_pair_load(load, values)
             elif isinstance(load, BushingLoad):
-                self._bushing(load, own)
+                self._add_bushing(load, own)
             elif isinstance(load, RopeLoad):
-                self._rope(load, values)
+                self._add_rope(load, values)
             elif isinstance(load, ThreadLoad):
-                self._thread(load)
+                self._add_thread(load)
             else:
-                self._joint_load(load, values)
+                self._add_joint_load(load, values)
 
-    def _point_load(self, load: PointLoad, values: Components) -> None:
+    def _add_point_load(self, load: PointLoad, values: Components) -> None:
         q = np.zeros(3) if load.point is None else self.frame.relative(load.body, load.point)
         kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
         body, in_body = self.frame.in_tree(load.body), int(load.in_body)
         self.made.append(LoadRow(kind, GROUND, body, *values, ZERO, in_body=in_body, q=q, factor=load.factor))
 
-    def _pair_load(self, load: PairLoad, values: Components) -> None:
+    def _add_pair_load(self, load: PairLoad, values: Components) -> None:
         self.made.append(
             LoadRow(
                 kernel.SPRING if load.value is None else kernel.ACTUATOR,
@@ -159,18 +165,18 @@ class _LoadRows:
             )
         )
 
-    def _bushing(self, load: BushingLoad, programs: tuple[Program, ...]) -> None:
-        """Two rows: of the shift, of the turn."""
+    def _add_bushing(self, load: BushingLoad, programs: tuple[Program, ...]) -> None:
+        """Add the rows of the shift and of the turn."""
         parts = (kernel.BUSHING_SHIFT, load.shift, programs[:3]), (kernel.BUSHING_TURN, load.turn, programs[3:])
-        for kind, elastic, own in parts:
+        for kind, elastic, part_programs in parts:
             self.made.append(
                 LoadRow(
                     kind,
                     self.frame.in_tree(load.a),
                     self.frame.in_tree(load.b),
-                    own[0],
-                    own[1],
-                    own[2],
+                    part_programs[0],
+                    part_programs[1],
+                    part_programs[2],
                     ZERO,
                     p=self.frame.relative(load.a, load.p),
                     q=self.frame.relative(load.b, load.q),
@@ -182,8 +188,8 @@ class _LoadRows:
                 )
             )
 
-    def _rope(self, load: RopeLoad, values: Components) -> None:
-        """A rope that stretches, along its parts."""
+    def _add_rope(self, load: RopeLoad, values: Components) -> None:
+        """Add an elastic rope, along its parts."""
         self.made.append(
             LoadRow(
                 kernel.ROPE,
@@ -201,7 +207,7 @@ class _LoadRows:
         )
         self.parts += len(load.parts)
 
-    def _thread(self, load: ThreadLoad) -> None:
+    def _add_thread(self, load: ThreadLoad) -> None:
         row = self.frame.rows.index(len(self.mechanism.joints) + load.coupling)
         self.made.append(
             LoadRow(
@@ -225,12 +231,12 @@ class _LoadRows:
             )
         )
 
-    def _joint_load(self, load: JointLoad, values: Components) -> None:
+    def _add_joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]
         kind = JOINTS[joint.kind]
         turns, slides = JOINT_LOADS[load.kind]
         parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
-        for motion in kind.moved_by(load.kind):
+        for motion in kind.motions_for_load(load.kind):
             number, coefficient = parts[motion]
             row = LoadRow(
                 number,
@@ -246,25 +252,31 @@ class _LoadRows:
                 speed=load.speed,
             )
             if load.kind == "turn_spring":
-                row = self._turn_spring(load, row)
+                row = self._complete_turn_spring(load, row)
             elif load.presses is not None:
-                row = self._pressed(load, row)
+                row = self._complete_joint_friction(load, row)
             self.made.append(row)
 
-    def _pressed(self, load: JointLoad, row: LoadRow) -> LoadRow:
-        """Where what presses is found: in the balance of the branch on the joint, or in the rows of a cut one."""
-        held = next((i for i, h in enumerate(self.frame.spanning.hangs) if h.joint == load.joint), GROUND)
-        own = [r for r, joint in enumerate(self.frame.rows) if joint == load.joint]
-        own = own[: JOINTS[self.mechanism.joints[load.joint].kind].rows]  # those of its stops come after
-        presses, first = PRESSES[load.presses or "whole"], own[0] if own else 0
-        return replace(row, presses=presses, held_by=held, row=first, row_count=len(own), reach=load.reach)
+    def _complete_joint_friction(self, load: JointLoad, row: LoadRow) -> LoadRow:
+        """Add to a friction row where its normal force comes from: the balance of the branch on the joint, or rows of a
+        cut joint.
+        """
+        tree_index = next((i for i, h in enumerate(self.frame.spanning.links) if h.joint == load.joint), GROUND)
+        closure_rows = [r for r, joint in enumerate(self.frame.rows) if joint == load.joint]
+        closure_rows = closure_rows[
+            : JOINTS[self.mechanism.joints[load.joint].kind].row_count
+        ]  # those of its stops come after
+        presses, first = PRESSES[load.presses or "whole"], closure_rows[0] if closure_rows else 0
+        return replace(
+            row, presses=presses, held_by=tree_index, row=first, row_count=len(closure_rows), reach=load.reach
+        )
 
-    def _turn_spring(self, load: JointLoad, row: LoadRow) -> LoadRow:
-        """What a spring about a joint's axis has of its own: where its angle stands, or tells it where that was cut."""
+    def _complete_turn_spring(self, load: JointLoad, row: LoadRow) -> LoadRow:
+        """Add to a spring's row the index of its angle, or the data to compute the angle where the joint was cut."""
         joint, start = self.mechanism.joints[load.joint], self.frame.starts[load.joint]
-        named = enumerate(self.frame.freedoms)
-        freedom = next((i for i, f in named if f.joint == load.joint and f.quantity in ("angle", "first")), -1)
-        across = perpendicular(joint.axis)[0]
+        freedoms = enumerate(self.frame.freedoms)
+        freedom = next((i for i, f in freedoms if f.joint == load.joint and f.quantity in ("angle", "first")), -1)
+        across = perpendicular_pair(joint.axis)[0]
         return replace(
             row,
             stiffness=load.stiffness,
@@ -278,61 +290,67 @@ class _LoadRows:
         )
 
 
-def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
-    """The programs of loads and drives: what they do between the stages of a step must not be passed over.
+def make_watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
+    """Make the rows of the watched programs of loads and drives, whose changes between the stages of a step must not be
+    missed.
 
-    Of conditions only where they change, and of ropes that stretch where they go slack: else those are springs, which
-    the steps' own error follows.
+    Conditions are watched only where they change sign, and elastic ropes only where they go slack: otherwise these are
+    springs, which the error control of the steps follows.
     """
-    springy = {id(load.value) for load in mechanism.loads if isinstance(load, RopeLoad)}
-    driven = {id(law.value): law.value for law in mechanism.laws}
+    rope_values = {id(load.value) for load in mechanism.loads if isinstance(load, RopeLoad)}
+    law_values = {id(law.value): law.value for law in mechanism.laws}
     loads = {id(e): e for load in mechanism.loads for e in load.values}
     parts = {
         id(e): row
-        for load, rows in mechanism.load_rows()
+        for load, rows in mechanism.iter_load_rows()
         if isinstance(load, BushingLoad)
         for row, part in ((rows.start, load.shift), (rows.start + 1, load.turn))
-        for e in part.given
+        for e in part.extra_load
     }
     watched = [
-        WatchRow(programs.at[key], curved=int(key in driven), condition=int(key in springy), load=parts.get(key, -1))
-        for key, e in (loads | driven).items()
-        if e.constant is None and (e.held or key not in springy)
+        WatchRow(
+            programs.by_identity[key],
+            curved=int(key in law_values),
+            condition=int(key in rope_values),
+            load=parts.get(key, -1),
+        )
+        for key, e in (loads | law_values).items()
+        if e.constant is None and (e.held_branches or key not in rope_values)
     ]
-    conditions = (programs.at[id(condition.value)] for condition in mechanism.conditions)
+    conditions = (programs.by_identity[id(condition.value)] for condition in mechanism.conditions)
     return watched + [WatchRow(program, curved=0, condition=1, load=-1) for program in conditions]
 
 
-def variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[Variable]) -> list[VariableRow]:
-    """The variables of the programs; the first is the time, which is no coordinate."""
+def make_variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[Variable]) -> list[VariableRow]:
+    """Make the variables of the programs; the first is the time, which is no coordinate."""
     joints = mechanism.joints
     by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(frame.freedoms) if f.joint >= 0}
-    own = {f"{LOADS}.{load.name}": rows.start for load, rows in mechanism.load_rows()}
+    load_rows_by_name = {f"{LOADS}.{load.name}": rows.start for load, rows in mechanism.iter_load_rows()}
     rows = [VariableRow()]
     for name, quantity in (use for use in variables if not isinstance(use, str)):
         if name in mechanism.points:
-            rows.append(point_row(frame, mechanism.points[name], quantity))
+            rows.append(make_point_variable(frame, mechanism.points[name], quantity))
             continue
-        if name in own:
-            rows.append(load_row(own[name], quantity))
+        if name in load_rows_by_name:
+            rows.append(make_load_variable(load_rows_by_name[name], quantity))
             continue
         base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
         rows.append(VariableRow(by_name[name, base], int(base != quantity)))
     return rows
 
 
-def load_row(row: int, quantity: str) -> VariableRow:
-    """The variable that is a part of what a load acts between; row: the first of its rows."""
+def make_load_variable(row: int, quantity: str) -> VariableRow:
+    """Make the variable that is a deformation of a load; row: the first of its rows."""
     if quantity in ("length", "speed"):
         return VariableRow(is_rate=int(quantity == "speed"), is_point=kernel.OF_LOAD, load=row, part=kernel.ALONG_LINE)
     if quantity == "drawn":
         return VariableRow(is_point=kernel.OF_LOAD, load=row, part=kernel.DRAWN)
-    of, _, axis = quantity.partition("_")
-    return VariableRow(is_point=kernel.OF_LOAD, load=row + int(of == "turn"), part="xyz".index(axis))
+    component, _, axis = quantity.partition("_")
+    return VariableRow(is_point=kernel.OF_LOAD, load=row + int(component == "turn"), part="xyz".index(axis))
 
 
-def point_row(frame: LayoutFrame, point: NamedPoint, quantity: str) -> VariableRow:
-    """The variable that is a point's place or velocity along one of its axes."""
+def make_point_variable(frame: LayoutFrame, point: NamedPoint, quantity: str) -> VariableRow:
+    """Make the variable that is a point's position or velocity along one of its axes."""
     axis = "xyz".index(quantity[-1])
     return VariableRow(
         is_rate=int(quantity.startswith("v")),

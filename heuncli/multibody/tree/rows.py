@@ -1,7 +1,7 @@
-"""The rows that a scene is laid out in for the kernel: of each struct the fields that are given, with their types.
+"""The rows of the kernel's tables: the fields of each struct that are given, with their types.
 
-What the fields mean stands in kernel/scene.py. Numbers of bodies are places in the tree, -1 is the ground; vectors are
-(3,), matrices (3, 3). What has a default is zero where it is not given. Yes and no are 1 and 0.
+The meaning of the fields is described in kernel/scene.py. Bodies are tree indices, -1 is the ground; vectors are (3,),
+matrices (3, 3). Fields with a default are zero if not given. Yes and no are 1 and 0.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from heuncli.base.records import record
 from heuncli.kernel.choose import structs
-from heuncli.multibody.tree.tables import Table, table
+from heuncli.multibody.tree.tables import Table, make_table
 from heuncli.results.results import Array
 
 Program = tuple[int, int]  # of a value in time: where it starts among the pack's, and how long it is
@@ -39,7 +39,7 @@ class BodyRow:
 
     @property
     def answers(self) -> range:
-        """Which answers of the freedoms are this body's."""
+        """The answer indices of this body's freedoms."""
         return range(self.answer_at, self.answer_at + 3 * self.ball + self.end_freedom - self.first_freedom)
 
 
@@ -78,7 +78,7 @@ class PieceRow:
 
 @record
 class LoadRow:
-    """An applied load: x, y, z and vector are the components that vary and those that do not."""
+    """An applied load: x, y, z are the components that vary, vector the constant ones."""
 
     kind: int
     a: int
@@ -116,7 +116,7 @@ class LoadRow:
 
 @record
 class ClosureRow:
-    """A closure row: what it asks for."""
+    """A closure row: its condition."""
 
     kind: int
     a: int
@@ -148,8 +148,10 @@ class ClosureRow:
 
 
 @record
-class ClosurePlaces:
-    """Where the path, the answers and the couplings of a closure row stand in `indices`, its column in `columns`."""
+class ClosureIndices:
+    """Positions of the path, the answers and the couplings of a closure row in `indices`, and of its column in
+    `columns`.
+    """
 
     path: int
     path_count: int
@@ -175,7 +177,7 @@ class ContactRow:
 
 @record
 class CounterRow:
-    """The angle of a pin that was cut, or the place of what was cut along its path."""
+    """The angle of a cut pin, or the position of a cut joint along its path."""
 
     a: int
     b: int
@@ -186,10 +188,11 @@ class CounterRow:
 
 @record
 class VariableRow:
-    """A coordinate that expressions use, or a point's place along a direction; of the time, which is neither, zero.
+    """A coordinate that expressions use, or a point's position along a direction; all zero for the time.
 
-    Or a part of what a load acts between; load: its row.
-    q: the point from its body's joint point, its axes; direction: world axes.
+    load: row of a load, for a variable that is its deformation
+    q: the point from its body's joint point, its axes
+    direction: world axes
     """
 
     freedom: int = 0
@@ -205,7 +208,7 @@ class VariableRow:
 
 @record
 class WatchRow:
-    """A program that is watched over the steps."""
+    """A program that is watched during the steps."""
 
     program: Program
     curved: int
@@ -215,7 +218,7 @@ class WatchRow:
 
 @record
 class GroupRow:
-    """Components of the state whose errors are measured together."""
+    """Components of the state whose errors are taken together."""
 
     coordinates: int
     rates: int
@@ -224,7 +227,7 @@ class GroupRow:
 
 @record
 class IslandRow:
-    """Where the rows and the freedoms of an island are listed in `indices`."""
+    """Positions of the rows and the freedoms of an island in `indices`."""
 
     rows: int
     row_count: int
@@ -237,7 +240,7 @@ Row = (
     | FreedomRow
     | LoadRow
     | ClosureRow
-    | ClosurePlaces
+    | ClosureIndices
     | ContactRow
     | CounterRow
     | PieceRow
@@ -248,9 +251,9 @@ Row = (
 )
 
 
-def table_of(struct: type[structs.Record], *columns: Sequence[Row]) -> Table:
-    """The kernel's table of rows; several sequences are parts of the same rows."""
+def make_kernel_table(struct: type[structs.Record], *columns: Sequence[Row]) -> Table:
+    """Make the kernel's table of rows; several sequences are parts of the same rows."""
     if len(columns) == 1:
-        return table(struct, [vars(row) for row in columns[0]])
+        return make_table(struct, [vars(row) for row in columns[0]])
     rows = zip(*columns, strict=True)
-    return table(struct, [{name: value for part in row for name, value in vars(part).items()} for row in rows])
+    return make_table(struct, [{name: value for part in row for name, value in vars(part).items()} for row in rows])

@@ -1,16 +1,18 @@
-"""The tree that carries the motion: which joints are kept, which are cut, and in which order bodies come.
+"""Choose the spanning tree that carries the motion: which joints are in it, which are cut, and the order of the bodies.
 
-Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, named in an expression or
-limited by a stop is never cut. Next come the joints of a body without a mass to speak of, which only passes on what
-they carry: cut off from what is behind it, roundings would throw it about. Not so where all of them leave it free to
-spin, as a link on two balls: what it passes on does not turn it. Then what leaves nothing free, so that bodies welded
-together hang on each other and, but for those, only circles of welds are cut. Joints that leave a thin body free to
-turn about the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of
-one layer those that make most conditions are kept.
-`line`, `plane` and `curve` carry a body only from their `from` side, a rod never does; a body that nothing carries
-hangs on six freedoms of its own. So does one with a path whose runner is all that holds it. A curve is cut only where
-none but curves, or what must not be cut, make a closed chain: several on one body, or one on a point that is held; and
-where it may lift off.
+Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, used in an expression or
+limited by a stop is never cut. Next come the joints of a body with negligible mass, which only transmits loads: cut off
+from the bodies beyond it, roundings would accelerate it. This does not apply where all its joints leave it free to
+spin,
+as a link on two balls: transmitted loads do not turn it. Then come rigid joints, so that bodies welded together hang on
+each other and, apart from the above, only circles of welds are cut. Joints that leave a thin body free to turn about
+its axis without inertia are cut first, for that freedom would have no inertia; among the others of one layer those with
+most constraints are kept.
+
+`line`, `plane` and `curve` carry a body only from their `from` side, a rod never does; a body that no joint carries has
+six freedoms of its own. So has the body of a path that only its runner holds. A curve is cut only where a closed chain
+consists of curves and joints that must not be cut: several curves on one body, or one on a point that is held; and
+where its runner may lift off.
 """
 
 from __future__ import annotations
@@ -29,8 +31,10 @@ from heuncli.results.results import Array
 
 
 @record
-class Hang:
-    """How a body hangs in the tree: its joint (-1: free), and whether the body is the joint's `from` side."""
+class TreeLink:
+    """The link of a body to its parent in the tree: its joint (-1: free), and whether the body is the joint's `from`
+    side.
+    """
 
     body: int
     parent: int
@@ -39,15 +43,15 @@ class Hang:
 
 
 @record
-class Spanning:
-    """Bodies, parents first, each with the joint it hangs on; and the joints that were cut."""
+class SpanningTree:
+    """Bodies, parents first, each with the joint to its parent; and the joints that were cut."""
 
-    hangs: tuple[Hang, ...]
+    hangs: tuple[TreeLink, ...]
     cut: tuple[int, ...]
 
 
-def span(mechanism: Mechanism, kept: Collection[int]) -> Spanning:
-    """The tree for a mechanism; `kept`: joints that must not be cut.
+def find_spanning_tree(mechanism: Mechanism, uncut: Collection[int]) -> SpanningTree:
+    """Find the tree for a mechanism; uncut: joints that must not be cut.
 
     Raises SolveError where those alone make a closed chain (over-driven).
     """
@@ -56,24 +60,24 @@ def span(mechanism: Mechanism, kept: Collection[int]) -> Spanning:
         if JOINTS[joint.kind].in_tree != "never":
             edges[joint.a].append(k)
             edges[joint.b].append(k)
-    depth = _depths(mechanism, edges)
-    free: list[int] = []
+    depth = _find_depths(mechanism, edges)
+    free_bodies: list[int] = []
     while True:
-        forest = _forest(mechanism, depth, kept, free)
-        found = _walk(mechanism, forest, free)
-        turned = None
-        for k in (k for k in found.cut if mechanism.joints[k].path is not None):
+        forest = _find_forest(mechanism, depth, uncut, free_bodies)
+        tree = _traverse(mechanism, forest, free_bodies)
+        detached = None
+        for k in (k for k in tree.cut if mechanism.joints[k].path is not None):
             joint = mechanism.joints[k]
-            closes = k not in forest[joint.b] or joint.b == GROUND or joint.a in free
-            if closes and k in kept:
-                raise SolveError(_found_from_pose(joint) if joint.one_sided else _path_unheld(joint))
-            turned = turned if closes else joint.a
-        if turned is None:
-            return found
-        free.append(turned)
+            is_closing = k not in forest[joint.b] or joint.b == GROUND or joint.a in free_bodies
+            if is_closing and k in uncut:
+                raise SolveError(_one_sided_problem(joint) if joint.one_sided else _path_unheld_problem(joint))
+            detached = detached if is_closing else joint.a
+        if detached is None:
+            return tree
+        free_bodies.append(detached)
 
 
-def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
+def _find_depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
     depth = [len(mechanism.bodies)] * len(mechanism.bodies) + [0]  # the last place, index -1, is the ground
     queue = deque([GROUND])
     while queue:
@@ -87,23 +91,23 @@ def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
     return depth
 
 
-def _forest(
-    mechanism: Mechanism, depth: list[int], kept: Collection[int], free: Collection[int]
+def _find_forest(
+    mechanism: Mechanism, depth: list[int], uncut: Collection[int], free_bodies: Collection[int]
 ) -> dict[int, list[int]]:
-    """Kruskal's forest: kept joints first, then layer by layer, those with most conditions first, then as written.
+    """Kruskal's forest: uncut joints first, then layer by layer, those with most constraints first, then as written.
 
-    free: bodies that hang on six freedoms of their own, whatever holds what they carry.
+    free_bodies: bodies with six freedoms of their own, whatever holds the bodies that they carry
     """
     joints = mechanism.joints
-    null = null_axes(mechanism)
-    between = passing_on(mechanism, null)
+    null = find_null_axes(mechanism)
+    between = find_transmitting_bodies(mechanism, null)
 
     def urgency(k: int) -> tuple[bool, bool, bool, bool, bool, int, int, int]:
         joint = joints[k]
         passes_on = not between.isdisjoint((joint.a, joint.b))
-        spins = any(_leaves(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
+        spins = any(_leaves_spin_free(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
         layer, kind = min(depth[joint.a], depth[joint.b]), JOINTS[joint.kind]
-        return k not in kept, not kind.follows_path, not passes_on, not kind.is_rigid, spins, layer, -kind.rows, k
+        return k not in uncut, not kind.follows_path, not passes_on, not kind.is_rigid, spins, layer, -kind.row_count, k
 
     group = list(range(len(mechanism.bodies) + 1))
 
@@ -114,7 +118,7 @@ def _forest(
             x = group[x]
         return x
 
-    for body in free:
+    for body in free_bodies:
         group[root(body)] = root(GROUND)
     forest = defaultdict(list)
     for k in sorted(range(len(joints)), key=urgency):
@@ -123,8 +127,8 @@ def _forest(
             continue
         a, b = root(joint.a), root(joint.b)
         if a == b:
-            if k in kept:
-                raise SolveError(_over_driven(mechanism, k))
+            if k in uncut:
+                raise SolveError(_over_driven_problem(mechanism, k))
             continue
         group[a] = b
         forest[joint.a].append(k)
@@ -132,40 +136,42 @@ def _forest(
     return forest
 
 
-def null_axes(mechanism: Mechanism) -> dict[int, Array]:
-    """Of each body that has axes without inertia through its centre: those, (k, 3), k = 1 or 3, body axes."""
+def find_null_axes(mechanism: Mechanism) -> dict[int, Array]:
+    """Return the axes without inertia through the centre of each body that has any, (k, 3), k = 1 or 3, body axes."""
     if not mechanism.bodies:
         return {}
     moments, axes = np.linalg.eigh(np.array([body.inertia for body in mechanism.bodies]))
-    none = moments <= tolerances.NO_INERTIA * np.maximum(moments[:, 2:], 0.0)
-    return {int(i): axes[i][:, none[i]].T for i in np.flatnonzero(none.any(axis=1))}
+    is_null = moments <= tolerances.NO_INERTIA * np.maximum(moments[:, 2:], 0.0)
+    return {int(i): axes[i][:, is_null[i]].T for i in np.flatnonzero(is_null.any(axis=1))}
 
 
-def passing_on(mechanism: Mechanism, null: Mapping[int, Array]) -> frozenset[int]:
-    """The bodies that are no mass beside the heaviest, and that some joint of theirs keeps from spinning idly.
+def find_transmitting_bodies(mechanism: Mechanism, null: Mapping[int, Array]) -> frozenset[int]:
+    """Return the bodies with negligible mass that some joint of theirs keeps from spinning idly.
 
-    null: the axes without inertia of each body that has any, as of `null_axes`. Such bodies stand between the joints of
-    an imported stack.
+    null: the axes without inertia of each body that has any, from `find_null_axes`
+
+    Such bodies are between the joints of an imported stack.
     """
     least = tolerances.NO_MASS * max((body.mass for body in mechanism.bodies), default=0.0)
     return frozenset(
         end
         for joint in mechanism.joints
         for end in {joint.a, joint.b} - {GROUND}
-        if mechanism.bodies[end].mass < least and not (end in null and _leaves(joint, end == joint.b, null[end]))
+        if mechanism.bodies[end].mass < least
+        and not (end in null and _leaves_spin_free(joint, end == joint.b, null[end]))
     )
 
 
-def _leaves(joint: Joint, to: bool, null: Array) -> bool:
+def _leaves_spin_free(joint: Joint, is_to: bool, null: Array) -> bool:
     """Whether a joint leaves one of its bodies free to turn about an axis without inertia."""
     kind = JOINTS[joint.kind]
-    if kind.ball or len(null) > 1:
-        return kind.ball
-    own = joint.to_axis if to else joint.axis
-    return bool(kind.turns) and abs(float(null[0] @ own)) > tolerances.ALONG
+    if kind.is_ball or len(null) > 1:
+        return kind.is_ball
+    own_axis = joint.to_axis if is_to else joint.axis
+    return bool(kind.turns) and abs(float(null[0] @ own_axis)) > tolerances.ALONG
 
 
-def _over_driven(mechanism: Mechanism, k: int) -> Problem:
+def _over_driven_problem(mechanism: Mechanism, k: int) -> Problem:
     joint = mechanism.joints[k]
     what = "is driven" if joint.drive else "is named in an expression"
     if JOINTS[joint.kind].coordinates == ():
@@ -179,7 +185,7 @@ def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     )
 
 
-def _found_from_pose(joint: Joint) -> Problem:
+def _one_sided_problem(joint: Joint) -> Problem:
     return Problem(
         "over-driven",
         f"joints.{joint.name} is one-sided: its travel follows from the pose, and nothing drives, limits or names it",
@@ -187,7 +193,7 @@ def _found_from_pose(joint: Joint) -> Problem:
     )
 
 
-def _path_unheld(joint: Joint) -> Problem:
+def _path_unheld_problem(joint: Joint) -> Problem:
     return Problem(
         "path-unheld",
         f"joints.{joint.name} is to hold the body of its path by a point that is held already",
@@ -195,13 +201,13 @@ def _path_unheld(joint: Joint) -> Problem:
     )
 
 
-def _walk(mechanism: Mechanism, forest: dict[int, list[int]], free: Collection[int]) -> Spanning:
+def _traverse(mechanism: Mechanism, forest: dict[int, list[int]], free_bodies: Collection[int]) -> SpanningTree:
     joints = mechanism.joints
-    seen = [False] * len(mechanism.bodies)
+    visited = [False] * len(mechanism.bodies)
     used: set[int] = set()
-    hangs: list[Hang] = []
+    links: list[TreeLink] = []
     queue: deque[int] = deque([GROUND])
-    fresh = iter((*free, *range(len(mechanism.bodies))))
+    roots = iter((*free_bodies, *range(len(mechanism.bodies))))
     while True:
         while queue:
             x = queue.popleft()
@@ -209,17 +215,17 @@ def _walk(mechanism: Mechanism, forest: dict[int, list[int]], free: Collection[i
                 joint = joints[k]
                 reverse = joint.b == x
                 y = joint.a if reverse else joint.b
-                if y == GROUND or seen[y] or (reverse and JOINTS[joint.kind].in_tree == "forward"):
+                if y == GROUND or visited[y] or (reverse and JOINTS[joint.kind].in_tree == "forward"):
                     continue
-                seen[y] = True
+                visited[y] = True
                 used.add(k)
-                hangs.append(Hang(y, x, k, reverse))
+                links.append(TreeLink(y, x, k, reverse))
                 queue.append(y)
-        start = next((i for i in fresh if not seen[i]), None)
+        start = next((i for i in roots if not visited[i]), None)
         if start is None:
             break
-        seen[start] = True
-        hangs.append(Hang(start, GROUND, -1, False))
+        visited[start] = True
+        links.append(TreeLink(start, GROUND, -1, False))
         queue.append(start)
     cut = tuple(k for k in range(len(joints)) if k not in used)
-    return Spanning(tuple(hangs), cut)
+    return SpanningTree(tuple(links), cut)

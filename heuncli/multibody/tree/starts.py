@@ -1,4 +1,4 @@
-"""Where the joints stand in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
+"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
 
 from __future__ import annotations
 
@@ -11,17 +11,23 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, Direction
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Joint, Mechanism
-from heuncli.multibody.tree.spanning import Spanning
+from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
-from heuncli.scene.shapes.rotations import about, cross_rows, perpendicular, to_quaternion, turn_onto
+from heuncli.scene.shapes.rotations import (
+    cross_rows,
+    perpendicular_pair,
+    quaternion_from_matrix,
+    rotation_between,
+    rotation_matrix_about,
+)
 
 Z = np.array([0.0, 0.0, 1.0])
 
 
 @record
 class JointStart:
-    """Where a joint stands at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed.
+    """A joint at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed.
 
     angle of a universal: about its first axis (`first_angle`); its coordinates are counted from the start.
     """
@@ -34,28 +40,32 @@ class JointStart:
 
 
 @record
-class GivenTree:
-    """A tree that was chosen for a larger scene, and where its joints stand; starts: None, as the start has them."""
+class PresetTree:
+    """A tree that was chosen for a larger scene, and the starts of its joints; starts: None: from the assembled
+    start.
+    """
 
-    spanning: Spanning
+    spanning: SpanningTree
     starts: tuple[JointStart, ...] | None = None
 
 
-def distance(start: Assembly, joint: Joint) -> float:
+def point_distance(start: Assembly, joint: Joint) -> float:
     """The distance of a joint's two points at the start [m]."""
-    xa, Ra, _, _ = pose(start, joint.a)
-    xb, Rb, _, _ = pose(start, joint.b)
+    xa, Ra, _, _ = body_state(start, joint.a)
+    xb, Rb, _, _ = body_state(start, joint.b)
     D = xb + Rb @ joint.q - xa - Ra @ joint.p
     return math.sqrt(float(D @ D))
 
 
 def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
-    """Coordinates of a joint in the assembled mechanism, and its reference attitude, where its angle is zero."""
-    xa, Ra, va, wa = pose(start, joint.a)
-    xb, Rb, vb, wb = pose(start, joint.b)
+    """Compute a joint's coordinates in the assembled mechanism, and its reference attitude, at which its angle is
+    zero.
+    """
+    xa, Ra, va, wa = body_state(start, joint.a)
+    xb, Rb, vb, wb = body_state(start, joint.b)
     R = Ra.T @ Rb
     kind = JOINTS[joint.kind]
-    if kind.turns_alike:
+    if kind.is_constant_velocity:
         require_bend(joint, R)
     if not kind.turns and "travel" not in kind.coordinates:
         return JointStart(R, 0.0, 0.0, 0.0, 0.0)
@@ -68,35 +78,36 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     travel, speed = float(D @ n), float((Ra @ n) @ v)
     if "angle" not in kind.coordinates:
         return JointStart(R, first_angle(joint, R) if len(kind.turns) == 2 else 0.0, rate, travel, speed)
-    near = joint.angle
+    reference = joint.angle
     if joint.drive is not None and joint.drive.quantity == "angle" and not joint.drive.from_start:
-        near = joint.drive.value.derivatives(0.0)[0]
+        reference = joint.drive.value.derivatives(0.0)[0]
     if joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled):
-        near = near or 0.0
-        return JointStart(about(n, -near) @ R, near, rate, travel, speed)
-    near = near if near is not None else middle_of_limits(mechanism, joint)
-    return JointStart(np.eye(3), unwrapped(axial_angle(R, n), near), rate, travel, speed)
+        reference = reference or 0.0
+        return JointStart(rotation_matrix_about(n, -reference) @ R, reference, rate, travel, speed)
+    reference = reference if reference is not None else middle_of_limits(mechanism, joint)
+    return JointStart(np.eye(3), unwrap_angle(axial_angle(R, n), reference), rate, travel, speed)
 
 
 def joint_start_on_path(joint: Joint, path: Path, start: Assembly, R: Array) -> JointStart:
-    """Where the point of a path stands along it: on the branch that is held or driven to, else at the nearest place.
+    """Compute the travel of a point along its path: on the branch that is held or driven to, otherwise at the nearest
+    place.
 
-    Raises SolveError where nothing tells on which of several branches.
+    Raises SolveError where it is unknown on which of several branches.
     """
-    xa, Ra, va, wa = pose(start, joint.a)
-    xb, Rb, vb, wb = pose(start, joint.b)
+    xa, Ra, va, wa = body_state(start, joint.a)
+    xb, Rb, vb, wb = body_state(start, joint.b)
     D = xb + Rb @ joint.q - xa
     place, held = Ra.T @ D - joint.p, joint.travel
     if joint.drive is not None and not joint.drive.from_start and not joint.drive.zero_assembled:
         held = joint.drive.value.derivatives(0.0)[0]
     if held is None:
-        travel = float(path.nearest(place))
+        travel = float(path.find_nearest(place))
         require_one_branch(joint, path, place)
     else:
-        travel = path.near(place, held)
+        travel = path.find_nearby(place, held)
         if math.isclose(travel, held, abs_tol=tolerances.SAME_VALUE):
             travel = held
-    slope = path.at(travel)[1]
+    slope = path.evaluate(travel)[1]
     v = Ra.T @ (vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, D))
     turn = float((Ra @ Z) @ (wb - wa))
     return JointStart(R, 0.0, turn, travel, float(slope @ v) / float(slope @ slope))
@@ -104,18 +115,18 @@ def joint_start_on_path(joint: Joint, path: Path, start: Assembly, R: Array) -> 
 
 def require_one_branch(joint: Joint, path: Path, place: Array) -> None:
     """Raise SolveError where a path crosses or touches itself at a place on it: each branch would be another motion."""
-    found = path.branches(place, tolerances.SAME_PLACE * path.greatest[0])
-    if len(found) > 1:
-        where = " and ".join(f"{s:.6g}" for s in found[:3])
+    branches = path.find_branches(place, tolerances.SAME_PLACE * path.bounds[0])
+    if len(branches) > 1:
+        where = " and ".join(f"{s:.6g}" for s in branches[:3])
         message = (
             f"joint {joint.name} starts where its path meets itself, at travel {where}: on which branch is not told"
         )
-        hint = f"initial: {{travel: {found[0]:.6g}}} says which"
+        hint = f"initial: {{travel: {branches[0]:.6g}}} says which"
         raise SolveError(Problem("path-branch", message, None, hint, f"joints.{joint.name}"))
 
 
 def require_bend(joint: Joint, R: Array) -> None:
-    """Raise SolveError where two shafts that turn alike start bent by a right angle or more."""
+    """Raise SolveError where the two shafts of a constant-velocity joint start bent by a right angle or more."""
     cosine = float(joint.axis @ R @ joint.to_axis)
     if cosine <= tolerances.PARALLEL:
         bend = math.degrees(math.acos(max(cosine, -1.0)))
@@ -125,22 +136,22 @@ def require_bend(joint: Joint, R: Array) -> None:
 
 
 def first_angle(joint: Joint, R: Array) -> float:
-    """Of a universal: by how much its second axis has turned about the first, in (-pi, pi].
+    """Angle by which the second axis of a universal has turned about the first, in (-pi, pi].
 
-    From where it stands while the axes of the two bodies agree, as a pin's angle is counted; at the start, if it then
-    lies along the first axis.
+    It counts from where the axes of the two bodies agree, as a pin's angle does; from the start, if the second axis
+    then lies along the first.
     """
-    n, there, now = joint.axis, joint.to_axis, R @ joint.to_axis
-    before = there - (there @ n) * n
+    n, second_axis, rotated_axis = joint.axis, joint.to_axis, R @ joint.to_axis
+    before = second_axis - (second_axis @ n) * n
     if float(np.sqrt(before @ before)) < tolerances.PARALLEL:
         return 0.0
-    return math.atan2(float(n @ cross_rows(before, now)), float(before @ now))
+    return math.atan2(float(n @ cross_rows(before, rotated_axis)), float(before @ rotated_axis))
 
 
 def middle_of_limits(mechanism: Mechanism, joint: Joint) -> float:
-    """The angle about which turns are counted where none is given: amid what stops on both sides leave, else 0.
+    """The angle near which turns are counted if none is given: the middle between stops on both sides, else 0.
 
-    One limit alone leaves no middle: there a turn more or less would put any start within it.
+    One limit alone has no middle: a turn more or less would put any start within it.
     """
     stops = [s for s in mechanism.stops if s.quantity == "angle" and mechanism.joints[s.joint] is joint]
     low = max((s.low for s in stops if s.low is not None), default=None)
@@ -148,44 +159,46 @@ def middle_of_limits(mechanism: Mechanism, joint: Joint) -> float:
     return 0.5 * (low + high) if low is not None and high is not None else 0.0
 
 
-def joint_frame(joint: Joint, direction: Direction) -> Array:
-    """A direction of the joint in `from` axes: its axis, or one of the two across it."""
+def joint_direction(joint: Joint, direction: Direction) -> Array:
+    """A direction of the joint in `from` axes: its axis, or one of the two perpendicular to it."""
     if direction == "axis":
         return joint.axis
     if direction == "z":
         return Z
     if direction == "across":
         return cross_rows(Z, joint.axis)
-    e, f = perpendicular(joint.axis)
+    e, f = perpendicular_pair(joint.axis)
     return e if direction == "first" else f
 
 
 def to_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
-    """A direction of the joint that is fixed in `to`, in `to` axes: its second axis, or what one of `from` was."""
+    """A direction of the joint that is fixed in `to`, in `to` axes: its second axis, or one of `from` at the reference
+    attitude.
+    """
     if direction == "to_axis":
         return joint.to_axis
-    return np.asarray(R_ref.T @ joint_frame(joint, direction))
+    return np.asarray(R_ref.T @ joint_direction(joint, direction))
 
 
 def bent_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
-    """What a direction of `from` becomes in `to`, its axes, where the bend that turns axis onto to_axis turns it."""
-    bend = turn_onto(joint.axis, R_ref @ joint.to_axis)
-    return np.asarray(R_ref.T @ bend @ joint_frame(joint, direction))
+    """A direction of `from` rotated by the bend that turns axis onto to_axis, in `to` axes."""
+    bend = rotation_between(joint.axis, R_ref @ joint.to_axis)
+    return np.asarray(R_ref.T @ bend @ joint_direction(joint, direction))
 
 
-def unwrapped(angle: float, near: float) -> float:
-    """The angle of the same position that is nearest to `near`."""
-    return angle + 2.0 * math.pi * round((near - angle) / (2.0 * math.pi))
+def unwrap_angle(angle: float, reference: float) -> float:
+    """Return the angle of the same position that is nearest to `reference`."""
+    return angle + 2.0 * math.pi * round((reference - angle) / (2.0 * math.pi))
 
 
 def axial_angle(R: Array, axis: Array) -> float:
     """Angle of a rotation that is one about `axis`, in (-pi, pi]."""
-    q = to_quaternion(R)
+    q = quaternion_from_matrix(R)
     cosine, sine = float(q[0]), float(q[1:] @ axis)
     return 2.0 * (math.atan2(sine, cosine) if cosine >= 0.0 else math.atan2(-sine, -cosine))
 
 
-def pose(start: Assembly, body: int) -> tuple[Array, Array, Array, Array]:
+def body_state(start: Assembly, body: int) -> tuple[Array, Array, Array, Array]:
     """Position, rotation, velocity, angular velocity of a body, or of the ground."""
     if body == GROUND:
         return np.zeros(3), np.eye(3), np.zeros(3), np.zeros(3)

@@ -1,7 +1,7 @@
-"""A report as a page: one file, without scripts, nothing fetched. Whatever a spec says is text in it, never markup.
+"""Render a report as one HTML file without scripts and without external resources. Text from a spec is never markup.
 
-Every text goes through `escaped`, every element through `element`: nothing else writes a `<`, but for the pictures,
-which are SVG of our own and escape what they hold themselves.
+Every text goes through `escape_text`, every element through `make_element`: nothing else writes a `<`, except the
+figures, which are SVG made by heun and escape their own texts.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.output.client_report.parts import (
     Chapter,
     ClientReport,
@@ -23,116 +23,122 @@ from heuncli.output.client_report.parts import (
     Sentence,
     Verbatim,
 )
-from heuncli.output.drawing.layout import laid_out
-from heuncli.output.drawing.picture import escaped as escaped_for_xml
-from heuncli.output.drawing.picture import svg
+from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.picture import escape_xml as escaped_for_xml
+from heuncli.output.drawing.picture import to_svg
 
 STYLE = Path(__file__).with_name("report.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-LONG = 34  # letters of a cell that goes on in a second line
-ALONE = ("meta", "br")  # elements that have no end
+LONG_CELL = 34  # characters; a longer cell may wrap
+VOID_TAGS = ("meta", "br")  # tags without an end tag
 
 
-def as_html(report: ClientReport) -> str:
-    """The page, in UTF-8."""
-    head = [
-        element("meta", charset="utf-8"),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("meta", http_equiv="Content-Security-Policy", content=POLICY),
-        element("title", escaped(report.title)),
-        element("style", "\n" + STYLE.read_text(encoding="utf-8")),
+def render_html(report: ClientReport) -> str:
+    """Render the report as an HTML document, to be written in UTF-8."""
+    head_elements = [
+        make_element("meta", charset="utf-8"),
+        make_element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        make_element("meta", http_equiv="Content-Security-Policy", content=POLICY),
+        make_element("title", escape_text(report.title)),
+        make_element("style", "\n" + STYLE.read_text(encoding="utf-8")),
     ]
-    body = element("header", element("h1", escaped(report.title)) + _parts(report.lead) + _contents(report.chapters))
-    body += "\n" + "\n".join(_chapter(number, chapter) for number, chapter in enumerate(report.chapters, 1))
-    whole = element("head", "\n".join(head)) + "\n" + element("body", element("main", body))
-    return "<!DOCTYPE html>\n" + element("html", whole, lang="en") + "\n"
-
-
-def escaped(text: str) -> str:
-    """A text as it stands between tags or between quotes: what is unseen is shown as an escape."""
-    return escaped_for_xml(shown(text)).replace('"', "&quot;").replace("'", "&#39;")
-
-
-def element(tag: str, content: str = "", /, **attributes: str) -> str:
-    """An element of content that is markup already; attributes are escaped here, `class_` is `class`."""
-    given = "".join(
-        f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"' for key, value in attributes.items() if value
+    body = make_element(
+        "header",
+        make_element("h1", escape_text(report.title)) + _render_parts(report.lead) + _render_contents(report.chapters),
     )
-    return f"<{tag}{given}>" if tag in ALONE else f"<{tag}{given}>{content}</{tag}>"
+    body += "\n" + "\n".join(_render_chapter(number, chapter) for number, chapter in enumerate(report.chapters, 1))
+    document = make_element("head", "\n".join(head_elements)) + "\n" + make_element("body", make_element("main", body))
+    return "<!DOCTYPE html>\n" + make_element("html", document, lang="en") + "\n"
 
 
-def _contents(chapters: Sequence[Chapter]) -> str:
-    """The list of chapters, which lead to them."""
-    links = (element("li", element("a", escaped(chapter.title), href=f"#{chapter.name}")) for chapter in chapters)
-    return element("nav", element("ol", "".join(links)), aria_label="Contents")
+def escape_text(text: str) -> str:
+    """Escape a text for use between tags or between quotes; invisible characters are shown as escape sequences."""
+    return escaped_for_xml(escape(text)).replace('"', "&quot;").replace("'", "&#39;")
 
 
-def _chapter(number: int, chapter: Chapter) -> str:
-    title = element("h2", f"{number}&ensp;{escaped(chapter.title)}")
-    return element("section", title + "\n" + _parts(chapter.parts), id=chapter.name)
+def make_element(tag: str, content: str = "", /, **attributes: str) -> str:
+    """Make an element. The content is markup already; attributes are escaped here, `class_` is written as `class`."""
+    attribute_text = "".join(
+        f' {key.rstrip("_").replace("_", "-")}="{escape_text(value)}"' for key, value in attributes.items() if value
+    )
+    return f"<{tag}{attribute_text}>" if tag in VOID_TAGS else f"<{tag}{attribute_text}>{content}</{tag}>"
 
 
-def _parts(parts: Iterable[Part]) -> str:
-    return "\n".join(WRITTEN[type(part)](part) for part in parts)
+def _render_contents(chapters: Sequence[Chapter]) -> str:
+    """Render the list of chapters, with links to them."""
+    links = (
+        make_element("li", make_element("a", escape_text(chapter.title), href=f"#{chapter.name}"))
+        for chapter in chapters
+    )
+    return make_element("nav", make_element("ol", "".join(links)), aria_label="Contents")
 
 
-def _sentence(part: Sentence) -> str:
-    return element("p", escaped(part.text), class_="" if part.mood == "plain" else part.mood)
+def _render_chapter(number: int, chapter: Chapter) -> str:
+    title = make_element("h2", f"{number}&ensp;{escape_text(chapter.title)}")
+    return make_element("section", title + "\n" + _render_parts(chapter.parts), id=chapter.name)
 
 
-def _facts(part: Facts) -> str:
-    rows = (element("dt", escaped(label)) + element("dd", escaped(text)) for label, text in part.rows)
-    return element("dl", "".join(rows))
+def _render_parts(parts: Iterable[Part]) -> str:
+    return "\n".join(RENDERERS[type(part)](part) for part in parts)
 
 
-def _listing(part: Listing) -> str:
-    title = element("h3", escaped(part.title)) if part.title else ""
-    return title + element("ul", "".join(element("li", escaped(item)) for item in part.items))
+def _render_sentence(part: Sentence) -> str:
+    return make_element("p", escape_text(part.text), class_="" if part.mood == "plain" else part.mood)
 
 
-def _grid(part: ReportTable) -> str:
-    """A table; its head is repeated on every page that it goes over."""
+def _render_facts(part: Facts) -> str:
+    rows = (make_element("dt", escape_text(label)) + make_element("dd", escape_text(text)) for label, text in part.rows)
+    return make_element("dl", "".join(rows))
+
+
+def _render_listing(part: Listing) -> str:
+    title = make_element("h3", escape_text(part.title)) if part.title else ""
+    return title + make_element("ul", "".join(make_element("li", escape_text(item)) for item in part.items))
+
+
+def _render_table(part: ReportTable) -> str:
+    """Render a table; its head is repeated on every printed page that it extends over."""
     kinds = ["left" if column.align == "left" else "" for column in part.columns]
-    heads = [element("th", escaped(column.head), scope="col", class_=kind)
+    heads = [make_element("th", escape_text(column.head), scope="col", class_=kind)
              for column, kind in zip(part.columns, kinds, strict=True)]  # fmt: skip
     name, _, rest = part.caption.partition("  ")
     table = ""
     if part.columns:
-        body = "\n".join(_row(row, kinds) for row in part.rows)
-        table = element("thead", element("tr", "".join(heads))) + "\n" + element("tbody", body)
-        table = element("div", element("table", table, aria_label=name), class_="wide")
-    caption = element("h3", escaped(name) + (" " + element("small", escaped(rest)) if rest else ""))
-    notes = "".join(element("li", escaped(note)) for note in part.notes)
-    return element("div", caption + "\n" + table + (element("ul", notes, class_="notes") if notes else ""))
+        body = "\n".join(_render_row(row, kinds) for row in part.rows)
+        table = make_element("thead", make_element("tr", "".join(heads))) + "\n" + make_element("tbody", body)
+        table = make_element("div", make_element("table", table, aria_label=name), class_="wide")
+    caption = make_element("h3", escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else ""))
+    notes = "".join(make_element("li", escape_text(note)) for note in part.notes)
+    return make_element("div", caption + "\n" + table + (make_element("ul", notes, class_="notes") if notes else ""))
 
 
-def _row(row: Sequence[ReportCell] | str, kinds: Sequence[str]) -> str:
+def _render_row(row: Sequence[ReportCell] | str, kinds: Sequence[str]) -> str:
     if isinstance(row, str):
         name, _, rest = row.partition("  ")
-        text = escaped(name) + (" " + element("small", escaped(rest)) if rest else "")
-        return element("tr", element("th", text, colspan=str(len(kinds)), scope="colgroup"), class_="across")
-    cells = (_cell(cell, kind) for cell, kind in zip(row, kinds, strict=True))
-    return element("tr", "".join(cells), class_="begins" if row[0].text else "")
+        text = escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else "")
+        return make_element("tr", make_element("th", text, colspan=str(len(kinds)), scope="colgroup"), class_="across")
+    cells = (_render_cell(cell, kind) for cell, kind in zip(row, kinds, strict=True))
+    return make_element("tr", "".join(cells), class_="begins" if row[0].text else "")
 
 
-def _cell(cell: ReportCell, kind: str) -> str:
-    text = escaped(cell.text)
-    kinds = " ".join(filter(None, (kind, "long" * (len(cell.text) > LONG))))
-    return element("td", element("strong", text) if cell.governs else text, class_=kinds)
+def _render_cell(cell: ReportCell, kind: str) -> str:
+    text = escape_text(cell.text)
+    kinds = " ".join(filter(None, (kind, "long" * (len(cell.text) > LONG_CELL))))
+    return make_element("td", make_element("strong", text) if cell.is_governing else text, class_=kinds)
 
 
-def _drawing(part: Drawing) -> str:
-    """A picture as a part of the page; its declaration as a file of its own is left out."""
-    named = laid_out(part.figure)._replace(title=part.caption)
-    picture = svg(named).partition("?>\n")[2]
-    return element("figure", picture + element("figcaption", escaped(part.caption)))
+def _render_drawing(part: Drawing) -> str:
+    """Render a figure as inline SVG, without its XML declaration."""
+    figure = lay_out(part.figure)._replace(title=part.caption)
+    markup = to_svg(figure).partition("?>\n")[2]
+    return make_element("figure", markup + make_element("figcaption", escape_text(part.caption)))
 
 
-def _verbatim(part: Verbatim) -> str:
-    lines = "".join(element("li", element("code", escaped(line))) for line in part.text.split("\n"))
-    return element("ol", lines, class_="text")
+def _render_verbatim(part: Verbatim) -> str:
+    lines = "".join(make_element("li", make_element("code", escape_text(line))) for line in part.text.split("\n"))
+    return make_element("ol", lines, class_="text")
 
 
-WRITTEN: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _sentence, Facts: _facts, Listing: _listing, ReportTable: _grid, Drawing: _drawing, Verbatim: _verbatim,
+RENDERERS: dict[type[Part], Callable[[Any], str]] = {
+    Sentence: _render_sentence, Facts: _render_facts, Listing: _render_listing, ReportTable: _render_table, Drawing: _render_drawing, Verbatim: _render_verbatim,
 }  # fmt: skip

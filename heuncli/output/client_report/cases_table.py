@@ -1,6 +1,6 @@
-"""A table of extremes over load cases: a line a case, with instants, places, and the error that its run states.
+"""Tables of extremes over load cases: one row per case, with instants, places, and the stated error of its run.
 
-What no other case exceeds governs, and is bold.
+The value that no other case exceeds governs, and is bold.
 """
 
 from __future__ import annotations
@@ -10,218 +10,267 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.extremes import (
-    Ends,
-    Governing,
-    governing,
-    instant_text,
-    place_text,
-    runs_in,
-    style_of,
-    text_of,
+    CaseExtremes,
+    GoverningBounds,
+    choose_family_style,
+    find_governing,
+    format_extreme,
+    format_instant,
+    format_place_in_unit,
+    iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, LoadNumber
-from heuncli.output.client_report.parts import ReportCell, ReportTable, some
-from heuncli.output.client_report.reported import Reported, ReportedRun
+from heuncli.output.client_report.parts import ReportCell, ReportTable, join_names
+from heuncli.output.client_report.reported import ReportData, ReportedRun
 from heuncli.output.snapshots.envelopes import Bound
-from heuncli.output.tables.extremes_tables import MANY, MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.output.tables.extremes_tables import MARK, MAX_FULL_GROUPS, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.output.tables.text_table import TextColumn
-from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
+from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, format_error
 
-MOST_CASES = 12  # told in a line each; of more those that govern
-GOVERNS = (
+MAX_CASES = 12  # with a row each; if there are more, only those that govern
+BOLD_NOTE = (
     "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open, "
     "that is rounding, or in which all cases are alike"
 )
-PARTLY = "*"
-STEADY = "without an instant: the same at all {}, to the digits shown"
-ERRORS = "±: the error that the run states of the number, rounding included"
-LACKING = "numbers that are open or not known, and may be larger, stand in the cases left out here: {}"
-FEW_CASES = "of {} load cases those that govern a number; heun run SPEC --case all has all"
+PARTLY_OPEN_MARK = "*"
+STEADY_NOTE = "without an instant: the same at all {}, to the digits shown"
+ERROR_NOTE = "±: the error that the run states of the number, rounding included"
+HIDDEN_CASES_NOTE = "numbers that are open or not known, and may be larger, stand in the cases left out here: {}"
+FEW_CASES_NOTE = "of {} load cases those that govern a number; heun run SPEC --case all has all"
 
 
-def cases_table(
-    of: Reported, caption: str, groups: Sequence[LoadGroup], notes: Sequence[str] = (), *, along: bool = False
+def make_cases_table(
+    data: ReportData, caption: str, groups: Sequence[LoadGroup], notes: Sequence[str] = (), *, has_places: bool = False
 ) -> ReportTable:
-    """The table of some groups; along: with the places of extremes along runs of cuts."""
-    governs = governing(of)
-    shown = _shown(of, groups, governs)
+    """Make the table of some groups of numbers.
+
+    has_places: whether the extremes are along runs of cuts, so that their places are shown
+    """
+    governing_bounds = find_governing(data)
+    shown_cases = _choose_cases(data, groups, governing_bounds)
     rows: list[Sequence[ReportCell] | str] = []
-    nothing: list[str] = []
+    zero_groups: list[str] = []
     for group in groups:
-        lines = list(_lines(of, group, shown, governs, along=along))
-        if not lines:
-            nothing.append(group.name)
-        elif len(groups) > MANY and group.name != TOTAL:
-            rows += [(line[0]._replace(text=f"{group.name} {line[0].text}".rstrip()), *line[1:]) for line in lines]
+        group_rows = list(_iter_group_rows(data, group, shown_cases, governing_bounds, has_places=has_places))
+        if not group_rows:
+            zero_groups.append(group.name)
+        elif len(groups) > MAX_FULL_GROUPS and group.name != TOTAL:
+            rows += [(line[0]._replace(text=f"{group.name} {line[0].text}".rstrip()), *line[1:]) for line in group_rows]
         else:
-            rows += ["  ".join(filter(None, (group.name, group.note))), *lines]
-    below = [*_notes(of, rows), *notes]
-    below += [NOT_SEARCHED] if not all(run.searched for run in of.runs) else []
-    below += [FEW_CASES.format(len(of.runs))] if len(shown) < len(of.runs) else []
-    below += [LACKING.format(some(hidden))] if (hidden := _hidden(of, groups, shown)) else []
-    below += [f"0 throughout: {some(nothing)}"] if nothing else []
-    return ReportTable(caption, _columns(of, along=along) if rows else [], rows, below)
+            rows += ["  ".join(filter(None, (group.name, group.note))), *group_rows]
+    table_notes = [*_iter_notes(data, rows), *notes]
+    table_notes += [NOT_SEARCHED] if not all(run.is_searched for run in data.runs) else []
+    table_notes += [FEW_CASES_NOTE.format(len(data.runs))] if len(shown_cases) < len(data.runs) else []
+    table_notes += (
+        [HIDDEN_CASES_NOTE.format(join_names(hidden_cases))]
+        if (hidden_cases := _find_hidden_cases(data, groups, shown_cases))
+        else []
+    )
+    table_notes += [f"0 throughout: {join_names(zero_groups)}"] if zero_groups else []
+    return ReportTable(caption, _make_columns(data, has_places=has_places) if rows else [], rows, table_notes)
 
 
-def _shown(of: Reported, groups: Sequence[LoadGroup], governs: Governing) -> set[str]:
-    """The cases with a line of their own: all, or where these are many those that govern something."""
-    if len(of.runs) <= MOST_CASES:
-        return {run.name for run in of.runs}
-    bounds = [found(row.path) for group in groups for row in group.rows for found in (governs.low, governs.high)]
-    return {case for bound in bounds if bound is not None for case in bound.governing} or {of.runs[0].name}
-
-
-def _hidden(of: Reported, groups: Sequence[LoadGroup], shown: set[str]) -> list[str]:
-    """The cases without a line in which some number is open or not known, and so may govern after all."""
-    found = [
-        run.name for group in groups for row in group.rows for run, ends in runs_in(of, row.path) if not ends.whole
+def _choose_cases(data: ReportData, groups: Sequence[LoadGroup], governing_bounds: GoverningBounds) -> set[str]:
+    """Choose the cases that get rows: all, or, if these are too many, those that govern some number."""
+    if len(data.runs) <= MAX_CASES:
+        return {run.name for run in data.runs}
+    bounds = [
+        find_bound(row.path)
+        for group in groups
+        for row in group.rows
+        for find_bound in (governing_bounds.find_least, governing_bounds.find_greatest)
     ]
-    return [name for name in dict.fromkeys(found) if name not in shown]
+    return {case for bound in bounds if bound is not None for case in bound.governing} or {data.runs[0].name}
 
 
-def _columns(of: Reported, *, along: bool) -> list[TextColumn]:
-    """The heads: of instants where there are several, of cases where these are told apart."""
+def _find_hidden_cases(data: ReportData, groups: Sequence[LoadGroup], shown_cases: set[str]) -> list[str]:
+    """Find the cases without rows in which some number is indeterminate or not known, so that they may govern after
+    all.
+    """
+    uncertain_cases = [
+        run.name
+        for group in groups
+        for row in group.rows
+        for run, ends in iter_run_extremes(data, row.path)
+        if not ends.is_known
+    ]
+    return [name for name in dict.fromkeys(uncertain_cases) if name not in shown_cases]
+
+
+def _make_columns(data: ReportData, *, has_places: bool) -> list[TextColumn]:
+    """Make the columns; those of instants and of cases only if there are several."""
     heads = [TextColumn("", "left"), TextColumn("unit", "left")]
-    heads += [TextColumn("case", "left")] if of.has_cases else []
-    unit = of.units.of("m")[0]
-    beside = [f"at s [{unit}]"] * along + ["at t [s]"] * timed(of)
-    for word in ("least", "greatest") if timed(of) or along else ("value",):
-        heads += [TextColumn(word), *(TextColumn(head) for head in beside)]
+    heads += [TextColumn("case", "left")] if data.has_cases else []
+    unit = data.units.find("m")[0]
+    position_heads = [f"at s [{unit}]"] * has_places + ["at t [s]"] * has_instants(data)
+    for word in ("least", "greatest") if has_instants(data) or has_places else ("value",):
+        heads += [TextColumn(word), *(TextColumn(head) for head in position_heads)]
     return [*heads, TextColumn("±")]
 
 
-def timed(of: Reported) -> bool:
-    """Whether some case has several instants."""
-    return any(len(run.results.time) > 1 for run in of.runs)
+def has_instants(data: ReportData) -> bool:
+    """Return whether some case has several instants."""
+    return any(len(run.results.time) > 1 for run in data.runs)
 
 
-class WrittenRow(NamedTuple):
-    """A number in its unit: of each case its extremes, and the two as they are written."""
+class FormattedNumber(NamedTuple):
+    """A number with its extremes in each case and their texts.
+
+    size: factor from SI to `unit`
+    texts: by case, the texts of the minimum and the maximum
+    """
 
     row: LoadNumber
-    found: Sequence[tuple[ReportedRun, Ends]]
+    found: Sequence[tuple[ReportedRun, CaseExtremes]]
     unit: str
     size: float
     texts: Mapping[str, tuple[str, str]]
 
     @property
-    def words(self) -> set[str]:
-        """All that stands for it."""
+    def distinct_texts(self) -> set[str]:
+        """The distinct texts of all its extremes."""
         return {text for both in self.texts.values() for text in both}
 
     @property
-    def is_nothing(self) -> bool:
-        """Whether it is 0 throughout; what is open at some instants need not be."""
-        return self.words == {"0"} and all(ends.whole for _, ends in self.found)
+    def is_zero(self) -> bool:
+        """Whether it is zero at all times in all cases; an indeterminate number is not."""
+        return self.distinct_texts == {"0"} and all(ends.is_known for _, ends in self.case_extremes)
 
 
-def _written(of: Reported, group: LoadGroup) -> Iterator[WrittenRow]:
-    """The numbers of a group; those of one family and unit share their decimals."""
-    found = [(row, list(runs_in(of, row.path))) for row in group.rows]
-    families: dict[tuple[str, str], list[Ends]] = {}
-    for row, own in found:
-        for _, ends in own:
+def _iter_formatted(data: ReportData, group: LoadGroup) -> Iterator[FormattedNumber]:
+    """Yield the numbers of a group as texts; those of one family and unit have the same decimals."""
+    case_extremes = [(row, list(iter_run_extremes(data, row.path))) for row in group.rows]
+    families: dict[tuple[str, str], list[CaseExtremes]] = {}
+    for row, extremes in case_extremes:
+        for _, ends in extremes:
             families.setdefault((row.family, ends.unit), []).append(ends)
-    for row, own in found:
-        first = own[0][1]
-        unit, size = of.units.of(first.unit)
-        how = style_of(families[row.family, first.unit], of, size)
-        yield WrittenRow(row, own, unit, size, {run.name: _texts(ends, how, size) for run, ends in own})
+    for row, extremes in case_extremes:
+        first = extremes[0][1]
+        unit, size = data.units.find(first.unit)
+        style = choose_family_style(families[row.family, first.unit], data, size)
+        yield FormattedNumber(
+            row, extremes, unit, size, {run.name: _format_extremes(ends, style, size) for run, ends in extremes}
+        )
 
 
-def _lines(
-    of: Reported, group: LoadGroup, shown: set[str], governs: Governing, *, along: bool
+def _iter_group_rows(
+    data: ReportData, group: LoadGroup, shown_cases: set[str], governing_bounds: GoverningBounds, *, has_places: bool
 ) -> Iterator[Sequence[ReportCell]]:
-    """The lines of a group; what is 0 throughout takes none, what is open throughout one together."""
-    written = list(_written(of, group))
-    told = [one for one in written if not one.is_nothing and one.words != {OPEN}]
-    beside = Counter(one.row.vector for one in told if not one.row.even)
-    told = [one for one in told if not (one.row.even and one.row.vector and beside[one.row.vector] == 1)]  # nothing new
-    for one in told:
-        yield from _of_cases(of, one, shown, governs, along=along)
-    if opened := [one.row.label for one in written if one.words == {OPEN}]:
-        yield _opened(_columns(of, along=along), opened)
+    """Yield the rows of a group. Numbers that are zero at all times get none; those always indeterminate share one
+    row.
+    """
+    numbers = list(_iter_formatted(data, group))
+    row_numbers = [number for number in numbers if not number.is_zero and number.distinct_texts != {OPEN}]
+    component_counts = Counter(number.row.vector for number in row_numbers if not number.row.is_magnitude)
+    # a repetition
+    row_numbers = [
+        number
+        for number in row_numbers
+        if not (number.row.is_magnitude and number.row.vector and component_counts[number.row.vector] == 1)
+    ]
+    for number in row_numbers:
+        yield from _iter_case_rows(data, number, shown_cases, governing_bounds, has_places=has_places)
+    if open_labels := [number.row.label for number in numbers if number.distinct_texts == {OPEN}]:
+        yield _make_open_row(_make_columns(data, has_places=has_places), open_labels)
 
 
-def _opened(columns: Sequence[TextColumn], labels: Sequence[str]) -> list[ReportCell]:
-    """The line of what is open throughout: the word stands where the numbers do."""
+def _make_open_row(columns: Sequence[TextColumn], labels: Sequence[str]) -> list[ReportCell]:
+    """Make the row of the numbers that are always indeterminate: the word `open` takes the place of the number."""
     heads = [column.head for column in columns]
     first = next(heads.index(word) for word in ("least", "value") if word in heads)
-    words = {0: ", ".join(labels), first: OPEN}
-    return [ReportCell(words.get(i, "")) for i in range(len(columns))]
+    texts = {0: ", ".join(labels), first: OPEN}
+    return [ReportCell(texts.get(i, "")) for i in range(len(columns))]
 
 
-def _of_cases(
-    of: Reported, one: WrittenRow, shown: set[str], governs: Governing, *, along: bool
+def _iter_case_rows(
+    data: ReportData,
+    number: FormattedNumber,
+    shown_cases: set[str],
+    governing_bounds: GoverningBounds,
+    *,
+    has_places: bool,
 ) -> Iterator[Sequence[ReportCell]]:
-    """A line a case; the first has the name of the number and its unit."""
-    low, high = governs.low(one.row.path), governs.high(one.row.path)
-    known = not one.words & {OPEN, UNKNOWN} and not any(ends.parts_open for _, ends in one.found)
-    several = known and len(of.runs) > 1  # what is open in a case may be larger there
-    lead = [one.row.label, one.unit if one.unit != "1" else ""]
-    for run, ends in one.found:
-        if run.name not in shown:
+    """Yield one row per case; the first has the name of the number and its unit."""
+    low, high = governing_bounds.find_least(number.row.path), governing_bounds.find_greatest(number.row.path)
+    is_known = not number.distinct_texts & {OPEN, UNKNOWN} and not any(
+        ends.is_partly_open for _, ends in number.case_extremes
+    )
+    is_compared = is_known and len(data.runs) > 1  # an indeterminate value may be the largest
+    leading = [number.row.label, number.unit if number.unit != "1" else ""]
+    for run, ends in number.case_extremes:
+        if run.name not in shown_cases:
             continue
-        bold = several and not one.row.even and _is(low, run), several and _is(high, run)
-        case = [run.told] if of.has_cases else []
-        texts = one.texts[run.name]
-        error = "" if texts == (OPEN, OPEN) else rough(ends.error * one.size)
-        cells = _cells(of, run, ends, _marked(run, one, ends, texts), bold, along=along)
-        label = lead[0] + PARTLY * ends.parts_open
-        yield (ReportCell(label), ReportCell(lead[1]), *map(ReportCell, case), *cells, ReportCell(error))
-        lead = ["", ""]
+        bold = is_compared and not number.row.is_magnitude and _governs(low, run), is_compared and _governs(high, run)
+        case = [run.case_label] if data.has_cases else []
+        texts = number.texts[run.name]
+        error = "" if texts == (OPEN, OPEN) else format_error(ends.error * number.size)
+        cells = _iter_cells(data, run, ends, _mark_uncertain(run, number, ends, texts), bold, has_places=has_places)
+        label = leading[0] + PARTLY_OPEN_MARK * ends.is_partly_open
+        yield (ReportCell(label), ReportCell(leading[1]), *map(ReportCell, case), *cells, ReportCell(error))
+        leading = ["", ""]
 
 
-def _marked(run: ReportedRun, one: WrittenRow, ends: Ends, texts: tuple[str, str]) -> tuple[str, str]:
-    """The texts with a mark where smoothed friction is not at its value at their instants."""
+def _mark_uncertain(
+    run: ReportedRun, number: FormattedNumber, ends: CaseExtremes, texts: tuple[str, str]
+) -> tuple[str, str]:
+    """Mark the texts at whose instants smoothed friction has not reached its full value."""
     if texts[0] == texts[1]:
         return texts
-    kind = one.row.path.split(".")[0]
+    kind = number.row.path.split(".")[0]
     both = zip(texts, (ends.low, ends.high), strict=True)
-    low, high = (text if end.at is None else run.doubted.mark(text, end.at, kind, ends.unit) for text, end in both)
+    low, high = (
+        text if end.time is None else run.uncertain_instants.add_mark(text, end.time, kind, ends.unit)
+        for text, end in both
+    )
     return low, high
 
 
-def _texts(ends: Ends, how: Style, size: float) -> tuple[str, str]:
-    return text_of(ends.low.value, how, size), text_of(ends.high.value, how, size)
+def _format_extremes(ends: CaseExtremes, style: Style, size: float) -> tuple[str, str]:
+    return format_extreme(ends.low.value, style, size), format_extreme(ends.high.value, style, size)
 
 
-def _is(bound: Bound | None, run: ReportedRun) -> bool:
-    return bound is not None and not bound.is_rounding and run.name in bound.governing
+def _governs(extreme: Bound | None, run: ReportedRun) -> bool:
+    return extreme is not None and not extreme.is_rounding and run.name in extreme.governing
 
 
-def _cells(
-    of: Reported, run: ReportedRun, ends: Ends, texts: tuple[str, str], bold: tuple[bool, bool], *, along: bool
+def _iter_cells(
+    data: ReportData,
+    run: ReportedRun,
+    ends: CaseExtremes,
+    texts: tuple[str, str],
+    bold: tuple[bool, bool],
+    *,
+    has_places: bool,
 ) -> Iterator[ReportCell]:
-    """The cells of the lowest and the highest, each with its place and its instant."""
-    steady = texts[0] == texts[1]
-    if not (along or timed(of)):
+    """Yield the cells of the minimum and the maximum, each with its place and its instant."""
+    is_constant = texts[0] == texts[1]
+    if not (has_places or has_instants(data)):
         yield ReportCell(texts[0], any(bold))
         return
     for k, end in enumerate((ends.low, ends.high)):
         yield ReportCell(texts[k], bold[k])
-        if along:
-            yield ReportCell("" if steady else place_text(end.place, of.units, named=False))
-        if timed(of):
-            yield ReportCell("" if steady or texts[k] in (OPEN, UNKNOWN) else instant_text(end.at, run))
+        if has_places:
+            yield ReportCell("" if is_constant else format_place_in_unit(end.place, data.units, with_unit=False))
+        if has_instants(data):
+            yield ReportCell("" if is_constant or texts[k] in (OPEN, UNKNOWN) else format_instant(end.time, run))
 
 
-def _notes(of: Reported, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator[str]:
-    """What the signs of a table mean."""
+def _iter_notes(data: ReportData, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator[str]:
+    """Yield the notes that explain the signs in a table."""
     cells = [cell for row in rows if not isinstance(row, str) for cell in row]
-    words = {cell.text for cell in cells}
-    if any(cell.governs for cell in cells):
-        yield GOVERNS
+    texts = {cell.text for cell in cells}
+    if any(cell.is_governing for cell in cells):
+        yield BOLD_NOTE
     if cells:
-        yield ERRORS
-    if cells and timed(of):
-        yield STEADY.format("instants" if all(run.searched for run in of.runs) else "samples")
+        yield ERROR_NOTE
+    if cells and has_instants(data):
+        yield STEADY_NOTE.format("instants" if all(run.is_searched for run in data.runs) else "samples")
     yield ZERO_NOTE
-    if OPEN in words:
+    if OPEN in texts:
         yield OPEN_NOTE
-    if UNKNOWN in words:
+    if UNKNOWN in texts:
         yield UNKNOWN_NOTE
-    if any(cell.text.endswith(PARTLY) for cell in cells):
+    if any(cell.text.endswith(PARTLY_OPEN_MARK) for cell in cells):
         yield PARTLY_OPEN_NOTE
     if any(cell.text.endswith(MARK) for cell in cells):
-        yield from dict.fromkeys(run.doubted.note for run in of.runs if run.doubted.note)
+        yield from dict.fromkeys(run.uncertain_instants.note for run in data.runs if run.uncertain_instants.note)

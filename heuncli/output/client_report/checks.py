@@ -1,35 +1,42 @@
-"""What the spec expects of its own results, and whether it holds: the verdicts of `heun check`."""
+"""The checks of the spec's expected values against the results, as made by `heun check`."""
 
 from __future__ import annotations
 
 from heuncli.output.client_report.parts import Part, ReportCell, ReportTable, Sentence
-from heuncli.output.client_report.reported import AS_IT_STANDS, Reported
+from heuncli.output.client_report.reported import AS_IT_STANDS, ReportData
 from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.output.tables.text_table import TextColumn
-from heuncli.study.quantities.stated import unit_of
+from heuncli.study.quantities.stated import find_unit
 
-NONE, NOT_HERE = "The spec expects nothing.", "The spec expects nothing of what is reported."
+NO_CHECKS, NO_REPORTED_CHECKS = "The spec expects nothing.", "The spec expects nothing of what is reported."
 HOLDS, FAILS = "holds", "FAILS"
 HEADS = ("line", "case", "of", "unit", "at", "expected", "found", "allowed", "verdict")
 NUMBERS = frozenset({"line", "expected", "found", "allowed"})
 
 
-def check_parts(of: Reported) -> list[Part]:
-    """A line for each expectation."""
-    if not of.outcomes:
-        return [Sentence(NOT_HERE if of.unchecked else NONE)]
-    cases = any(outcome.case for outcome in of.outcomes)
-    heads = [head for head in HEADS if cases or head != "case"]
+def make_check_parts(data: ReportData) -> list[Part]:
+    """Make the table of checks, one row per expected value."""
+    if not data.outcomes:
+        return [Sentence(NO_REPORTED_CHECKS if data.unchecked_scenes else NO_CHECKS)]
+    with_cases = any(outcome.case for outcome in data.outcomes)
+    heads = [head for head in HEADS if with_cases or head != "case"]
     columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
-    rows = [_row(of, outcome, cases=cases) for outcome in of.outcomes]
-    failed = [f"{outcome.name}: {outcome.failure}" for outcome in of.outcomes if outcome.failure is not None]
-    changed = ", with what was given on the command line" if of.given else ""
+    rows = [_make_row(data, outcome, with_cases=with_cases) for outcome in data.outcomes]
+    failed = [f"{outcome.name}: {outcome.failure}" for outcome in data.outcomes if outcome.failure is not None]
+    changed = ", with what was given on the command line" if data.options else ""
     return [ReportTable(f"CHECKS  as heun check makes them{changed}; in SI units", columns, rows, failed)]
 
 
-def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[ReportCell]:
-    """The cells of one; what fails stands out."""
-    verdict = ReportCell(HOLDS if outcome.passed else FAILS, not outcome.passed)
-    case = [ReportCell(outcome.case or AS_IT_STANDS)] if cases else []
-    words = (outcome.of, unit_of(outcome.of, of.spec), outcome.when, outcome.expected, outcome.found, outcome.allowed)
-    return [ReportCell(str(outcome.line)), *case, *map(ReportCell, words), verdict]
+def _make_row(data: ReportData, outcome: Outcome, *, with_cases: bool) -> list[ReportCell]:
+    """Make the cells of one check; a failed verdict is bold."""
+    verdict = ReportCell(HOLDS if outcome.has_passed else FAILS, not outcome.has_passed)
+    case = [ReportCell(outcome.case or AS_IT_STANDS)] if with_cases else []
+    texts = (
+        outcome.subject,
+        find_unit(outcome.subject, data.spec),
+        outcome.when,
+        outcome.expected_text,
+        outcome.found_text,
+        outcome.tolerance_text,
+    )
+    return [ReportCell(str(outcome.line)), *case, *map(ReportCell, texts), verdict]

@@ -1,29 +1,29 @@
-"""What happens in a motion at instants: blows, and changes of conditions that are watched."""
+"""The chapter of impacts and events: tables of what happens at single instants."""
 
 from __future__ import annotations
 
-from heuncli.output.client_report.parts import Part, Sentence, grid_of
-from heuncli.output.client_report.reported import Reported, ReportedRun
-from heuncli.output.tables.event_table import events_table
-from heuncli.output.tables.impulse_tables import BlowReport, impulse_tables
+from heuncli.output.client_report.parts import Part, Sentence, to_report_table
+from heuncli.output.client_report.reported import ReportData, ReportedRun
+from heuncli.output.tables.event_table import make_events_table
+from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables
 
 
-def happening_parts(of: Reported) -> list[Part]:
-    """The tables of each case."""
+def make_event_parts(data: ReportData) -> list[Part]:
+    """Make the tables of impacts and events of each case."""
     parts: list[Part] = []
-    for run in of.runs:
-        own = _of_run(run)
-        if own and of.has_cases:
-            parts.append(Sentence(f"Case {run.told}:"))
-        parts += own
+    for run in data.runs:
+        tables = _make_run_parts(run)
+        if tables and data.has_cases:
+            parts.append(Sentence(f"Case {run.case_label}:"))
+        parts += tables
     return parts
 
 
-def _of_run(run: ReportedRun) -> list[Part]:
+def _make_run_parts(run: ReportedRun) -> list[Part]:
     page, results = run.page, run.results
-    tables = [events_table(results)] if results.events else []
+    tables = [make_events_table(results)] if results.events else []
     if results.impulses:
-        tables += impulse_tables(
-            BlowReport(page.results, page.labels, page.certain, page.of, page.struck, page.details)
+        tables += make_impulse_tables(
+            ImpactReport(page.results, page.labels, page.certain, page.magnitudes, page.impact_extremes, page.details)
         )
-    return [grid_of(table) for table in tables]
+    return [to_report_table(table) for table in tables]

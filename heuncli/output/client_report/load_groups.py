@@ -1,26 +1,27 @@
-"""Which numbers a table of loads tells: of each joint, support and load, by the plans of the tables of `heun run`."""
+"""Choose the numbers of a load table: of each joint, support and load, as in the tables of `heun run`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.client_report.reported import Reported
-from heuncli.output.tables.table_blocks import FAMILIES, short
+from heuncli.output.client_report.reported import ReportData
+from heuncli.output.tables.table_blocks import FAMILIES, format_component
 from heuncli.output.tables.table_plans import TablePlan
 from heuncli.results.results import Results
 from heuncli.results.results_schema import MAGNITUDES, XYZ
 
-WHOLE = {"force": "|F|", "moment": "|M|"}  # of a vector
+MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
 TOTAL = "total"  # of the foundation
-CARRIED = frozenset({"force", "contact", "normal", "tension", "last_tension", "tight", "slack"})  # by a coupling
-FROM_OUTSIDE = frozenset({"force", "couple", "distributed"})  # loads on one body, without a counterpart
+CARRIED_FORCES = frozenset({"force", "contact", "normal", "tension", "last_tension", "tight", "slack"})  # by a coupling
+EXTERNAL_LOADS = frozenset({"force", "couple", "distributed"})  # loads on one body, without a counterpart
 
 
 class LoadNumber(NamedTuple):
-    """A number of the results: its label, its path, and to which family of numbers it belongs.
+    """A number of the results: label, path, and the family of numbers with which it shares its decimals.
 
-    even: a magnitude, of which the least governs nothing; vector: of which it is a component or the magnitude.
+    is_magnitude: whether it is a magnitude, whose minimum governs nothing
+    vector: path of the vector of which it is a component or the magnitude
     """
 
     label: str
@@ -31,26 +32,26 @@ class LoadNumber(NamedTuple):
 
 
 class LoadGroup(NamedTuple):
-    """The numbers of one thing, by its name, and what is said beside that."""
+    """The numbers of one object, with its name and the note next to it."""
 
     name: str
     note: str
     rows: Sequence[LoadNumber]
 
 
-def groups_of(of: Reported, plan: TablePlan) -> Iterator[LoadGroup]:
-    """What there is of a kind, each with its numbers."""
-    results = of.runs[0].results
-    for name, prefix in _things(results, plan):
-        rows = list(_rows(of, prefix, plan.quantities))
+def iter_groups(data: ReportData, plan: TablePlan) -> Iterator[LoadGroup]:
+    """Yield the objects of a kind, each with its numbers."""
+    results = data.runs[0].results
+    for name, prefix in _iter_objects(results, plan):
+        rows = list(_iter_numbers(data, prefix, plan.quantities))
         if rows:
-            yield LoadGroup(name, plan.note(name, of.labels), rows)
+            yield LoadGroup(name, plan.note(name, data.labels), rows)
 
 
-def _things(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
-    """The names of a kind of results with what their paths begin with."""
+def _iter_objects(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
+    """Yield the names of the objects of a kind, each with the prefix of its paths."""
     block = getattr(results, plan.kind)
-    if not plan.of_foundation:
+    if not plan.is_foundation:
         yield from ((name, f"{plan.kind}.{name}") for name in block)
         return
     yield TOTAL, "foundation"
@@ -58,28 +59,30 @@ def _things(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
         yield from ((f"{word} {name}", f"foundation.{part}.{name}") for name in block.get(part, {}))
 
 
-def _rows(of: Reported, prefix: str, quantities: Sequence[str]) -> Iterator[LoadNumber]:
-    """The numbers of one thing: of a vector its components and its magnitude."""
-    numbers = of.runs[0].kept.numbers
+def _iter_numbers(data: ReportData, prefix: str, quantities: Sequence[str]) -> Iterator[LoadNumber]:
+    """Yield the numbers of one object; for a vector its components and its magnitude."""
+    numbers = data.runs[0].snapshot.numbers
     for quantity in quantities:
         path, family = f"{prefix}.{quantity}", FAMILIES.get(quantity, quantity)
-        parts = [f"{path}.{axis}" for axis in XYZ]
-        vector = all(part in numbers for part in parts)
-        for axis, part in zip(XYZ, parts, strict=True):
-            if vector:
-                yield LoadNumber(short(f"{quantity}.{axis}"), part, family, vector=path)
-        if vector:
-            yield LoadNumber(WHOLE[quantity], path, family, even=True, vector=path)
+        components = [f"{path}.{axis}" for axis in XYZ]
+        is_vector = all(component in numbers for component in components)
+        for axis, component in zip(XYZ, components, strict=True):
+            if is_vector:
+                yield LoadNumber(format_component(f"{quantity}.{axis}"), component, family, vector=path)
+        if is_vector:
+            yield LoadNumber(MAGNITUDE_LABELS[quantity], path, family, is_magnitude=True, vector=path)
         elif path in numbers:
             yield LoadNumber(quantity, path, family, quantity in MAGNITUDES)
 
 
-def joining_forces(of: Reported) -> Iterator[tuple[str, str]]:
-    """The forces of all that joins bodies, each with its name: joints, drives, stops, couplings, and loads between two.
+def iter_joining_forces(data: ReportData) -> Iterator[tuple[str, str]]:
+    """Yield the forces of all that joins bodies, each with its name: joints, drives, stops, couplings, loads between
+    bodies.
 
-    Of a coupling what it carries and what it exerts ON each body: a sheave takes both strands of its rope.
+    For a coupling these are the force that it carries and the one it exerts ON each body: a sheave takes both spans of
+    rope.
     """
-    units = {path: number.unit for run in of.runs for path, number in run.kept.numbers.items()}
+    units = {path: number.unit for run in data.runs for path, number in run.snapshot.numbers.items()}
     for path, unit in units.items():
         kind, _, rest = path.partition(".")
         name, _, quantity = rest.partition(".")
@@ -90,16 +93,16 @@ def joining_forces(of: Reported) -> Iterator[tuple[str, str]]:
         elif kind == "stops" and quantity == "force":
             yield path, f"stop {name}"
         elif kind == "couplings" and (
-            quantity in CARRIED or (quantity.startswith("on.") and quantity.endswith(".force"))
+            quantity in CARRIED_FORCES or (quantity.startswith("on.") and quantity.endswith(".force"))
         ):
-            where = quantity.removeprefix("on.").removesuffix(".force") if quantity.startswith("on.") else ""
-            yield path, f"coupling {name}{f' on {where}' if where else ''}"
+            loaded_body = quantity.removeprefix("on.").removesuffix(".force") if quantity.startswith("on.") else ""
+            yield path, f"coupling {name}{f' on {loaded_body}' if loaded_body else ''}"
         elif kind == "forces" and quantity in ("force", "value"):
-            info = of.labels.forces.get(name)
-            if info is not None and info.type not in FROM_OUTSIDE:
+            info = data.labels.forces.get(name)
+            if info is not None and info.type not in EXTERNAL_LOADS:
                 yield path, f"{info.type.replace('_', ' ')} {name}"
 
 
-def without_components(group: LoadGroup) -> LoadGroup:
-    """A group of which the magnitudes of vectors are told alone."""
-    return group._replace(rows=[row for row in group.rows if row.even or not row.vector])
+def drop_components(group: LoadGroup) -> LoadGroup:
+    """Drop the components of vectors from a group, keeping their magnitudes."""
+    return group._replace(rows=[row for row in group.rows if row.is_magnitude or not row.vector])

@@ -1,36 +1,36 @@
-"""The tables of loads: of the foundation, of each joint and stop, in every case that is reported."""
+"""The tables of loads: of the foundation, of each joint and stop, in every case of the report."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.output.client_report.cases_table import cases_table
-from heuncli.output.client_report.load_groups import TOTAL, groups_of, without_components
+from heuncli.output.client_report.cases_table import make_cases_table
+from heuncli.output.client_report.load_groups import TOTAL, drop_components, iter_groups
 from heuncli.output.client_report.parts import Part, Sentence
-from heuncli.output.client_report.reported import Reported
-from heuncli.output.tables.extremes_tables import MANY
-from heuncli.output.tables.table_blocks import chosen_components
+from heuncli.output.client_report.reported import ReportData
+from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
+from heuncli.output.tables.table_blocks import describe_chosen_components
 from heuncli.output.tables.table_plans import FOUNDATION, JOINTS, STOPS, TablePlan
 
-UNHELD = "There are no joints, and nothing stands on the ground."
-OF_BLOWS = "The scene is struck and nothing else is asked for: see the blows for its joints and the ground."
-TOO_MANY = "{} {}: of vectors the magnitudes alone; heun run SPEC --format csv has the components"
+NO_JOINTS_NOTE = "There are no joints, and nothing stands on the ground."
+ONLY_IMPACTS_NOTE = "The scene is struck and nothing else is asked for: see the blows for its joints and the ground."
+MAGNITUDES_NOTE = "{} {}: of vectors the magnitudes alone; heun run SPEC --format csv has the components"
 
 
-def load_tables(of: Reported) -> list[Part]:
-    """The tables of the foundation, the joints, the stops and the applied loads."""
+def make_load_parts(data: ReportData) -> list[Part]:
+    """Make the tables of the foundation, the joints and the stops, or a sentence if there are none."""
     plans = (FOUNDATION, JOINTS, STOPS)
-    found = [part for plan in plans for part in _table(of, plan)]
-    return found or [Sentence(UNHELD if not of.spec.joints else OF_BLOWS)]
+    tables = [part for plan in plans for part in _iter_table(data, plan)]
+    return tables or [Sentence(NO_JOINTS_NOTE if not data.spec.joints else ONLY_IMPACTS_NOTE)]
 
 
-def _table(of: Reported, plan: TablePlan) -> Iterator[Part]:
-    """The table of one kind of results, if the scene has it."""
-    groups = list(groups_of(of, plan))
+def _iter_table(data: ReportData, plan: TablePlan) -> Iterator[Part]:
+    """Yield the table of one kind of results, if the scene has it."""
+    groups = list(iter_groups(data, plan))
     if not groups:
         return
-    notes = list(dict.fromkeys(note for run in of.runs for note in chosen_components(run.results)))
-    if len(groups) > MANY:
-        groups = [group if group.name == TOTAL else without_components(group) for group in groups]
-        notes.append(TOO_MANY.format(len(groups), f"{plan.what or 'support'}s"))
-    yield cases_table(of, plan.heading(of.runs[0].results, of.labels), groups, notes)
+    notes = list(dict.fromkeys(note for run in data.runs for note in describe_chosen_components(run.results)))
+    if len(groups) > MAX_FULL_GROUPS:
+        groups = [group if group.name == TOTAL else drop_components(group) for group in groups]
+        notes.append(MAGNITUDES_NOTE.format(len(groups), f"{plan.what or 'support'}s"))
+    yield make_cases_table(data, plan.heading(data.runs[0].results, data.labels), groups, notes)

@@ -1,4 +1,4 @@
-"""What a report is made of, before it is written as a page or as markdown: chapters of sentences, tables, drawings."""
+"""The parts of a report, before it is rendered as HTML or Markdown: chapters of sentences, tables and figures."""
 
 from __future__ import annotations
 
@@ -9,39 +9,39 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.tables.text_table import TextColumn, TextTable
 
-MOST_NAMED = 8
+MAX_NAMES = 8
 Mood = Literal["plain", "good", "bad", "unsure"]
 
 
 class Sentence(NamedTuple):
-    """A sentence, or a few; mood: whether it says that all is well, that something fails, or is not known."""
+    """One or a few sentences; mood: whether they report that all is well, a failure, or an uncertainty."""
 
     text: str
     mood: Mood = "plain"
 
 
 class Facts(NamedTuple):
-    """Words with what stands for them, a line each."""
+    """Labels with their texts, one per line."""
 
     rows: Sequence[tuple[str, str]]
 
 
 class Listing(NamedTuple):
-    """Sentences, each on its own; title: what they tell."""
+    """A list of sentences under a title."""
 
     title: str
     items: Sequence[str]
 
 
 class ReportCell(NamedTuple):
-    """A cell of a table; governs: whether no other of its kind is larger."""
+    """A cell of a table; is_governing: whether its value governs, so that it is bold."""
 
     text: str
     governs: bool = False
 
 
 class ReportTable(NamedTuple):
-    """A table: its columns, its rows of cells, and what is said below. A row that is a text is a line across."""
+    """A table: its columns, its rows of cells, and the notes below. A row that is a string is a group heading."""
 
     caption: str
     columns: Sequence[TextColumn]
@@ -50,14 +50,14 @@ class ReportTable(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """A figure and what it shows."""
+    """A figure with its caption."""
 
     figure: Figure
     caption: str
 
 
 class Verbatim(NamedTuple):
-    """A text as it stands in a file, with numbers of lines."""
+    """The text of a file, shown with line numbers."""
 
     text: str
 
@@ -66,7 +66,7 @@ Part = Sentence | Facts | Listing | ReportTable | Drawing | Verbatim
 
 
 class Chapter(NamedTuple):
-    """A chapter; name: by which a link leads to it."""
+    """A chapter; name: the target of links to it."""
 
     name: str
     title: str
@@ -74,7 +74,7 @@ class Chapter(NamedTuple):
 
 
 class ClientReport(NamedTuple):
-    """A report: its title, what stands below it, and its chapters."""
+    """A report: its title, the parts below it, and its chapters."""
 
     title: str
     lead: Sequence[Part]
@@ -82,7 +82,7 @@ class ClientReport(NamedTuple):
 
 
 def has_content(part: Part) -> bool:
-    """Whether anything stands below the heading of a part."""
+    """Return whether a part has any content below its heading."""
     if isinstance(part, ReportTable):
         return bool(part.rows or part.notes)
     if isinstance(part, Listing):
@@ -90,13 +90,16 @@ def has_content(part: Part) -> bool:
     return bool(part.rows) if isinstance(part, Facts) else True
 
 
-def grid_of(table: TextTable, caption: str | None = None) -> ReportTable:
-    """A table as `heun run` prints it; caption: in the place of its heading."""
+def to_report_table(table: TextTable, caption: str | None = None) -> ReportTable:
+    """Convert a table of `heun run` to a table of the report.
+
+    caption: replaces the table's heading
+    """
     rows = [row if isinstance(row, str) else tuple(map(ReportCell, row)) for row in table.rows]
     return ReportTable(table.heading if caption is None else caption, table.columns, rows, table.notes)
 
 
-def some(names: Sequence[str]) -> str:
-    """The first of some names, and how many more there are."""
-    rest = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(names[:MOST_NAMED]) + rest
+def join_names(names: Sequence[str]) -> str:
+    """Join the first few names, and state how many more there are."""
+    rest = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(names[:MAX_NAMES]) + rest

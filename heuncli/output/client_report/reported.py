@@ -1,4 +1,4 @@
-"""What is reported: a scene in its load cases, each solved, with its numbers, and what was asked for."""
+"""The data of a report: a scene solved in its load cases, and the options of the report."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from functools import cached_property
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
-from heuncli.output.snapshots.envelopes import Enveloped, envelope
-from heuncli.output.snapshots.kept import KeptRun
+from heuncli.output.snapshots.envelopes import NumberEnvelope, make_envelope
+from heuncli.output.snapshots.kept import RunSnapshot
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtedInstants
+from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants
 from heuncli.output.tables.page import Page
 from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.smoothed_friction import partial_friction
+from heuncli.study.ask.smoothed_friction import find_partial_friction
 from heuncli.study.ask.study import Study
-from heuncli.study.compose.smoothed_friction import note_of_partial
+from heuncli.study.compose.smoothed_friction import make_partial_note
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.table_units import Units
 
@@ -26,38 +26,40 @@ LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "ev
 
 @record
 class ReportedRun:
-    """A load case, solved: its name, empty for the scene as it stands; kept: its numbers with extremes and errors.
+    """A solved load case.
 
-    searched: whether its extremes were looked for between the samples, too.
+    name: empty for the scene without the values of a case
+    snapshot: its numbers with extremes and errors
+    is_searched: whether its extremes were also searched between the samples
     """
 
     name: str
     title: str
     study: Study
-    kept: KeptRun
+    kept: RunSnapshot
     page: Page
     searched: bool
 
     @property
     def results(self) -> Results:
-        """What was solved."""
+        """The results of the run."""
         return self.study.results
 
     @cached_property
-    def doubted(self) -> DoubtedInstants:
-        """The instants of extremes at which smoothed friction is not at its value."""
-        times = [t for number in self.kept.numbers.values() for t in (number.least_at, number.greatest_at)]
-        found = partial_friction(self.study, [t for t in times if t is not None])
-        return DoubtedInstants.of(found, note_of_partial(found)) if found else NO_DOUBT
+    def uncertain_instants(self) -> DoubtfulInstants:
+        """The instants of extremes at which smoothed friction has not reached its full value."""
+        times = [t for number in self.snapshot.numbers.values() for t in (number.least_at, number.greatest_at)]
+        partial = find_partial_friction(self.study, [t for t in times if t is not None])
+        return DoubtfulInstants.with_reason(partial, make_partial_note(partial)) if partial else NO_DOUBT
 
     @property
-    def told(self) -> str:
-        """The case as it is called."""
+    def case_label(self) -> str:
+        """The name of the case as it is shown."""
         return self.name or AS_IT_STANDS
 
 
 class Imprint(NamedTuple):
-    """What stands on the first page beside what was solved; nothing of it is made up: what is not given is left out."""
+    """Entries of the first page that the user states; those not given are left out."""
 
     date: str = ""
     author: str = ""
@@ -65,12 +67,17 @@ class Imprint(NamedTuple):
 
 
 @record
-class Reported:
-    """All that a report is made of.
+class ReportData:
+    """All data of a report.
 
-    spec: the scene as it stands; text: its file; digests: of the files that it names, by their names; runs: those that
-    are told; outcomes: of all that is expected, in their order; given: what --set and the solver's options were; left
-    out: the cases of the spec that were not asked for; unchecked: the scenes that expect something and were not solved.
+    spec: the scene without the values of a case
+    text: the spec file
+    digests: of the files that the spec refers to, by their names
+    runs: the load cases of the report
+    outcomes: of all expected values, in their order
+    options: the values of --set and of the solver's options
+    omitted_cases: load cases of the spec that were not requested
+    unchecked_scenes: scenes with expected values that were not solved
     """
 
     spec: Spec
@@ -86,16 +93,16 @@ class Reported:
     imprint: Imprint
 
     @cached_property
-    def envelope(self) -> list[Enveloped]:
-        """The lowest and the highest of each number, with the cases that govern."""
-        return envelope({run.name: run.kept for run in self.runs})
+    def envelope(self) -> list[NumberEnvelope]:
+        """The minimum and maximum of each number, with the cases that govern."""
+        return make_envelope({run.name: run.snapshot for run in self.runs})
 
     @property
     def labels(self) -> Labels:
-        """The kinds of everything that is named."""
+        """The kinds of all named objects."""
         return self.runs[0].page.labels
 
     @property
     def has_cases(self) -> bool:
-        """Whether load cases are told apart."""
+        """Whether the report names load cases."""
         return len(self.runs) > 1 or bool(self.runs[0].name)

@@ -1,28 +1,28 @@
-"""Pictures as files: by the end of a name as SVG, which needs nothing, or as PNG or PDF by matplotlib."""
+"""Encode drawings as files, by the ending of the name: SVG, which needs no library, or PNG or PDF by matplotlib."""
 
 from __future__ import annotations
 
 import os.path
 
 from heuncli.base.errors import Problem, UsageError
-from heuncli.output.drawing.picture import Picture, svg
+from heuncli.output.drawing.picture import VectorDrawing, to_svg
 
-PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
+FORMS = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 
 
-def form_of(name: str, option: str) -> str:
-    """The form of a picture by the end of its name. Raises UsageError."""
-    form = PICTURES.get(os.path.splitext(name)[1].lower())  # noqa: PTH122 - a name, not a file
+def find_form(name: str, option: str) -> str:
+    """Return the form of a drawing by the ending of a file name. Raises UsageError."""
+    form = FORMS.get(os.path.splitext(name)[1].lower())  # noqa: PTH122 - a name, not a file
     if form is None:
-        hint = f"known endings: {', '.join(PICTURES)}"
+        hint = f"known endings: {', '.join(FORMS)}"
         raise UsageError(Problem("bad-option", f"{option} {name}: no picture is known by that ending", hint=hint))
     return form
 
 
-def as_file(picture: Picture, form: str) -> bytes:
-    """The picture in a form. Raises SpecError where what draws it is not installed."""
+def encode_drawing(drawing: VectorDrawing, form: str) -> bytes:
+    """Encode the drawing in a form. Raises SpecError if the library that it needs is not installed."""
     if form == "svg":
-        return svg(picture).encode()
-    from heuncli.output.drawing.matplotlib_file import rendered
+        return to_svg(drawing).encode()
+    from heuncli.output.drawing.matplotlib_file import render
 
-    return rendered(picture, form)
+    return render(drawing, form)

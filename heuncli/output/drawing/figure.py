@@ -1,8 +1,7 @@
-"""A figure: panels under each other, each with two axes, and in them curves, bands, marks and outlines.
+"""A figure: panels below each other, each with two axes, and with curves, bands, marks and outlines.
 
-Everything stands in the units of the axes; where it comes to stand in pixels or in the cells of a terminal is told by
-output/drawing/layout.py and output/drawing/letters.py. A number that is not known (nan) is drawn by nobody: curves are
-broken there.
+All places are in the units of the axes; output/drawing/layout.py and output/drawing/letters.py convert them to pixels
+or to cells of a terminal. An unknown number (nan) is not drawn: curves are interrupted there.
 """
 
 from __future__ import annotations
@@ -13,11 +12,11 @@ from math import log
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
-HEIGHT = 170.0  # pixels of a panel, as a rule
+HEIGHT = 170.0  # default, pixels of a panel
 
 
 class Trace(NamedTuple):
-    """A line through points (n,), broken where one is nan; thin: what stands beside a curve that matters more."""
+    """A curve through points (n,), interrupted where one is nan; is_thin: it is less important than another curve."""
 
     name: str
     x: Array
@@ -27,7 +26,7 @@ class Trace(NamedTuple):
 
 
 class Band(NamedTuple):
-    """What lies between two courses (n,), lightly filled."""
+    """The area between two courses (n,), lightly filled."""
 
     name: str
     x: Array
@@ -37,7 +36,7 @@ class Band(NamedTuple):
 
 
 class Strokes(NamedTuple):
-    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). Hatches, ordinates, symbols."""
+    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols."""
 
     ends: Array
     pen: int | None = None
@@ -45,9 +44,10 @@ class Strokes(NamedTuple):
 
 
 class Polygon(NamedTuple):
-    """A closed line through corners (n, 2), filled lightly or not at all; solid: what lies beneath hardly shows.
+    """A closed line through corners (n, 2), lightly filled or empty.
 
-    outlined: whether the line itself is drawn.
+    is_opaque: whether it nearly hides what lies below
+    has_outline: whether the line itself is drawn
     """
 
     name: str
@@ -60,7 +60,11 @@ class Polygon(NamedTuple):
 
 
 class Arrow(NamedTuple):
-    """An arrow, to scale, from a place by so much; name: what stands at its tip; told: what a reader is told of it."""
+    """An arrow, to scale, from a place by a difference.
+
+    name: label at its tip
+    description: title shown to readers
+    """
 
     x: float
     y: float
@@ -72,9 +76,9 @@ class Arrow(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A marked place with its words; shape: one of output/drawing/picture.py.
+    """A marked place with its words; shape: one of output/drawing/shapes.py.
 
-    note: what is told of it under the panels where the words find no room; the words where it is empty.
+    note: text listed under the panels if the words find no room there; if empty, the words themselves
     """
 
     x: float
@@ -87,7 +91,7 @@ class Spot(NamedTuple):
 
 
 class Words(NamedTuple):
-    """A few words, or a sign, about a place, without a mark."""
+    """A few words, or a sign, at a place, without a mark."""
 
     x: float
     y: float
@@ -96,9 +100,10 @@ class Words(NamedTuple):
 
 
 class Symbol(NamedTuple):
-    """A symbol of output/drawing/symbols.py about a place, as large on paper whatever the scale.
+    """A symbol of output/drawing/symbols.py at a place, of the same size on paper at any scale.
 
-    along: where its x points in the panel, of any length; name: what a reader is told of it.
+    direction: of its x axis in the panel, of any length
+    name: title shown to readers
     """
 
     x: float
@@ -110,7 +115,7 @@ class Symbol(NamedTuple):
 
 
 class Link(NamedTuple):
-    """What joins two places: a kind of output/drawing/symbols.py, as wide on paper whatever the scale."""
+    """A connection between two places: a kind of output/drawing/symbols.py, of the same width on paper at any scale."""
 
     x: float
     y: float
@@ -122,9 +127,10 @@ class Link(NamedTuple):
 
 
 class PlaceLabel(NamedTuple):
-    """Words that are to stand beside a place where there is room; letter: what stands there in letters, and is told.
+    """Words to be placed near a place if there is room.
 
-    spare: nobody misses it where there is none.
+    letter: short form for terminals, which is explained below the panel
+    is_optional: whether it may be left out without a note
     """
 
     x: float
@@ -135,10 +141,11 @@ class PlaceLabel(NamedTuple):
     spare: bool = False
 
 
-class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot.
+class VerticalMark(NamedTuple):
+    """A vertical mark across a panel with its words: an event, an impact, a jump.
 
-    above: the words stand above the panel.
+    note: as of a Spot
+    is_above: whether the words stand above the panel
     """
 
     x: float
@@ -148,7 +155,7 @@ class Upright(NamedTuple):
 
 
 class Blank(NamedTuple):
-    """A stretch along x of which nothing is claimed: hatched and empty, and why."""
+    """An interval along x of which nothing is claimed: hatched and empty, with the reason."""
 
     low: float
     high: float
@@ -184,7 +191,7 @@ Item = (
     | Symbol
     | Link
     | PlaceLabel
-    | Upright
+    | VerticalMark
     | Blank
     | Bars
     | Cells
@@ -192,9 +199,10 @@ Item = (
 
 
 class Scaling(NamedTuple):
-    """An axis: what it tells, with its unit, and its ends; named: places that have names in place of numbers.
+    """An axis: its label with the unit, and its ends.
 
-    unlabelled: whether another panel shows the label; the numbers along it are the same.
+    tick_texts: places with names instead of numbers
+    hides_label: whether another panel shows the label and the same numbers
     """
 
     label: str
@@ -206,21 +214,25 @@ class Scaling(NamedTuple):
 
     @property
     def shown_label(self) -> str:
-        """The label, where this panel shows it."""
-        return "" if self.unlabelled else self.label
+        """The label, if this panel shows it."""
+        return "" if self.hides_label else self.label
 
-    def at(self, value: float) -> float:
-        """Where a value stands, 0 to 1; beyond the ends beyond these."""
-        if self.logarithmic:
+    def to_share(self, value: float) -> float:
+        """Return the place of a value as a share of the axis, 0 to 1; values outside the ends are outside this
+        range.
+        """
+        if self.is_logarithmic:
             return (log(value) - log(self.low)) / (log(self.high) - log(self.low))
         return (value - self.low) / (self.high - self.low)
 
 
 class Panel(NamedTuple):
-    """Axes with what stands in them, the first beneath the others; equal: one unit is as long on both axes.
+    """Axes with their items; the first items are below the others.
 
-    height [pixels]; of equal axes the most. bare: without axes. layered: what stands behind covers what stands before
-    it, else lines lie on what is filled.
+    height: in pixels; with equal scales the maximum
+    has_equal_scales: whether a unit has the same length on both axes
+    is_bare: whether it has no axes
+    is_layered: whether items cover those before them; else lines are drawn over filled areas
     """
 
     x: Scaling
@@ -233,15 +245,16 @@ class Panel(NamedTuple):
     layered: bool = False
 
 
-def over_one_axis(panels: Sequence[Panel]) -> list[Panel]:
-    """Panels under each other whose axes across are one, which the last of them names."""
-    return [*(panel._replace(x=panel.x._replace(unlabelled=True)) for panel in panels[:-1]), *panels[-1:]]
+def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:
+    """Return panels that share one horizontal axis, whose label only the last one shows."""
+    return [*(panel._replace(x=panel.x._replace(hides_label=True)) for panel in panels[:-1]), *panels[-1:]]
 
 
 class Figure(NamedTuple):
-    """Panels under each other, a title, what it is of in sentences, and notes below.
+    """Panels below each other, with a title, sentences that describe the figure, and notes below.
 
-    legend: names of pens, in their order; marks: names of marks, with their pens and shapes.
+    legend: names of pens, in their order
+    marks: names of marks, with their pens and shapes
     """
 
     title: str

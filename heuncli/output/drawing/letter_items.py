@@ -1,4 +1,4 @@
-"""What the items of a panel become in the cells of a terminal."""
+"""Draw the items of a panel in the cells of a terminal."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import shown
-from heuncli.output.drawing.canvas import DOWN, NOBODY, Canvas, Look
+from heuncli.base.foreign_text import escape
+from heuncli.output.drawing.canvas import DOT_ROWS, NO_PEN, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (
     Arrow,
     Band,
@@ -26,136 +26,141 @@ from heuncli.output.drawing.figure import (
     Strokes,
     Symbol,
     Trace,
-    Upright,
+    VerticalMark,
     Words,
 )
-from heuncli.output.drawing.pens import pen
-from heuncli.output.drawing.room import columns_of
-from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, link
+from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.room import count_columns
+from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
 
-DOT = 4.0  # pixels that a dot stands for where symbols are drawn in dots
-APART = 3.0  # columns between upright strokes that belong together
-SHADES = "·░▒▓█"  # what is not known is blank
+PIXELS_PER_DOT = 4.0  # pixels of a symbol for a dot
+MIN_STROKE_DISTANCE = 3.0  # columns between ordinates
+SHADES = "·░▒▓█"  # unknown cells are blank
 PLAIN_SHADES = ".:*#@"
 
 
-def mark_of(shape: str, look: Look, number: int) -> str:
-    """How a marked place is told; points that belong together by the letter of their pen, where no colour tells."""
+def choose_mark(shape: str, style: TerminalStyle, number: int) -> str:
+    """Return the character of a marked place; points of one curve have the letter of their pen if there are no
+    colours.
+    """
     if shape != "circle" and number >= 0:
-        return "+" if look.colours else pen(number).letter
-    return "•" if look.braille else "o"
+        return "+" if style.has_colours else find_pen(number).letter
+    return "•" if style.has_braille else "o"
 
 
-def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
-    """The dots of a line through points."""
-    points = [(canvas.x(a), canvas.y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-    for x0, y0 in points if len(points) == 1 or not np.isfinite(y).all() else ():  # some may stand alone
+def _draw_course(canvas: Canvas, x: Array, y: Array, number: int, stride: int = 1) -> None:
+    """Draw the dots of a line through points."""
+    points = [(canvas.to_dot_x(a), canvas.to_dot_y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
+    for x0, y0 in points if len(points) == 1 or not np.isfinite(y).all() else ():  # isolated points
         if math.isfinite(x0 + y0):
-            canvas.dot(x0, y0, number)
+            canvas.set_dot(x0, y0, number)
     for (x0, y0), (x1, y1) in pairwise(points):
         if math.isfinite(x0 + y0 + x1 + y1):
-            canvas.line(x0, y0, x1, y1, number, every)
+            canvas.draw_line(x0, y0, x1, y1, number, stride)
 
 
-def _trace(item: Trace, canvas: Canvas) -> None:
-    _course(canvas, item.x, item.y, item.pen, 2 if item.thin and canvas.look.braille else 1)
+def _draw_trace(item: Trace, canvas: Canvas) -> None:
+    _draw_course(canvas, item.x, item.y, item.pen, 2 if item.is_thin and canvas.style.has_braille else 1)
 
 
-def _band(item: Band, canvas: Canvas) -> None:
+def _draw_band(item: Band, canvas: Canvas) -> None:
     for edge in (item.low, item.high):
-        _course(canvas, item.x, edge, item.pen, 3 if canvas.look.braille else 2)
+        _draw_course(canvas, item.x, edge, item.pen, 3 if canvas.style.has_braille else 2)
 
 
-def _strokes(item: Strokes, canvas: Canvas) -> None:
-    """Of ordinates, which stand upright, only so many that what lies between them can be seen.
+def _draw_strokes(item: Strokes, canvas: Canvas) -> None:
+    """Draw strokes; of vertical ordinates only so many that what lies between them is visible.
 
-    Where curves are letters strokes are dots.
+    If curves are letters, strokes are dots.
     """
     last = -math.inf
-    number = NOBODY if item.pen is None or not canvas.look.braille else item.pen
+    number = NO_PEN if item.pen is None or not canvas.style.has_braille else item.pen
     for (x0, y0), (x1, y1) in item.ends.tolist():
         if x0 == x1:
-            column = canvas.x(x0) / canvas.per_x
-            if abs(column - last) < APART:
+            column = canvas.to_dot_x(x0) / canvas.per_x
+            if abs(column - last) < MIN_STROKE_DISTANCE:
                 continue
             last = column
-        canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), number)
+        canvas.draw_line(canvas.to_dot_x(x0), canvas.to_dot_y(y0), canvas.to_dot_x(x1), canvas.to_dot_y(y1), number)
 
 
-def _polygon(item: Polygon, canvas: Canvas) -> None:
-    if not item.outlined:
+def _draw_polygon(item: Polygon, canvas: Canvas) -> None:
+    if not item.has_outline:
         return
-    around = np.concatenate([item.corners, item.corners[:1]])
-    _course(canvas, around[:, 0], around[:, 1], NOBODY if item.pen is None else item.pen)
+    outline = np.concatenate([item.corners, item.corners[:1]])
+    _draw_course(canvas, outline[:, 0], outline[:, 1], NO_PEN if item.pen is None else item.pen)
 
 
-def _arrow(item: Arrow, canvas: Canvas) -> None:
-    number = NOBODY if item.pen is None else item.pen
-    x, y = canvas.x(item.x + item.by_x), canvas.y(item.y + item.by_y)
-    canvas.line(canvas.x(item.x), canvas.y(item.y), x, y, number)
+def _draw_arrow(item: Arrow, canvas: Canvas) -> None:
+    number = NO_PEN if item.pen is None else item.pen
+    x, y = canvas.to_dot_x(item.x + item.by_x), canvas.to_dot_y(item.y + item.by_y)
+    canvas.draw_line(canvas.to_dot_x(item.x), canvas.to_dot_y(item.y), x, y, number)
     if item.name:
-        canvas.write(shown(item.name), round(x) // canvas.per_x + 1, round(y) // canvas.per_y)
+        canvas.write(escape(item.name), round(x) // canvas.per_x + 1, round(y) // canvas.per_y)
 
 
-def _spot(item: Spot, canvas: Canvas) -> None:
-    number = NOBODY if item.pen is None else item.pen
-    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    canvas.write(mark_of(item.shape, canvas.look, number), column, row, number)
+def _draw_spot(item: Spot, canvas: Canvas) -> None:
+    number = NO_PEN if item.pen is None else item.pen
+    column, row = round(canvas.to_dot_x(item.x)) // canvas.per_x, round(canvas.to_dot_y(item.y)) // canvas.per_y
+    canvas.write(choose_mark(item.shape, canvas.style, number), column, row, number)
 
 
-def _word(item: Words, canvas: Canvas) -> None:
-    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    text = shown(item.text if canvas.look.braille else item.text.replace("\N{MINUS SIGN}", "-"))
-    canvas.write(text, column - columns_of(text) // 2, row)
+def _draw_words(item: Words, canvas: Canvas) -> None:
+    column, row = round(canvas.to_dot_x(item.x)) // canvas.per_x, round(canvas.to_dot_y(item.y)) // canvas.per_y
+    text = escape(item.text if canvas.style.has_braille else item.text.replace("\N{MINUS SIGN}", "-"))
+    canvas.write(text, column - count_columns(text) // 2, row)
 
 
-def _symbol(item: Symbol, canvas: Canvas) -> None:
-    x, y = canvas.x(item.x), canvas.y(item.y)
-    shown_as = SYMBOLS[item.symbol]
-    letter = shown_as.letter if canvas.look.braille else shown_as.plain
+def _draw_symbol(item: Symbol, canvas: Canvas) -> None:
+    x, y = canvas.to_dot_x(item.x), canvas.to_dot_y(item.y)
+    symbol = SYMBOLS[item.symbol]
+    letter = symbol.letter if canvas.style.has_braille else symbol.plain
     if letter:
         canvas.write(
-            letter, round(x) // canvas.per_x, round(y) // canvas.per_y, NOBODY if item.pen is None else item.pen
+            letter, round(x) // canvas.per_x, round(y) // canvas.per_y, NO_PEN if item.pen is None else item.pen
         )
-    elif canvas.look.braille:
-        along = canvas.x(item.along[0]) - canvas.x(0.0), canvas.y(item.along[1]) - canvas.y(0.0)
-        _parts(shown_as.parts, x, y, along, item.pen, canvas)
+    elif canvas.style.has_braille:
+        direction = (
+            canvas.to_dot_x(item.direction[0]) - canvas.to_dot_x(0.0),
+            canvas.to_dot_y(item.direction[1]) - canvas.to_dot_y(0.0),
+        )
+        _draw_parts(symbol.parts, x, y, direction, item.pen, canvas)
 
 
-def _link(item: Link, canvas: Canvas) -> None:
-    x, y = canvas.x(item.x), canvas.y(item.y)
-    along = canvas.x(item.to_x) - x, canvas.y(item.to_y) - y
-    if canvas.look.braille:
-        _parts(link(item.kind, DOT * math.hypot(*along)), x, y, along, item.pen, canvas)
+def _draw_link(item: Link, canvas: Canvas) -> None:
+    x, y = canvas.to_dot_x(item.x), canvas.to_dot_y(item.y)
+    difference = canvas.to_dot_x(item.to_x) - x, canvas.to_dot_y(item.to_y) - y
+    if canvas.style.has_braille:
+        _draw_parts(make_link(item.kind, PIXELS_PER_DOT * math.hypot(*difference)), x, y, difference, item.pen, canvas)
     else:
-        canvas.line(x, y, x + along[0], y + along[1], NOBODY if item.pen is None else item.pen)
+        canvas.draw_line(x, y, x + difference[0], y + difference[1], NO_PEN if item.pen is None else item.pen)
 
 
-def _parts(
-    parts: Sequence[SymbolPart], x: float, y: float, along: tuple[float, float], number: int | None, canvas: Canvas
+def _draw_parts(
+    parts: Sequence[SymbolPart], x: float, y: float, direction: tuple[float, float], number: int | None, canvas: Canvas
 ) -> None:
-    """The parts of a symbol about a dot, its x along a way in dots."""
-    length = math.hypot(*along)
-    a, b = (along[0] / length, along[1] / length) if length > 0.0 else (1.0, 0.0)
+    """Draw the parts of a symbol at a dot; direction: of its x axis, in dots."""
+    length = math.hypot(*direction)
+    a, b = (direction[0] / length, direction[1] / length) if length > 0.0 else (1.0, 0.0)
     for part in parts:
-        points = [(x + (p * a + q * b) / DOT, y + (p * b - q * a) / DOT) for p, q in part.points]
-        for (x0, y0), (x1, y1) in pairwise([*points, *points[: part.closed]]):
-            canvas.line(x0, y0, x1, y1, NOBODY if number is None else number)
+        points = [(x + (p * a + q * b) / PIXELS_PER_DOT, y + (p * b - q * a) / PIXELS_PER_DOT) for p, q in part.points]
+        for (x0, y0), (x1, y1) in pairwise([*points, *points[: part.is_closed]]):
+            canvas.draw_line(x0, y0, x1, y1, NO_PEN if number is None else number)
 
 
-def _label(item: PlaceLabel, canvas: Canvas) -> None:
-    """Placed when all else is (letters.py)."""
+def _skip_label(item: PlaceLabel, canvas: Canvas) -> None:
+    """Labels are placed after all other items (letters.py)."""
 
 
-def _upright(item: Upright, canvas: Canvas) -> None:
-    x = canvas.x(item.x)
-    canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, NOBODY, DOWN if canvas.look.braille else 1)
+def _draw_vertical_mark(item: VerticalMark, canvas: Canvas) -> None:
+    x = canvas.to_dot_x(item.x)
+    canvas.draw_line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, NO_PEN, DOT_ROWS if canvas.style.has_braille else 1)
 
 
-def _blank(item: Blank, canvas: Canvas) -> None:
-    left, right = (round(canvas.x(x)) // canvas.per_x for x in (item.low, item.high))
-    text = f" {shown(item.text)} "
+def _draw_blank(item: Blank, canvas: Canvas) -> None:
+    left, right = (round(canvas.to_dot_x(x)) // canvas.per_x for x in (item.low, item.high))
+    text = f" {escape(item.text)} "
     if item.text and len(text) <= right - left + 1:
         canvas.write(text, (left + right + 1 - len(text)) // 2, canvas.rows // 3)
     for row in range(canvas.rows):
@@ -165,36 +170,38 @@ def _blank(item: Blank, canvas: Canvas) -> None:
                 canvas.write("/", column, row)
 
 
-def _bars(item: Bars, canvas: Canvas) -> None:
+def _draw_bars(item: Bars, canvas: Canvas) -> None:
     for x, y in zip(item.x.tolist(), item.y.tolist(), strict=True):
         if math.isfinite(y):
             for k in range(-1, 2):
-                canvas.line(canvas.x(x) + k, canvas.y(0.0), canvas.x(x) + k, canvas.y(y), item.pen)
+                canvas.draw_line(
+                    canvas.to_dot_x(x) + k, canvas.to_dot_y(0.0), canvas.to_dot_x(x) + k, canvas.to_dot_y(y), item.pen
+                )
 
 
-def _cells(item: Cells, canvas: Canvas) -> None:
+def _draw_cells(item: Cells, canvas: Canvas) -> None:
     known = item.values[np.isfinite(item.values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    shades = SHADES if canvas.look.braille else PLAIN_SHADES
+    shades = SHADES if canvas.style.has_braille else PLAIN_SHADES
     for row in range(canvas.rows):
         for column in range(canvas.columns):
             i, j = (
-                _cell_at(item.x_edges, column / canvas.columns, canvas.across),
-                _cell_at(item.y_edges, 1.0 - row / canvas.rows, canvas.up),
+                _find_cell(item.x_edges, column / canvas.columns, canvas.x_scaling),
+                _find_cell(item.y_edges, 1.0 - row / canvas.rows, canvas.y_scaling),
             )
             value = float(item.values[j, i])
             if math.isfinite(value):
                 share = (value - low) / (high - low) if high > low else 0.5
-                canvas.words.setdefault((row, column), (shades[round(share * (len(shades) - 1))], NOBODY))
+                canvas.words.setdefault((row, column), (shades[round(share * (len(shades) - 1))], NO_PEN))
 
 
-def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
-    """The cell at a share of an axis."""
-    shares: Sequence[float] = [scaling.at(edge) for edge in edges.tolist()]
+def _find_cell(edges: Array, share: float, scaling: Scaling) -> int:
+    """Return the index of the cell at a share of an axis."""
+    shares: Sequence[float] = [scaling.to_share(edge) for edge in edges.tolist()]
     return min(max(int(np.searchsorted(shares, share, side="right")) - 1, 0), len(edges) - 2)
 
 
-DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _word,
-    Symbol: _symbol, Link: _link, PlaceLabel: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
+DRAW_FUNCTIONS: dict[type[Item], Callable[[Any, Canvas], None]] = {
+    Trace: _draw_trace, Band: _draw_band, Strokes: _draw_strokes, Polygon: _draw_polygon, Arrow: _draw_arrow, Spot: _draw_spot, Words: _draw_words,
+    Symbol: _draw_symbol, Link: _draw_link, PlaceLabel: _skip_label, VerticalMark: _draw_vertical_mark, Blank: _draw_blank, Bars: _draw_bars, Cells: _draw_cells,
 }  # fmt: skip

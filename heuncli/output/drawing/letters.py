@@ -1,7 +1,7 @@
-"""A figure in the cells of a terminal: curves in braille, eight dots a cell, or in letters where it shows no braille.
+"""Draw a figure in the cells of a terminal: curves in braille, eight dots a cell, or in letters if it has no braille.
 
-The items are those of output/drawing/figure.py. Curves keep the colour of their pen where colours are shown; else the
-pen's letter stands at some places of a curve, and where there is no braille it is drawn with it.
+The items are those of output/drawing/figure.py. Curves have the colour of their pen if colours are shown. Otherwise the
+pen's letter marks some places of a curve; without braille the curve is drawn with this letter.
 """
 
 from __future__ import annotations
@@ -11,172 +11,198 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import shown
-from heuncli.base.wrapping import wrapped
-from heuncli.output.drawing.canvas import NOBODY, RESET, Canvas, Look
-from heuncli.output.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, Upright
-from heuncli.output.drawing.letter_items import DRAWN, mark_of
-from heuncli.output.drawing.pens import pen
-from heuncli.output.drawing.room import columns_of, left_out
-from heuncli.output.drawing.ticks import ticks
-from heuncli.output.drawing.words import in_turn
+from heuncli.base.foreign_text import escape
+from heuncli.base.wrapping import wrap_text
+from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
+from heuncli.output.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
+from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
+from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.room import count_columns, make_omitted_note
+from heuncli.output.drawing.ticks import choose_ticks
+from heuncli.output.drawing.words import order_items
 
-ROWS, LEAST_ROWS = 12, 5  # of a panel as high as most, and of any
-ASPECT = 2.0  # how much higher than wide a cell is
-LABEL = 10  # columns left of a panel
-LETTERS = 3  # of its pen along a curve
-ZERO = 4  # columns from dot to dot of the line at zero
+ROWS, MIN_ROWS = 12, 5  # of a panel of default height, minimum
+ASPECT = 2.0  # height of a cell in widths
+LABEL_WIDTH = 10  # columns left of a panel
+N_LETTERS = 3  # pen letters along a curve
+ZERO_STRIDE = 4  # columns between dots of the zero line
 
 
-def drawn(figure: Figure, look: Look) -> str:
-    """The figure as lines of text; ends with a newline."""
-    lines = [line for text in (figure.title, *figure.words) if text for line in wrapped(shown(text), look.width, 0)]
-    lines += _legend(figure, look)
-    told: list[str] = []
+def draw_text(figure: Figure, style: TerminalStyle) -> str:
+    """Draw the figure as lines of text; ends with a newline."""
+    lines = [line for text in (figure.title, *figure.words) if text for line in wrap_text(escape(text), style.width, 0)]
+    lines += _draw_legend(figure, style)
+    omitted: list[str] = []
     for panel in figure.panels:
-        rows, without_words = _panel(panel, look)
+        rows, without_words = _draw_panel(panel, style)
         lines += ["", *rows]
-        told += without_words
-    lines += [line for note in (*figure.notes, *left_out(told)) for line in wrapped(shown(note), look.width, 2)]
+        omitted += without_words
+    lines += [
+        line
+        for note in (*figure.notes, *make_omitted_note(omitted))
+        for line in wrap_text(escape(note), style.width, 2)
+    ]
     return "\n".join(lines) + "\n"
 
 
-def _legend(figure: Figure, look: Look) -> list[str]:
-    """How each curve and mark is told, as many in a line as fit."""
-    lines, room = [""], look.width
+def _draw_legend(figure: Figure, style: TerminalStyle) -> list[str]:
+    """Return the samples of curves and marks with their names, as many in a line as fit."""
+    lines, width_left = [""], style.width
     entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
     for name, number, mark in entries:
-        sample = mark_of(mark, look, number) if mark else "⠤⠤" if look.colours and look.braille else pen(number).letter
-        wide = columns_of(sample) + 1 + columns_of(shown(name))
-        if lines[-1] and wide + 3 > room:
+        sample = (
+            choose_mark(mark, style, number)
+            if mark
+            else "⠤⠤"
+            if style.has_colours and style.has_braille
+            else find_pen(number).letter
+        )
+        entry_width = count_columns(sample) + 1 + count_columns(escape(name))
+        if lines[-1] and entry_width + 3 > width_left:
             lines.append("")
-            room = look.width
-        text = f"\x1b[{pen(number).code}m{sample}{RESET}" if look.colours else sample
-        lines[-1] += f"{'   ' if lines[-1] else ''}{text} {shown(name)}"
-        room -= wide + 3
+            width_left = style.width
+        text = f"\x1b[{find_pen(number).code}m{sample}{RESET}" if style.has_colours else sample
+        lines[-1] += f"{'   ' if lines[-1] else ''}{text} {escape(name)}"
+        width_left -= entry_width + 3
     return lines if entries else []
 
 
-def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
-    """A panel with its axes, and what is told of words that found no room."""
-    room = max(look.width - LABEL - 2, 10)
-    rows = max(LEAST_ROWS, round(ROWS * panel.height / HEIGHT))
-    columns = room
-    if panel.equal:
-        across, up = panel.x.high - panel.x.low, panel.y.high - panel.y.low
-        unit = min(room / across, ASPECT * rows / up)  # columns a unit
-        columns, rows = max(2, round(unit * across)), max(2, round(unit * up / ASPECT))
-    canvas = Canvas(columns, rows, panel.x, panel.y, look)
-    if not panel.bare and panel.y.low < 0.0 < panel.y.high and not panel.y.named:
-        canvas.line(0.0, canvas.y(0.0), columns * canvas.per_x - 1.0, canvas.y(0.0), NOBODY, ZERO * canvas.per_x)
-    for item in panel.items:
-        draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
-        draw(item, canvas)
-    told = _spoken(panel.items, canvas)
-    key, unnamed = _labels([item for item in panel.items if isinstance(item, PlaceLabel) and item.letter], canvas)
-    told += unnamed
-    if look.letters and look.braille:
-        _named(panel.items, canvas)
-    heads = wrapped(shown(" ".join(part for part in (panel.title, _upward(panel)) if part)), look.width, 0)
-    lines = [*(head for head in heads if head)]
-    if panel.bare:
-        return lines + canvas.lines() + key, told
-    above = {round(canvas.x(i.x)) // canvas.per_x: i.text for i in panel.items if isinstance(i, Upright) and i.above}
-    lines += [_placed(above, canvas)] if above else []
-    marks = {round(canvas.y(v)) // canvas.per_y: text for v, text in ticks(panel.y, max(2, rows // 3))}
-    for row, text in enumerate(canvas.lines()):
-        lines.append(
-            f"{shown(marks.get(row, ''))[:LABEL]:>{LABEL}} │{text}"
-            if look.braille
-            else f"{shown(marks.get(row, ''))[:LABEL]:>{LABEL}} |{text}"
+def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str]]:
+    """Return a panel with its axes, and the words that found no room."""
+    max_columns = max(style.width - LABEL_WIDTH - 2, 10)
+    rows = max(MIN_ROWS, round(ROWS * panel.height / HEIGHT))
+    columns = max_columns
+    if panel.has_equal_scales:
+        x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low
+        columns_per_unit = min(max_columns / x_span, ASPECT * rows / y_span)  # columns per unit
+        columns, rows = max(2, round(columns_per_unit * x_span)), max(2, round(columns_per_unit * y_span / ASPECT))
+    canvas = Canvas(columns, rows, panel.x, panel.y, style)
+    if not panel.is_bare and panel.y.low < 0.0 < panel.y.high and not panel.y.tick_texts:
+        canvas.draw_line(
+            0.0,
+            canvas.to_dot_y(0.0),
+            columns * canvas.per_x - 1.0,
+            canvas.to_dot_y(0.0),
+            NO_PEN,
+            ZERO_STRIDE * canvas.per_x,
         )
-    return lines + _below(panel, canvas) + key, told
+    for item in panel.items:
+        draw: Callable[[Any, Canvas], None] = DRAW_FUNCTIONS[type(item)]
+        draw(item, canvas)
+    omitted = _write_words(panel.items, canvas)
+    key, omitted_labels = _write_labels(
+        [item for item in panel.items if isinstance(item, PlaceLabel) and item.letter], canvas
+    )
+    omitted += omitted_labels
+    if style.uses_letters and style.has_braille:
+        _mark_curves(panel.items, canvas)
+    heads = wrap_text(escape(" ".join(part for part in (panel.title, _find_y_label(panel)) if part)), style.width, 0)
+    lines = [*(head for head in heads if head)]
+    if panel.is_bare:
+        return lines + canvas.format_lines() + key, omitted
+    labels_above = {
+        round(canvas.to_dot_x(i.x)) // canvas.per_x: i.text
+        for i in panel.items
+        if isinstance(i, VerticalMark) and i.is_above
+    }
+    lines += [_center_words(labels_above, canvas)] if labels_above else []
+    marks = {round(canvas.to_dot_y(v)) // canvas.per_y: text for v, text in choose_ticks(panel.y, max(2, rows // 3))}
+    for row, text in enumerate(canvas.format_lines()):
+        lines.append(
+            f"{escape(marks.get(row, ''))[:LABEL_WIDTH]:>{LABEL_WIDTH}} │{text}"
+            if style.has_braille
+            else f"{escape(marks.get(row, ''))[:LABEL_WIDTH]:>{LABEL_WIDTH}} |{text}"
+        )
+    return lines + _draw_x_axis(panel, canvas) + key, omitted
 
 
-def _spoken(items: Sequence[Item], canvas: Canvas) -> list[str]:
-    """The words of spots and vertical marks where they find room; what is told of the others."""
-    told: list[str] = []
-    for item in in_turn(items):
-        column = round(canvas.x(item.x)) // canvas.per_x
-        if isinstance(item, Upright):
-            has_room = canvas.along(shown(item.text), column)
+def _write_words(items: Sequence[Item], canvas: Canvas) -> list[str]:
+    """Write the words of spots and vertical marks where there is room; return the others."""
+    omitted: list[str] = []
+    for item in order_items(items):
+        column = round(canvas.to_dot_x(item.x)) // canvas.per_x
+        if isinstance(item, VerticalMark):
+            has_room = canvas.write_at_top(escape(item.text), column)
         else:
-            row = round(canvas.y(item.y)) // canvas.per_y
-            number = NOBODY if item.pen is None else item.pen
-            has_room = canvas.beside(shown(item.text), column, row, number)
+            row = round(canvas.to_dot_y(item.y)) // canvas.per_y
+            number = NO_PEN if item.pen is None else item.pen
+            has_room = canvas.write_near(escape(item.text), column, row, number)
         if not has_room:
-            told.append(item.note or item.text)
-    return told
+            omitted.append(item.note or item.text)
+    return omitted
 
 
-def _labels(items: Sequence[PlaceLabel], canvas: Canvas) -> tuple[list[str], list[str]]:
-    """The letters of labels, and what they stand for; what is told of those that found no room."""
-    known: dict[str, None] = {}
-    told: list[str] = []
+def _write_labels(items: Sequence[PlaceLabel], canvas: Canvas) -> tuple[list[str], list[str]]:
+    """Write the letters of labels; return their explanations, and the labels that found no room."""
+    explanations: dict[str, None] = {}
+    omitted: list[str] = []
     for item in items:
-        column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-        if canvas.at(shown(item.letter), column, row, NOBODY if item.pen is None else item.pen):
-            known |= {_meant(item): None} if item.letter != item.text else {}
-        elif not item.spare:
-            told.append(item.text)
-    return wrapped(shown(", ".join(known)), canvas.look.width, 2) if known else [], told
+        column, row = round(canvas.to_dot_x(item.x)) // canvas.per_x, round(canvas.to_dot_y(item.y)) // canvas.per_y
+        if canvas.write_touching(escape(item.letter), column, row, NO_PEN if item.pen is None else item.pen):
+            explanations |= {_explain_letter(item): None} if item.letter != item.text else {}
+        elif not item.is_optional:
+            omitted.append(item.text)
+    return wrap_text(escape(", ".join(explanations)), canvas.style.width, 2) if explanations else [], omitted
 
 
-def _meant(label: PlaceLabel) -> str:
-    """What a letter stands for, with it; a name is not told twice."""
+def _explain_letter(label: PlaceLabel) -> str:
+    """Return a letter with what it stands for; a name that begins with it is not repeated."""
     return label.text if label.text.startswith(f"{label.letter} ") else f"{label.letter} {label.text}"
 
 
-def _named(items: Sequence[Item], canvas: Canvas) -> None:
-    """The letter of its pen at some places of each curve, where no other one passes."""
+def _mark_curves(items: Sequence[Item], canvas: Canvas) -> None:
+    """Write the letter of its pen at some places of each curve where no other curve passes."""
     several = len({item.pen for item in items if isinstance(item, Trace)}) > 1
     for item in items if several else ():
         if not isinstance(item, Trace):
             continue
-        known = np.isfinite(item.x) & np.isfinite(item.y)
+        is_known = np.isfinite(item.x) & np.isfinite(item.y)
         cells = [
-            (round(canvas.y(y)) // canvas.per_y, round(canvas.x(x)) // canvas.per_x)
-            for x, y in zip(item.x[known].tolist(), item.y[known].tolist(), strict=True)
+            (round(canvas.to_dot_y(y)) // canvas.per_y, round(canvas.to_dot_x(x)) // canvas.per_x)
+            for x, y in zip(item.x[is_known].tolist(), item.y[is_known].tolist(), strict=True)
         ]
-        own = [cell for cell in dict.fromkeys(cells) if _is_own(canvas, cell, item.pen)]
-        for k in range(LETTERS):
-            if own:
-                row, column = own[min(round((k + 0.5) / LETTERS * len(own)), len(own) - 1)]
-                canvas.write(pen(item.pen).letter, column, row)
+        free_cells = [cell for cell in dict.fromkeys(cells) if _has_one_curve(canvas, cell, item.pen)]
+        for k in range(N_LETTERS):
+            if free_cells:
+                row, column = free_cells[min(round((k + 0.5) / N_LETTERS * len(free_cells)), len(free_cells) - 1)]
+                canvas.write(find_pen(item.pen).letter, column, row)
 
 
-def _is_own(canvas: Canvas, cell: tuple[int, int], number: int) -> bool:
-    """Whether one curve alone passes a cell."""
+def _has_one_curve(canvas: Canvas, cell: tuple[int, int], number: int) -> bool:
+    """Return whether only the curve of one pen passes a cell."""
     row, column = cell
     inside = 0 <= row < canvas.rows and 0 <= column < canvas.columns
     return inside and cell not in canvas.words and canvas.pens[row, column] == number
 
 
-def _upward(panel: Panel) -> str:
-    """What the axis upwards tells, above the panel."""
-    return "" if panel.bare else panel.y.label
+def _find_y_label(panel: Panel) -> str:
+    """Return the label of the vertical axis, which stands above the panel."""
+    return "" if panel.is_bare else panel.y.label
 
 
-def _below(panel: Panel, canvas: Canvas) -> list[str]:
-    """The axis across with its numbers and what it tells."""
-    places = {round(canvas.x(v)) // canvas.per_x: text for v, text in ticks(panel.x, max(2, canvas.columns // 12))}
-    rule, cross = ("─", "┴") if canvas.look.braille else ("-", "+")
+def _draw_x_axis(panel: Panel, canvas: Canvas) -> list[str]:
+    """Return the horizontal axis with its numbers and label."""
+    places = {
+        round(canvas.to_dot_x(v)) // canvas.per_x: text
+        for v, text in choose_ticks(panel.x, max(2, canvas.columns // 12))
+    }
+    rule, cross = ("─", "┴") if canvas.style.has_braille else ("-", "+")
     axis = "".join(cross if k in places else rule for k in range(canvas.columns))
-    corner = "└" if canvas.look.braille else "+"
-    lines = [f"{'':{LABEL}} {corner}{axis}"]
+    corner = "└" if canvas.style.has_braille else "+"
+    lines = [f"{'':{LABEL_WIDTH}} {corner}{axis}"]
     if not panel.x.shown_label:
         return lines
     middle = max(0, (canvas.columns - len(panel.x.shown_label)) // 2)
-    return [*lines, _placed(places, canvas), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.shown_label)}"]
+    return [*lines, _center_words(places, canvas), f"{'':{LABEL_WIDTH}}  {'':{middle}}{escape(panel.x.shown_label)}"]
 
 
-def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
-    """A line with words about columns of a panel, as many as do not touch; none goes farther than the panel's edge."""
-    most = canvas.columns + LABEL + 2
-    line = [" "] * most
+def _center_words(places: Mapping[int, str], canvas: Canvas) -> str:
+    """Return a line with words centred at columns of a panel, as many as do not touch, within the panel's edge."""
+    width = canvas.columns + LABEL_WIDTH + 2
+    line = [" "] * width
     for place, words in sorted(places.items()):
-        text = shown(words)
-        begin = min(max(place - len(text) // 2, 0) + LABEL + 2, most - len(text))
+        text = escape(words)
+        begin = min(max(place - len(text) // 2, 0) + LABEL_WIDTH + 2, width - len(text))
         if begin >= 0 and all(c == " " for c in line[max(begin - 1, 0) : begin + len(text) + 1]):
             line[begin : begin + len(text)] = text
     return "".join(line).rstrip()

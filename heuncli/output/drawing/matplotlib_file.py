@@ -1,4 +1,4 @@
-"""A drawing as PNG or PDF, by matplotlib, which is an extra of its own (heuncli[plot])."""
+"""Encode a drawing as PNG or PDF by matplotlib, which is an optional dependency (heuncli[plot])."""
 
 from __future__ import annotations
 
@@ -7,73 +7,77 @@ import io
 from typing import Any
 
 from heuncli.base.errors import Problem, SpecError
-from heuncli.output.drawing.picture import SHAPES, Area, Line, Mark, Picture, Text, corners
+from heuncli.output.drawing.picture import MARKER_SHAPES, Area, Line, Mark, Text, VectorDrawing, find_corners
 
 PER_INCH = 96.0  # pixels
-AS_IT_IS: dict[str, Any] = {"scalex": False, "scaley": False}  # the axes are those of the drawing
+FIXED_AXES: dict[str, Any] = {"scalex": False, "scaley": False}  # keep the limits of the axes
 POINTS = 72.0 / PER_INCH  # in a pixel
-FINE = 2.0  # pixels of a PNG in one of the drawing
-INSTALL = 'pip install "heuncli[plot]"; or a name that ends in .svg, which needs nothing'
+RESOLUTION = 2.0  # PNG pixels for a pixel of the drawing
+INSTALL_HINT = 'pip install "heuncli[plot]"; or a name that ends in .svg, which needs nothing'
 
 
 def require_plot(what: str) -> None:
-    """Say before the work that matplotlib is missing."""
+    """Raise SpecError before the work if matplotlib is not installed."""
     if importlib.util.find_spec("matplotlib") is None:
         message = f"{what} is drawn by matplotlib, which is not installed"
-        raise SpecError(Problem("missing-extra", message, hint=INSTALL))
+        raise SpecError(Problem("missing-extra", message, hint=INSTALL_HINT))
 
 
-def rendered(picture: Picture, form: str) -> bytes:
-    """The drawing as a file of that form."""
+def render(drawing: VectorDrawing, form: str) -> bytes:
+    """Encode the drawing as a file of this form."""
     require_plot(f"a {form} file")
     from matplotlib.figure import Figure
     from matplotlib.patches import Circle, Polygon
 
-    figure = Figure(figsize=(picture.width / PER_INCH, picture.height / PER_INCH), facecolor="#ffffff")
+    figure = Figure(figsize=(drawing.width / PER_INCH, drawing.height / PER_INCH), facecolor="#ffffff")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set_xlim(0.0, picture.width)
-    axes.set_ylim(picture.height, 0.0)
+    axes.set_xlim(0.0, drawing.width)
+    axes.set_ylim(drawing.height, 0.0)
     axes.set_axis_off()
-    for place, shape in enumerate(picture.shapes):
+    for place, shape in enumerate(drawing.shapes):
         if isinstance(shape, Line):
             xs, ys = zip(*shape.points, strict=True)
             width = shape.width * POINTS
             style = (0.0, tuple(x * POINTS / width for x in shape.dash)) if shape.dash else "solid"
-            axes.plot(xs, ys, color=shape.colour, linewidth=width, linestyle=style, zorder=place, **AS_IT_IS)
+            axes.plot(xs, ys, color=shape.colour, linewidth=width, linestyle=style, zorder=place, **FIXED_AXES)
         elif isinstance(shape, Area):
-            filled: dict[str, Any] = {
+            style_of_area: dict[str, Any] = {
                 "facecolor": shape.colour,
                 "alpha": shape.opacity,
                 "linewidth": 0.0,
                 "zorder": place,
             }
-            axes.add_patch(Polygon(shape.points, **filled))
+            axes.add_patch(Polygon(shape.points, **style_of_area))
         elif isinstance(shape, Mark):
-            face = shape.colour if shape.filled else "#ffffff"
-            own: dict[str, Any] = {
+            face = shape.colour if shape.is_filled else "#ffffff"
+            style_of_mark: dict[str, Any] = {
                 "facecolor": face,
                 "edgecolor": shape.colour,
                 "linewidth": 1.2 * POINTS,
                 "zorder": place,
             }
-            round_ = not SHAPES[shape.shape]
-            axes.add_patch(Circle((shape.x, shape.y), shape.size, **own) if round_ else Polygon(corners(shape), **own))
+            round_ = not MARKER_SHAPES[shape.shape]
+            axes.add_patch(
+                Circle((shape.x, shape.y), shape.size, **style_of_mark)
+                if round_
+                else Polygon(find_corners(shape), **style_of_mark)
+            )
         else:
-            write(axes, shape, place)
+            write_text(axes, shape, place)
     file = io.BytesIO()
     dates = {"CreationDate": None} if form == "pdf" else {"Software": None}
-    figure.savefig(file, format=form, dpi=PER_INCH * FINE, metadata=dates)
+    figure.savefig(file, format=form, dpi=PER_INCH * RESOLUTION, metadata=dates)
     return file.getvalue()
 
 
-def write(axes: object, text: Text, place: int) -> None:
-    """A line of text."""
+def write_text(axes: object, text: Text, place: int) -> None:
+    """Write a line of text."""
     where = {"start": "left", "middle": "center", "end": "right"}[text.anchor]
     from matplotlib.patheffects import withStroke
 
-    halo = [withStroke(linewidth=3.0 * POINTS, foreground="#ffffff")] if text.halo else None
+    halo = [withStroke(linewidth=3.0 * POINTS, foreground="#ffffff")] if text.has_halo else None
     axes.text(  # type: ignore[attr-defined]
         text.x, text.y, text.text, parse_math=False, fontsize=text.size * POINTS, color=text.colour, ha=where,
-        va="baseline", fontweight="bold" if text.bold else "normal", rotation=90 if text.turned else 0,
+        va="baseline", fontweight="bold" if text.is_bold else "normal", rotation=90 if text.is_vertical else 0,
         rotation_mode="anchor", zorder=place, path_effects=halo,
     )  # fmt: skip

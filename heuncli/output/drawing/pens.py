@@ -1,6 +1,6 @@
-"""With what curves are drawn: colours that the colour-blind tell apart (Okabe and Ito, 2008), dashes beside them.
+"""Pens of curves: colours that colour-blind readers can distinguish (Okabe and Ito, 2008), and dashes.
 
-The colours are dark enough on white; with the dashes and letters a picture can be read in black and white, too.
+The colours are dark enough on white; with dashes and letters a figure is readable in black and white, too.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ PENS = (
 )
 
 
-def pen(number: int) -> Pen:
-    """The pen of a number; beyond the last they begin anew."""
+def find_pen(number: int) -> Pen:
+    """Return the pen of a number; after the last pen they start again."""
     return PENS[number % len(PENS)]
 
 
-def ink(number: int | None) -> str:
-    """The colour of the pen of a number; None: black."""
-    return BLACK if number is None else pen(number).colour
+def find_colour(number: int | None) -> str:
+    """Return the colour of a pen; None stands for black."""
+    return BLACK if number is None else find_pen(number).colour
 
 
-def mixed(colour: str, share: float) -> str:
-    """A colour with white: so much of it."""
+def mix_with_white(colour: str, share: float) -> str:
+    """Mix a colour with white; share: of the colour."""
     parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{round(255.0 + share * (part - 255.0)):02x}" for part in parts)

@@ -1,4 +1,4 @@
-"""A drawing as shapes in pixels, x to the right and y down, and its text as SVG: no fonts or scripts from elsewhere."""
+"""A drawing as shapes in pixels, x to the right and y down, and its text as SVG without external fonts or scripts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Literal
 from heuncli.base.named_tuples import NamedTuple
 
 FONT = "sans-serif"
-SHAPES: dict[str, tuple[tuple[float, float], ...]] = {  # corners about the middle, of unit size; "circle" has none
+MARKER_SHAPES: dict[
+    str, tuple[tuple[float, float], ...]
+] = {  # corners about the centre, of unit size; a circle has none
     "circle": (),
     "square": ((-0.88, -0.88), (0.88, -0.88), (0.88, 0.88), (-0.88, 0.88)),
     "triangle": ((0.0, -1.15), (1.05, 0.8), (-1.05, 0.8)),
@@ -19,7 +21,7 @@ SHAPES: dict[str, tuple[tuple[float, float], ...]] = {  # corners about the midd
 
 
 class Line(NamedTuple):
-    """A polyline; dash: lengths of strokes and gaps; name: what a reader is told of it, where it is of something."""
+    """A polyline; dash: lengths of strokes and gaps; name: title shown to readers, if any."""
 
     points: tuple[tuple[float, float], ...]
     colour: str = "#000000"
@@ -38,7 +40,7 @@ class Area(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A marker about a place, filled with its colour or with white."""
+    """A marker at a place, filled with its colour or with white."""
 
     x: float
     y: float
@@ -49,7 +51,12 @@ class Mark(NamedTuple):
 
 
 class Text(NamedTuple):
-    """A line of text; y is that of its base line, turned: read from below, about its anchor; halo: white about it."""
+    """A line of text.
+
+    y: of its base line
+    is_vertical: whether it is rotated about its anchor, to be read from below
+    has_halo: whether it has a white outline
+    """
 
     x: float
     y: float
@@ -65,8 +72,8 @@ class Text(NamedTuple):
 Shape = Line | Area | Mark | Text
 
 
-class Picture(NamedTuple):
-    """A drawing with its title and what it shows, in words."""
+class VectorDrawing(NamedTuple):
+    """A drawing with its title and a description in words."""
 
     width: float
     height: float
@@ -75,76 +82,76 @@ class Picture(NamedTuple):
     shapes: Sequence[Shape]
 
 
-def svg(picture: Picture) -> str:
-    """The drawing as a file of SVG."""
-    w, h = number(picture.width), number(picture.height)
+def to_svg(drawing: VectorDrawing) -> str:
+    """Return the drawing as an SVG file."""
+    w, h = format_length(drawing.width), format_length(drawing.height)
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" role="img"'
         f' font-family="{FONT}">',
-        f"<title>{escaped(picture.title)}</title>",
-        f"<desc>{escaped(picture.words)}</desc>",
+        f"<title>{escape_xml(drawing.title)}</title>",
+        f"<desc>{escape_xml(drawing.description)}</desc>",
         f'<rect width="{w}" height="{h}" fill="#ffffff"/>',
-        *(element(shape) for shape in picture.shapes),
+        *(format_element(shape) for shape in drawing.shapes),
         "</svg>",
     ]
     return "\n".join(lines) + "\n"
 
 
-def element(shape: Shape) -> str:
-    """One shape."""
+def format_element(shape: Shape) -> str:
+    """Format one shape."""
     if isinstance(shape, Line):
-        dash = f' stroke-dasharray="{" ".join(map(number, shape.dash))}"' if shape.dash else ""
+        dash = f' stroke-dasharray="{" ".join(map(format_length, shape.dash))}"' if shape.dash else ""
         return (
-            f'<polyline points="{places(shape.points)}" fill="none" stroke="{shape.colour}"'
-            f' stroke-width="{number(shape.width)}" stroke-linejoin="round"{dash}{closing("polyline", shape.name)}'
+            f'<polyline points="{format_points(shape.points)}" fill="none" stroke="{shape.colour}"'
+            f' stroke-width="{format_length(shape.width)}" stroke-linejoin="round"{dash}{format_end("polyline", shape.name)}'
         )
     if isinstance(shape, Area):
-        opacity = f' fill-opacity="{number(shape.opacity)}"' if shape.opacity < 1.0 else ""
-        return (
-            f'<polygon points="{places(shape.points)}" fill="{shape.colour}"{opacity}{closing("polygon", shape.name)}'
-        )
+        opacity = f' fill-opacity="{format_length(shape.opacity)}"' if shape.opacity < 1.0 else ""
+        return f'<polygon points="{format_points(shape.points)}" fill="{shape.colour}"{opacity}{format_end("polygon", shape.name)}'
     if isinstance(shape, Mark):
-        look = f'fill="{shape.colour if shape.filled else "#ffffff"}" stroke="{shape.colour}" stroke-width="1.2"'
-        if not SHAPES[shape.shape]:
-            return f'<circle cx="{number(shape.x)}" cy="{number(shape.y)}" r="{number(shape.size)}" {look}/>'
-        return f'<polygon points="{places(corners(shape))}" {look}/>'
-    turned = f' transform="rotate(-90 {number(shape.x)} {number(shape.y)})"' if shape.turned else ""
-    bold = ' font-weight="bold"' if shape.bold else ""
-    halo = ' paint-order="stroke" stroke="#ffffff" stroke-width="3" stroke-linejoin="round"' if shape.halo else ""
+        look = f'fill="{shape.colour if shape.is_filled else "#ffffff"}" stroke="{shape.colour}" stroke-width="1.2"'
+        if not MARKER_SHAPES[shape.shape]:
+            return f'<circle cx="{format_length(shape.x)}" cy="{format_length(shape.y)}" r="{format_length(shape.size)}" {look}/>'
+        return f'<polygon points="{format_points(find_corners(shape))}" {look}/>'
+    rotation = (
+        f' transform="rotate(-90 {format_length(shape.x)} {format_length(shape.y)})"' if shape.is_vertical else ""
+    )
+    bold = ' font-weight="bold"' if shape.is_bold else ""
+    halo = ' paint-order="stroke" stroke="#ffffff" stroke-width="3" stroke-linejoin="round"' if shape.has_halo else ""
     return (
-        f'<text x="{number(shape.x)}" y="{number(shape.y)}" font-size="{number(shape.size)}"'
-        f' text-anchor="{shape.anchor}" fill="{shape.colour}"{bold}{halo}{turned}>{escaped(shape.text)}</text>'
+        f'<text x="{format_length(shape.x)}" y="{format_length(shape.y)}" font-size="{format_length(shape.size)}"'
+        f' text-anchor="{shape.anchor}" fill="{shape.colour}"{bold}{halo}{rotation}>{escape_xml(shape.text)}</text>'
     )
 
 
-def closing(tag: str, name: str) -> str:
-    """The end of an element, which holds the name of what it shows."""
-    return f"><title>{escaped(name)}</title></{tag}>" if name else "/>"
+def format_end(tag: str, name: str) -> str:
+    """Format the end of an element, with the title of what it shows."""
+    return f"><title>{escape_xml(name)}</title></{tag}>" if name else "/>"
 
 
-def corners(mark: Mark) -> tuple[tuple[float, float], ...]:
-    """The corners of a marker."""
-    return tuple((mark.x + mark.size * a, mark.y + mark.size * b) for a, b in SHAPES[mark.shape])
+def find_corners(mark: Mark) -> tuple[tuple[float, float], ...]:
+    """Return the corners of a marker."""
+    return tuple((mark.x + mark.size * a, mark.y + mark.size * b) for a, b in MARKER_SHAPES[mark.shape])
 
 
-def places(points: Sequence[tuple[float, float]]) -> str:
-    """Points as SVG lists them."""
-    return " ".join(f"{number(x)},{number(y)}" for x, y in points)
+def format_points(points: Sequence[tuple[float, float]]) -> str:
+    """Format points for SVG."""
+    return " ".join(f"{format_length(x)},{format_length(y)}" for x, y in points)
 
 
-def number(value: float) -> str:
-    """A length to a hundredth of a pixel."""
+def format_length(value: float) -> str:
+    """Format a length to a hundredth of a pixel."""
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
-def escaped(text: str) -> str:
-    """A text as XML holds it; what XML cannot hold is a blank."""
-    text = "".join(c if is_text(c) else " " for c in text)
+def escape_xml(text: str) -> str:
+    """Escape a text for XML; characters that XML cannot hold become blanks."""
+    text = "".join(c if is_xml_character(c) else " " for c in text)
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def is_text(c: str) -> bool:
-    """Whether XML 1.0 allows a character."""
+def is_xml_character(c: str) -> bool:
+    """Return whether XML 1.0 allows a character."""
     code = ord(c)
     return c == "\t" or 0x20 <= code < 0x7F or 0xA0 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or code >= 0x10000

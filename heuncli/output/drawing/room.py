@@ -1,7 +1,7 @@
-"""Where words find room beside a marked place: over no other words, and over as little of the curves as may be.
+"""Find places for words near a mark: over no other words, and over as little of the curves as possible.
 
-A field is a grid of small cells, each with what it costs to write there: nothing where it is empty, one where a curve
-passes. Where words or marks stand there is no room at any price.
+A field is a grid of small cells, each with the cost of writing there: zero if it is empty, one if a curve passes. No
+words are placed over other words or marks.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
-LINES = 4  # how many lines of text away from its place words are looked for room
-TOUCH = 1e-6  # of rounding
-PER_LINE = 7.0  # what each of them costs, in cells of a curve
+MAX_LINES = 4  # maximum distance of words, in lines of text
+ROUNDING = 1e-6  # of rounding
+COST_PER_LINE = 7.0  # cost of a line of distance, in cells of a curve
 
 
 class WordBox(NamedTuple):
@@ -27,102 +27,109 @@ class WordBox(NamedTuple):
     right: float
     bottom: float
 
-    def meets(self, other: WordBox) -> bool:
-        """Whether two of them overlap; boxes that touch do not."""
+    def overlaps(self, other: WordBox) -> bool:
+        """Return whether two boxes overlap; boxes that only touch do not."""
         return (
-            self.left < other.right - TOUCH and other.left < self.right - TOUCH
-            and self.top < other.bottom - TOUCH and other.top < self.bottom - TOUCH
+            self.left < other.right - ROUNDING and other.left < self.right - ROUNDING
+            and self.top < other.bottom - ROUNDING and other.top < self.bottom - ROUNDING
         )  # fmt: skip
 
-    def holds(self, other: WordBox) -> bool:
-        """Whether another one lies in it."""
+    def contains(self, other: WordBox) -> bool:
+        """Return whether another box lies within this one."""
         return (
-            self.left <= other.left + TOUCH and other.right <= self.right + TOUCH
-            and self.top <= other.top + TOUCH and other.bottom <= self.bottom + TOUCH
+            self.left <= other.left + ROUNDING and other.right <= self.right + ROUNDING
+            and self.top <= other.top + ROUNDING and other.bottom <= self.bottom + ROUNDING
         )  # fmt: skip
 
 
 class WordField:
-    """The cells of a rectangle; fine: the size of one, (across, down)."""
+    """The cells of a rectangle with their costs; cell_size: width and height of one."""
 
-    def __init__(self, box: WordBox, fine: tuple[float, float]) -> None:
-        self.box, self.fine = box, fine
+    def __init__(self, box: WordBox, cell_size: tuple[float, float]) -> None:
+        self.box, self.cell_size = box, cell_size
         rows, columns = (max(1, math.ceil(length / f)) for length, f in
-                         ((box.bottom - box.top, fine[1]), (box.right - box.left, fine[0])))  # fmt: skip
-        self.price = np.zeros((rows, columns))
-        self.taken: list[WordBox] = []
+                         ((box.bottom - box.top, cell_size[1]), (box.right - box.left, cell_size[0])))  # fmt: skip
+        self.cost = np.zeros((rows, columns))
+        self.occupied: list[WordBox] = []
 
-    def curve(self, points: Array) -> None:
-        """A line passes through points (n, 2)."""
+    def add_curve(self, points: Array) -> None:
+        """Add the cost of a line through points (n, 2)."""
         if len(points) < 2 or not np.isfinite(points).all():
             return
-        at = (points - (self.box.left, self.box.top)) / self.fine
-        length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(at, axis=0)).max(axis=1))])
-        along = np.linspace(0.0, length[-1], min(math.ceil(2.0 * length[-1]) + 1, 100_000))
-        column, row = (np.floor(np.interp(along, length, at[:, k])).astype(np.intp) for k in (0, 1))
-        rows, columns = self.price.shape
+        cell_places = (points - (self.box.left, self.box.top)) / self.cell_size
+        length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(cell_places, axis=0)).max(axis=1))])
+        samples = np.linspace(0.0, length[-1], min(math.ceil(2.0 * length[-1]) + 1, 100_000))
+        column, row = (np.floor(np.interp(samples, length, cell_places[:, k])).astype(np.intp) for k in (0, 1))
+        rows, columns = self.cost.shape
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         row, column = row[inside], column[inside]
-        self.price[row, column] = np.maximum(self.price[row, column], 1.0)
+        self.cost[row, column] = np.maximum(self.cost[row, column], 1.0)
 
-    def take(self, box: WordBox) -> None:
-        """Words or a mark stand there."""
-        self.taken.append(box)
+    def occupy(self, box: WordBox) -> None:
+        """Occupy a box with words or a mark."""
+        self.occupied.append(box)
 
-    def best(self, candidates: Iterable[tuple[float, WordBox]]) -> WordBox | None:
-        """The box that costs least beside its own price, which is taken then; None where there is none."""
-        found, least = None, math.inf
-        for own, box in candidates:
-            if own >= least or not self.box.holds(box) or any(box.meets(other) for other in self.taken):
+    def occupy_best(self, candidates: Iterable[tuple[float, WordBox]]) -> WordBox | None:
+        """Occupy the candidate box with the lowest total cost and return it; None if there is no room.
+
+        candidates: each with its own cost
+        """
+        best_box, lowest_cost = None, math.inf
+        for own_cost, box in candidates:
+            if (
+                own_cost >= lowest_cost
+                or not self.box.contains(box)
+                or any(box.overlaps(other) for other in self.occupied)
+            ):
                 continue
-            cost = own + float(self._cells(box).sum())
-            if cost < least:
-                found, least = box, cost
-        if found is not None:
-            self.take(found)
-        return found
+            cost = own_cost + float(self._select_cells(box).sum())
+            if cost < lowest_cost:
+                best_box, lowest_cost = box, cost
+        if best_box is not None:
+            self.occupy(best_box)
+        return best_box
 
-    def beside(self, mark: WordBox, width: float, height: float) -> WordBox | None:
-        """Room for words of a size beside a mark."""
-        return self.best(self._around(mark, width, height))
+    def occupy_near(self, mark: WordBox, width: float, height: float) -> WordBox | None:
+        """Occupy a box of a size near a mark and return it; None if there is no room."""
+        return self.occupy_best(self._iter_candidate_boxes(mark, width, height))
 
-    def _around(self, mark: WordBox, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
-        """Boxes about a mark with what each costs: above, below, at its right and left, then farther and farther."""
+    def _iter_candidate_boxes(self, mark: WordBox, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
+        """Yield boxes about a mark after their costs: above, below, to its right and left, then farther away."""
         middle = 0.5 * (mark.top + mark.bottom - height)
         centred = 0.5 * (mark.left + mark.right - width)
         centred = max(min(centred, self.box.right - width), self.box.left)
-        for line in range(LINES):
-            own = PER_LINE * line
+        for line in range(MAX_LINES):
+            cost = COST_PER_LINE * line
             for top in (mark.top - height * (line + 1), mark.bottom + height * line):
                 for left in (mark.right, mark.left - width, centred):
-                    yield own, WordBox(left, top, left + width, top + height)
+                    yield cost, WordBox(left, top, left + width, top + height)
             if not line:
                 for left in (mark.right, mark.left - width):
-                    yield own, WordBox(left, middle, left + width, middle + height)
+                    yield cost, WordBox(left, middle, left + width, middle + height)
 
-    def _cells(self, box: WordBox) -> Array:
+    def _select_cells(self, box: WordBox) -> Array:
         (left, right), (top, bottom) = (
-            (max(0, math.floor((low - own) / f + 1e-9)), max(0, math.ceil((high - own) / f - 1e-9)))
-            for low, high, own, f in (
-                (box.left, box.right, self.box.left, self.fine[0]), (box.top, box.bottom, self.box.top, self.fine[1])
+            (max(0, math.floor((low - origin) / f + 1e-9)), max(0, math.ceil((high - origin) / f - 1e-9)))
+            for low, high, origin, f in (
+                (box.left, box.right, self.box.left, self.cell_size[0]), (box.top, box.bottom, self.box.top, self.cell_size[1])
             )
         )  # fmt: skip
-        return self.price[top:bottom, left:right]
+        return self.cost[top:bottom, left:right]
 
 
-def columns_of(text: str) -> int:
-    """How many cells a text takes in a terminal: two for a wide letter, none for one that stands over another."""
+def count_columns(text: str) -> int:
+    """Return the number of cells that a text takes in a terminal: two for a wide letter, none for a combining one."""
     if text.isascii():
         return len(text)
-    import unicodedata  # few words have other letters
+    import unicodedata  # rarely needed
 
     return sum(0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1 for c in text)
 
 
-def left_out(told: Iterable[str], most: int = 12) -> list[str]:
-    """A note of the words that found no room, if there are any."""
-    several = list(dict.fromkeys(told))
-    if not several:
+def make_omitted_note(omitted: Iterable[str], max_texts: int = 12) -> list[str]:
+    """Return a note on the words that found no room, if there are any."""
+    distinct = list(dict.fromkeys(omitted))
+    if not distinct:
         return []
-    more = f"; and {len(several) - most} more" if len(several) > most else ""
-    return [f"without words for want of room: {'; '.join(several[:most])}{more}"]
+    hidden_text = f"; and {len(distinct) - max_texts} more" if len(distinct) > max_texts else ""
+    return [f"without words for want of room: {'; '.join(distinct[:max_texts])}{hidden_text}"]

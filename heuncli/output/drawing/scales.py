@@ -1,4 +1,4 @@
-"""The field of a panel in pixels, and where the values of its axes stand in it."""
+"""The field of a panel in pixels, and the places of values of its axes in it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from heuncli.results.results import Array
 
 
 class PanelBox(NamedTuple):
-    """The field of a panel in pixels, and its scales."""
+    """The field of a panel in pixels, and its axes."""
 
     left: float
     top: float
@@ -22,27 +22,29 @@ class PanelBox(NamedTuple):
     across: Scaling
     up: Scaling
 
-    def x(self, value: float) -> float:
-        """Where a place along the axis across stands."""
-        return self.left + self.across.at(value) * (self.right - self.left)
+    def to_pixel_x(self, value: float) -> float:
+        """Return the pixel of a value on the horizontal axis."""
+        return self.left + self.x_scaling.to_share(value) * (self.right - self.left)
 
-    def y(self, value: float) -> float:
-        """Where a place along the axis upwards stands."""
-        return self.bottom - self.up.at(value) * (self.bottom - self.top)
+    def to_pixel_y(self, value: float) -> float:
+        """Return the pixel of a value on the vertical axis."""
+        return self.bottom - self.y_scaling.to_share(value) * (self.bottom - self.top)
 
-    def points(self, x: Array, y: Array) -> Array:
-        """Where points stand, (n, 2)."""
-        return np.column_stack([_along(self.x, x, self.across), _along(self.y, y, self.up)])
+    def to_pixels(self, x: Array, y: Array) -> Array:
+        """Return the pixels of points, (n, 2)."""
+        return np.column_stack(
+            [_scale_values(self.to_pixel_x, x, self.x_scaling), _scale_values(self.to_pixel_y, y, self.y_scaling)]
+        )
 
 
-def _along(at: Callable[[float], float], values: Array, scaling: Scaling) -> Array:
-    """Many values at once on an axis."""
+def _scale_values(to_pixel: Callable[[float], float], values: Array, scaling: Scaling) -> Array:
+    """Return the pixels of many values on an axis."""
     values = np.asarray(values, dtype=np.float64)
-    if scaling.logarithmic:
+    if scaling.is_logarithmic:
         with np.errstate(invalid="ignore", divide="ignore"):
             values = np.log(values)
         low, high = math.log(scaling.low), math.log(scaling.high)
     else:
         low, high = scaling.low, scaling.high
-    first, last = at(scaling.low), at(scaling.high)
+    first, last = to_pixel(scaling.low), to_pixel(scaling.high)
     return np.asarray(first + (values - low) / (high - low) * (last - first))

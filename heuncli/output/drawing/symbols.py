@@ -1,7 +1,7 @@
-"""The field's symbols: joints, supports, springs, dampers, centres of mass, as strokes about a place.
+"""Engineering symbols as strokes about a place: joints, supports, springs, dampers, centres of mass.
 
-Lengths in pixels; x along the symbol's direction, y to the left of it. What is drawn in letters has a letter each; what
-has none there is drawn in dots, or left out where there are none.
+Lengths are in pixels; x is along the symbol's direction, y to the left of it. In a terminal a symbol is a letter; one
+without a letter is drawn in dots, or left out if there are no dots.
 """
 
 from __future__ import annotations
@@ -15,15 +15,19 @@ Points = tuple[tuple[float, float], ...]
 
 
 class SymbolPart(NamedTuple):
-    """A line through points; closed: back to its first; fill: with nothing, with paper, or with ink."""
+    """A line through points.
+
+    is_closed: whether it returns to its first point
+    fill: "" (none), "paper" or "ink"
+    """
 
     points: Points
     closed: bool = False
     fill: str = ""
 
 
-class SymbolRow(NamedTuple):
-    """A symbol: its parts, the first beneath the others; and its letter, with and without braille."""
+class SymbolShape(NamedTuple):
+    """A symbol: its parts, the first below the others, and its letter with and without braille."""
 
     parts: tuple[SymbolPart, ...]
     letter: str = ""
@@ -42,7 +46,7 @@ def ring(radius: float, fill: str = "") -> SymbolPart:
 
 
 def box(x: float, y: float, fill: str = "") -> SymbolPart:
-    """A rectangle of half these sides."""
+    """A rectangle with these half sides."""
     return SymbolPart(((-x, -y), (x, -y), (x, y), (-x, y)), True, fill)
 
 
@@ -51,15 +55,15 @@ def line(*points: tuple[float, float]) -> SymbolPart:
     return SymbolPart(points)
 
 
-def hatched(at: float, half: float, step: float = 5.0) -> tuple[SymbolPart, ...]:
-    """The ground beyond x: its edge across, and slanted lines behind it."""
+def hatch(edge: float, half: float, step: float = 5.0) -> tuple[SymbolPart, ...]:
+    """The ground at larger x: its edge, and slanted lines behind it."""
     count = round(2.0 * half / step)
-    slants = (line((at, -half + k * step), (at + step, -half + (k + 1) * step)) for k in range(count))
-    return (line((at, -half), (at, half)), *slants)
+    slants = (line((edge, -half + k * step), (edge + step, -half + (k + 1) * step)) for k in range(count))
+    return (line((edge, -half), (edge, half)), *slants)
 
 
 def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
-    """The head of an arrow with its tip there; angle: where it points [degrees]."""
+    """The head of an arrow with its tip at (x, y); angle: its direction [degrees]."""
     a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     back, side = (x - size * a, y - size * b), 0.42 * size
     return SymbolPart(
@@ -68,65 +72,71 @@ def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
 
 
 def shoe(inner: Points, outer: Points) -> SymbolPart:
-    """What presses on something: between two lines."""
+    """A brake shoe or the like: the area between two lines."""
     return SymbolPart((*inner, *outer), True, "ink")
 
 
 def radial(inner: float, outer: float, angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """A stroke away from the middle; angle [degrees]."""
+    """The ends of a radial stroke; angle [degrees]."""
     a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return (inner * a, inner * b), (outer * a, outer * b)
 
 
 QUARTERS = tuple(SymbolPart(((0.0, 0.0), *arc(3.6, a, a + 90.0, 6)), True, "ink") for a in (0.0, 180.0))
 SPIRAL = tuple((r * math.cos(0.9 * r), r * math.sin(0.9 * r)) for r in (0.4 * k for k in range(5, 31)))
-SYMBOLS: Mapping[str, SymbolRow] = {
-    # how a joint lets turn: about what is seen along, about what is seen across, all ways, about two axes, not at all
-    "circle": SymbolRow((ring(4.2, "paper"),), "○", "o"),
-    "barrel": SymbolRow((box(8.0, 4.0, "paper"), line((-13.0, 0.0), (13.0, 0.0))), "○", "o"),
-    "ball": SymbolRow((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
-    "cross": SymbolRow((ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"),
-    "rosette": SymbolRow((ring(5.2, "paper"), *(line(*radial(0.0, 5.2, a)) for a in (90.0, 210.0, 330.0))), "⊛", "%"),
-    "square": SymbolRow((box(4.0, 4.0, "ink"),), "■", "#"),
-    "dot": SymbolRow((ring(1.6, "paper"),), "•", "o"),
-    "slider": SymbolRow((box(9.0, 4.5, "paper"),), "□", "="),
-    # along what it lets slide: a guide from its side and from its end, a plane from its side and from above
-    "guide": SymbolRow((line((-16.0, 7.0), (16.0, 7.0)), line((-16.0, -7.0), (16.0, -7.0)))),
-    "bore": SymbolRow((ring(7.2),)),
-    "table": SymbolRow((line((-7.0, -14.0), (-7.0, 14.0)),)),
-    "field": SymbolRow((box(12.0, 9.0),)),
-    # where it stands on the ground, x into it
-    "foot": SymbolRow(
-        (SymbolPart(((0.0, 0.0), (13.0, 7.5), (13.0, -7.5)), True, "paper"), *hatched(13.0, 12.5)), "", "/"
+SYMBOLS: Mapping[str, SymbolShape] = {
+    # how a joint turns: axis towards the viewer, axis across, all axes, two axes, none
+    "circle": SymbolShape((ring(4.2, "paper"),), "○", "o"),
+    "barrel": SymbolShape((box(8.0, 4.0, "paper"), line((-13.0, 0.0), (13.0, 0.0))), "○", "o"),
+    "ball": SymbolShape((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
+    "cross": SymbolShape(
+        (ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"
     ),
-    "bed": SymbolRow(hatched(7.0, 15.0), "", "/"),
-    "clamp": SymbolRow(hatched(4.0, 10.0), "", "/"),
-    "road": SymbolRow(hatched(0.0, 15.0), "", "/"),
-    # what a coordinate comes up against, x into it; what holds it there
-    "stop": SymbolRow((SymbolPart(((0.0, -9.0), (5.0, -9.0), (5.0, 9.0), (0.0, 9.0)), True, "ink"),), "▌", "]"),
-    "latch": SymbolRow((SymbolPart(((0.0, 0.0), (-9.0, 4.5), (-9.0, -4.5)), True, "paper"),), "◁", "<"),
-    # of bodies
-    "centre": SymbolRow((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
-    "mass": SymbolRow((ring(3.4, "ink"),), "●", "*"),
-    # what acts
-    "turning": SymbolRow((line(*arc(12.0, -60.0, 205.0)), head(*arc(12.0, 0.0, 215.0)[-1], 305.0))),
-    "turning back": SymbolRow((line(*arc(12.0, 240.0, -25.0)), head(*arc(12.0, 0.0, -35.0)[-1], 235.0))),
-    "sliding": SymbolRow((line((-12.0, 12.5), (10.0, 12.5)), head(15.0, 12.5, 0.0))),
-    "coil": SymbolRow((line(*SPIRAL),)),
-    "brake": SymbolRow(tuple(shoe(arc(9.0, a - 40.0, a + 40.0), arc(13.0, a + 40.0, a - 40.0)) for a in (0.0, 180.0))),
-    "brake along": SymbolRow((shoe(((-7.0, 8.0), (7.0, 8.0)), ((7.0, 12.0), (-7.0, 12.0))),)),
-    "damping": SymbolRow((line((-9.0, 10.0), (-9.0, 17.0), (9.0, 17.0), (9.0, 10.0)), line((-6.0, 12.0), (6.0, 12.0)))),
-    # two sleeves, and between them what gives way
-    "bushing": SymbolRow(
+    "rosette": SymbolShape((ring(5.2, "paper"), *(line(*radial(0.0, 5.2, a)) for a in (90.0, 210.0, 330.0))), "⊛", "%"),
+    "square": SymbolShape((box(4.0, 4.0, "ink"),), "■", "#"),
+    "dot": SymbolShape((ring(1.6, "paper"),), "•", "o"),
+    "slider": SymbolShape((box(9.0, 4.5, "paper"),), "□", "="),
+    # how a joint slides: guide from the side and along it, plane from the side and from above
+    "guide": SymbolShape((line((-16.0, 7.0), (16.0, 7.0)), line((-16.0, -7.0), (16.0, -7.0)))),
+    "bore": SymbolShape((ring(7.2),)),
+    "table": SymbolShape((line((-7.0, -14.0), (-7.0, 14.0)),)),
+    "field": SymbolShape((box(12.0, 9.0),)),
+    # supports on the ground, with x into the ground
+    "foot": SymbolShape(
+        (SymbolPart(((0.0, 0.0), (13.0, 7.5), (13.0, -7.5)), True, "paper"), *hatch(13.0, 12.5)), "", "/"
+    ),
+    "bed": SymbolShape(hatch(7.0, 15.0), "", "/"),
+    "clamp": SymbolShape(hatch(4.0, 10.0), "", "/"),
+    "road": SymbolShape(hatch(0.0, 15.0), "", "/"),
+    # stop of a coordinate, with x into it; latch
+    "stop": SymbolShape((SymbolPart(((0.0, -9.0), (5.0, -9.0), (5.0, 9.0), (0.0, 9.0)), True, "ink"),), "▌", "]"),
+    "latch": SymbolShape((SymbolPart(((0.0, 0.0), (-9.0, 4.5), (-9.0, -4.5)), True, "paper"),), "◁", "<"),
+    # bodies
+    "centre": SymbolShape((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
+    "mass": SymbolShape((ring(3.4, "ink"),), "●", "*"),
+    # drives and loads
+    "turning": SymbolShape((line(*arc(12.0, -60.0, 205.0)), head(*arc(12.0, 0.0, 215.0)[-1], 305.0))),
+    "turning back": SymbolShape((line(*arc(12.0, 240.0, -25.0)), head(*arc(12.0, 0.0, -35.0)[-1], 235.0))),
+    "sliding": SymbolShape((line((-12.0, 12.5), (10.0, 12.5)), head(15.0, 12.5, 0.0))),
+    "coil": SymbolShape((line(*SPIRAL),)),
+    "brake": SymbolShape(
+        tuple(shoe(arc(9.0, a - 40.0, a + 40.0), arc(13.0, a + 40.0, a - 40.0)) for a in (0.0, 180.0))
+    ),
+    "brake along": SymbolShape((shoe(((-7.0, 8.0), (7.0, 8.0)), ((7.0, 12.0), (-7.0, 12.0))),)),
+    "damping": SymbolShape(
+        (line((-9.0, 10.0), (-9.0, 17.0), (9.0, 17.0), (9.0, 10.0)), line((-6.0, 12.0), (6.0, 12.0)))
+    ),
+    # two sleeves with the elastic part between
+    "bushing": SymbolShape(
         (ring(9.0, "paper"), ring(3.4, "paper"), *(line(*radial(4.0, 8.4, 60.0 * k)) for k in range(6))), "⊚", "o"
     ),
-    "toward": SymbolRow((ring(4.4, "paper"), ring(1.4, "ink")), "⊙", "."),
-    "away": SymbolRow((ring(4.4, "paper"), line((-3.1, -3.1), (3.1, 3.1)), line((-3.1, 3.1), (3.1, -3.1))), "⊗", "x"),
+    "toward": SymbolShape((ring(4.4, "paper"), ring(1.4, "ink")), "⊙", "."),
+    "away": SymbolShape((ring(4.4, "paper"), line((-3.1, -3.1), (3.1, 3.1)), line((-3.1, 3.1), (3.1, -3.1))), "⊗", "x"),
 }
 
 
 def spring(length: float) -> tuple[SymbolPart, ...]:
-    """A zigzag between two ends that are straight."""
+    """A zigzag between two straight ends."""
     end = min(8.0, 0.2 * length)
     turns, high = 7, min(5.5, 0.25 * length)
     step = (length - 2.0 * end) / (2.0 * turns)
@@ -147,7 +157,7 @@ def dashpot(length: float) -> tuple[SymbolPart, ...]:
 
 
 def damped_spring(length: float) -> tuple[SymbolPart, ...]:
-    """A zigzag beside a dashpot."""
+    """A zigzag and a dashpot side by side."""
     end, off = min(8.0, 0.15 * length), min(6.5, 0.25 * length)
 
     def beside(parts: tuple[SymbolPart, ...], y: float) -> tuple[SymbolPart, ...]:
@@ -160,15 +170,15 @@ def damped_spring(length: float) -> tuple[SymbolPart, ...]:
 
 
 def cylinder(length: float) -> tuple[SymbolPart, ...]:
-    """A rod that goes into a cylinder, as those that push hydraulically."""
+    """A hydraulic cylinder with its rod."""
     high = min(5.0, 0.2 * length)
     x = 0.6 * length
     barrel = SymbolPart(((0.0, -high), (x, -high), (x, high), (0.0, high)), True, "paper")
     return barrel, line((0.45 * length, high), (0.45 * length, -high)), line((0.45 * length, 0.0), (length, 0.0))
 
 
-def straight(length: float) -> tuple[SymbolPart, ...]:
-    """A line."""
+def straight_line(length: float) -> tuple[SymbolPart, ...]:
+    """A straight line."""
     return (line((0.0, 0.0), (length, 0.0)),)
 
 
@@ -179,11 +189,11 @@ def rod(length: float) -> tuple[SymbolPart, ...]:
 
 
 LINKS: Mapping[str, Callable[[float], tuple[SymbolPart, ...]]] = {
-    "spring": spring, "damped spring": damped_spring, "actuator": cylinder, "rope": straight, "rod": rod,
+    "spring": spring, "damped spring": damped_spring, "actuator": cylinder, "rope": straight_line, "rod": rod,
 }  # fmt: skip
 SHORT = 14.0  # pixels, below which a link is a line
 
 
-def link(kind: str, length: float) -> tuple[SymbolPart, ...]:
-    """The parts of what joins two places so far apart, x from the first to the second."""
-    return LINKS[kind](length) if length >= SHORT else straight(length)
+def make_link(kind: str, length: float) -> tuple[SymbolPart, ...]:
+    """Return the parts of a link between two places at a distance, x from the first to the second."""
+    return LINKS[kind](length) if length >= SHORT else straight_line(length)

@@ -1,4 +1,4 @@
-"""Round numbers along an axis, and how they are written."""
+"""Choose round numbers along an axis, and format them."""
 
 from __future__ import annotations
 
@@ -6,83 +6,83 @@ import math
 
 from heuncli.output.drawing.figure import Scaling
 
-ROUND = (1.0, 2.0, 5.0, 10.0)
-TURNS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # degrees
-FINEST = 4  # places behind the point, with more numbers have exponents
-SPARE = 0.06  # of the span of what is drawn, beyond it at both ends
-MANY = 1e8  # steps from zero: farther off, numbers are too long to stand beside an axis
+MANTISSAS = (1.0, 2.0, 5.0, 10.0)
+ANGLE_STEPS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # degrees
+MAX_DECIMALS = 4  # decimals; numbers with more have exponents
+END_MARGIN = 0.06  # of the range, at both ends
+MAX_STEPS = 1e8  # steps from zero: farther numbers are too long for an axis
 
 
-def ticks(scaling: Scaling, most: int) -> list[tuple[float, str]]:
-    """At most so many round numbers between the ends of an axis, ascending, with their texts."""
-    if scaling.named:
-        return list(scaling.named)
-    if scaling.logarithmic:
-        found = _decades(scaling.low, scaling.high, most)
-        if len(found) > 1:
-            return found  # else the axis is so short that even numbers tell it
+def choose_ticks(scaling: Scaling, max_ticks: int) -> list[tuple[float, str]]:
+    """Choose round numbers between the ends of an axis, ascending, with their texts."""
+    if scaling.tick_texts:
+        return list(scaling.tick_texts)
+    if scaling.is_logarithmic:
+        decades = _choose_decades(scaling.low, scaling.high, max_ticks)
+        if len(decades) > 1:
+            return decades  # else the axis is so short that linear ticks are better
     span = scaling.high - scaling.low
-    turning = "[deg]" in scaling.label
-    step = _step(span / max(most, 1), turning=turning)
+    is_angle = "[deg]" in scaling.label
+    step = _choose_step(span / max(max_ticks, 1), is_angle=is_angle)
     first, last = math.ceil(scaling.low / step - 1e-9), math.floor(scaling.high / step + 1e-9)
-    if last <= first:  # one number does not tell how long the axis is
-        step = _step(span / 5.0, turning=turning)
+    if last <= first:  # one number does not show the scale
+        step = _choose_step(span / 5.0, is_angle=is_angle)
         first, last = math.ceil(scaling.low / step - 1e-9), math.floor(scaling.high / step + 1e-9)
-    if max(abs(first), abs(last)) > MANY:
+    if max(abs(first), abs(last)) > MAX_STEPS:
         return []
     values = [k * step for k in range(first, last + 1)]
-    places = 0 if turning and step in TURNS else -math.floor(math.log10(step) + 1e-9)
-    return [(value, written(value, places)) for value in values]
+    places = 0 if is_angle and step in ANGLE_STEPS else -math.floor(math.log10(step) + 1e-9)
+    return [(value, format_tick(value, places)) for value in values]
 
 
-def _step(least: float, *, turning: bool) -> float:
-    """The least round step that is not below that."""
-    if turning and 10.0 < least <= TURNS[-1]:
-        return next(step for step in TURNS if step >= least)
-    power = 10.0 ** math.floor(math.log10(least))
-    return next(power * mantissa for mantissa in ROUND if power * mantissa >= least * (1.0 - 1e-12))
+def _choose_step(min_step: float, *, is_angle: bool) -> float:
+    """Return the smallest round step that is not below `min_step`."""
+    if is_angle and 10.0 < min_step <= ANGLE_STEPS[-1]:
+        return next(step for step in ANGLE_STEPS if step >= min_step)
+    power = 10.0 ** math.floor(math.log10(min_step))
+    return next(power * mantissa for mantissa in MANTISSAS if power * mantissa >= min_step * (1.0 - 1e-12))
 
 
-def _decades(low: float, high: float, most: int) -> list[tuple[float, str]]:
-    """Powers of ten, and between them multiples where these are few."""
+def _choose_decades(low: float, high: float, max_ticks: int) -> list[tuple[float, str]]:
+    """Choose powers of ten, and multiples between them if there are few."""
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     for multiples in ((1, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,)):
         values = [m * 10.0**k for k in powers for m in multiples]
         within = [v for v in values if low * (1.0 - 1e-9) <= v <= high * (1.0 + 1e-9)]
-        if len(within) <= most or multiples == (1,):
-            every = max(1, math.ceil(len(within) / max(most, 1)))
-            return [(v, short(v)) for v in within[::every]]
+        if len(within) <= max_ticks or multiples == (1,):
+            stride = max(1, math.ceil(len(within) / max(max_ticks, 1)))
+            return [(v, format_short(v)) for v in within[::stride]]
     return []
 
 
-def written(value: float, places: int) -> str:
-    """A round number to so many places behind the point: plain where it is of a common size, else with an exponent."""
+def format_tick(value: float, places: int) -> str:
+    """Format a round number with so many decimals; very large or small ones with an exponent."""
     if value == 0.0:
-        return "0" if places > FINEST else f"{0.0:.{max(places, 0)}f}"
-    if 10.0**-FINEST <= abs(value) < 1e6:
+        return "0" if places > MAX_DECIMALS else f"{0.0:.{max(places, 0)}f}"
+    if 10.0**-MAX_DECIMALS <= abs(value) < 1e6:
         return f"{value:.{max(places, 0)}f}"
     digits = max(0, places + math.floor(math.log10(abs(value)) + 1e-9))
     mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
     return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
 
 
-def short(value: float, digits: int = 6) -> str:
-    """A number to six digits, or to fewer, its exponent short: 1e7, 2.5e-6; whole ones below a million without one."""
+def format_short(value: float, digits: int = 6) -> str:
+    """Format a number with at most six digits and a short exponent, such as 1e7 or 2.5e-6."""
     mantissa, e, exponent = f"{float(f'{value:.{digits}g}'):.6g}".partition("e")
     return mantissa + (f"e{int(exponent)}" if e else "")
 
 
-def near_zero(low: float, high: float) -> bool:
-    """Whether zero belongs on an axis: it is in reach of what is drawn, beside how far that goes."""
+def is_zero_near(low: float, high: float) -> bool:
+    """Return whether an axis should include zero: it is closer to the values than their range."""
     return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
 
 
-def ends(low: float, high: float, *, zero: bool = False, spare: float = SPARE) -> tuple[float, float]:
-    """The ends of an axis for values between these, with room beyond; zero: it is on the axis, too."""
+def choose_ends(low: float, high: float, *, zero: bool = False, margin: float = END_MARGIN) -> tuple[float, float]:
+    """Choose the ends of an axis for values in this range, with a margin; zero: it must be on the axis."""
     if zero:
         low, high = min(low, 0.0), max(high, 0.0)
     span = high - low
     if not span > 1e-12 * max(abs(low), abs(high)):
         span = abs(low) or 1.0
         return low - 0.5 * span, high + 0.5 * span
-    return low - spare * span, high + spare * span
+    return low - margin * span, high + margin * span

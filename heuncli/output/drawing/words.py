@@ -1,4 +1,4 @@
-"""The words at marked places and at vertical marks of a panel, in pixels, each where it finds room."""
+"""Place the words of marked places and vertical marks of a panel where there is room, in pixels."""
 
 from __future__ import annotations
 
@@ -6,106 +6,120 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.base.foreign_text import shown
-from heuncli.output.drawing.figure import Item, Spot, Upright
-from heuncli.output.drawing.pens import BLACK, GREY, pen
+from heuncli.base.foreign_text import escape
+from heuncli.output.drawing.figure import Item, Spot, VerticalMark
+from heuncli.output.drawing.pens import BLACK, GREY, find_pen
 from heuncli.output.drawing.picture import Line, Mark, Shape, Text
-from heuncli.output.drawing.room import WordBox, WordField, columns_of
+from heuncli.output.drawing.room import WordBox, WordField, count_columns
 from heuncli.output.drawing.scales import PanelBox
 
-SMALL = 11.0  # the size of letters
-WIDE, HIGH = 0.6, 1.2  # of the size of letters: at most the mean width of digits and letters, and the height of a line
-BASE = 0.92  # of the size: from the top of a line to its base
-FINE = 3.0  # pixels of a cell in which room is looked for
-SPOT = 3.0  # pixels, half the size of a mark
-NEAR = 2.0  # from a mark to its words
-LEAST_WIDTH = 1.0  # of an unnamed line that is no hatch
+SMALL_SIZE = 11.0  # font size
+WIDTH_FACTOR, HEIGHT_FACTOR = 0.6, 1.2  # of the font size: maximum mean width of letters, height of a line
+BASE_FACTOR = 0.92  # of the font size: from the top of a line to its base
+CELL_SIZE = 3.0  # pixels of a cell of the word field
+MARK_SIZE = 3.0  # pixels, half the size of a mark
+MARK_DISTANCE = 2.0  # pixels from a mark to its words
+MIN_LINE_WIDTH = 1.0  # of a line without a name that is no hatch
 
 
-def words(items: Sequence[Item], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
-    """The words of spots and vertical marks, and what is told of those that find no room in the field."""
+def place_words(items: Sequence[Item], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
+    """Place the words of spots and vertical marks; return them, and the words that find no room in the field."""
     texts: list[Shape] = []
-    told: list[str] = []
-    for item in in_turn(items):
-        text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
+    omitted: list[str] = []
+    for item in order_items(items):
+        text = (
+            _place_mark_words(item, box, field)
+            if isinstance(item, VerticalMark)
+            else _place_spot_words(item, box, field)
+        )
         if text is None:
-            told.append(item.note or item.text)
+            omitted.append(item.note or item.text)
         else:
             texts.append(text)
-    return texts, told
+    return texts, omitted
 
 
-def in_turn(items: Sequence[Item]) -> list[Spot | Upright]:
-    """What has words in the panel, in the order in which these look for room: numbers at marks first."""
+def order_items(items: Sequence[Item]) -> list[Spot | VerticalMark]:
+    """Return the items with words in the order in which these look for room: numbers at marks first."""
     spots = [item for item in items if isinstance(item, Spot) and item.text]
-    return [*spots, *(item for item in items if isinstance(item, Upright) and item.text and not item.above)]
+    return [*spots, *(item for item in items if isinstance(item, VerticalMark) and item.text and not item.is_above)]
 
 
-def wide(text: str, size: float) -> float:
-    """How wide a text is, at most."""
-    return WIDE * size * columns_of(text)
+def estimate_width(text: str, size: float) -> float:
+    """Return the maximum width of a text."""
+    return WIDTH_FACTOR * size * count_columns(text)
 
 
-def field_of(drawn: Sequence[Shape], room: WordBox) -> WordField:
-    """The room of a panel with its curves, marks and words: what stands there."""
-    field = WordField(room, (FINE, FINE))
-    for shape in drawn:
+def make_field(shapes: Sequence[Shape], area: WordBox) -> WordField:
+    """Make the word field of a panel, with its curves, marks and texts."""
+    field = WordField(area, (CELL_SIZE, CELL_SIZE))
+    for shape in shapes:
         if isinstance(shape, Line):
-            if shape.name or shape.width >= LEAST_WIDTH:
-                field.curve(np.array(shape.points))
+            if shape.name or shape.width >= MIN_LINE_WIDTH:
+                field.add_curve(np.array(shape.points))
         elif isinstance(shape, Mark):
-            field.take(_about(shape))
+            field.occupy(_make_mark_box(shape))
         elif isinstance(shape, Text):
-            field.take(_of_text(shape))
+            field.occupy(_make_text_box(shape))
     return field
 
 
-def _about(mark: Mark) -> WordBox:
+def _make_mark_box(mark: Mark) -> WordBox:
     return WordBox(mark.x - mark.size, mark.y - mark.size, mark.x + mark.size, mark.y + mark.size)
 
 
-def _of_text(text: Text) -> WordBox:
-    """The box of a text that does not stand turned."""
-    width = wide(text.text, text.size)
+def _make_text_box(text: Text) -> WordBox:
+    """Return the box of a horizontal text."""
+    width = estimate_width(text.text, text.size)
     left = text.x - {"start": 0.0, "middle": 0.5, "end": 1.0}[text.anchor] * width
-    top = text.y - BASE * text.size
-    return WordBox(left, top, left + width, top + HIGH * text.size)
+    top = text.y - BASE_FACTOR * text.size
+    return WordBox(left, top, left + width, top + HEIGHT_FACTOR * text.size)
 
 
-def _spot(item: Spot, box: PanelBox, field: WordField) -> Text | None:
-    """The words beside a mark."""
-    text = shown(item.text)
-    mark = Mark(box.x(item.x), box.y(item.y), item.shape, BLACK, item.filled, SPOT + NEAR)
-    found = field.beside(_about(mark), wide(text, SMALL), HIGH * SMALL)
-    if found is None:
-        return None
-    colour = BLACK if item.pen is None else pen(item.pen).colour
-    return Text(found.left, found.top + BASE * SMALL, text, SMALL, colour=colour, halo=True)
-
-
-def _upright(item: Upright, box: PanelBox, field: WordField) -> Text | None:
-    """The words along a vertical mark, read from below: at its left or right, at its upper end or its lower."""
-    text, x = shown(item.text), box.x(item.x)
-    long, high = wide(text, SMALL), HIGH * SMALL
-    tops = (box.top + 4.0, box.bottom - 4.0 - long)
-    found = field.best(
-        (price, WordBox(left, top, left + high, top + long))
-        for price, top in zip((0.0, 8.0), tops, strict=True)
-        for left in (x - 2.0 - high, x + 2.0)
+def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> Text | None:
+    """Place the words of a mark; None if there is no room."""
+    text = escape(item.text)
+    mark = Mark(
+        box.to_pixel_x(item.x), box.to_pixel_y(item.y), item.shape, BLACK, item.is_filled, MARK_SIZE + MARK_DISTANCE
     )
-    if found is None:
+    place = field.occupy_near(_make_mark_box(mark), estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE)
+    if place is None:
         return None
-    return Text(found.left + BASE * SMALL, found.bottom, text, SMALL, colour=GREY, turned=True, halo=True)
+    colour = BLACK if item.pen is None else find_pen(item.pen).colour
+    return Text(place.left, place.top + BASE_FACTOR * SMALL_SIZE, text, SMALL_SIZE, colour=colour, has_halo=True)
 
 
-def apart(items: Sequence[Item], box: PanelBox, least: float) -> list[Item]:
-    """The items without those vertical marks that have no words and stand closer than so many pixels to another."""
-    last, kept = -np.inf, []
+def _place_mark_words(item: VerticalMark, box: PanelBox, field: WordField) -> Text | None:
+    """Place the words along a vertical mark, read from below: at its left or right, at its upper or lower end."""
+    text, x = escape(item.text), box.to_pixel_x(item.x)
+    length, height = estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE
+    tops = (box.top + 4.0, box.bottom - 4.0 - length)
+    place = field.occupy_best(
+        (cost, WordBox(left, top, left + height, top + length))
+        for cost, top in zip((0.0, 8.0), tops, strict=True)
+        for left in (x - 2.0 - height, x + 2.0)
+    )
+    if place is None:
+        return None
+    return Text(
+        place.left + BASE_FACTOR * SMALL_SIZE,
+        place.bottom,
+        text,
+        SMALL_SIZE,
+        colour=GREY,
+        is_vertical=True,
+        has_halo=True,
+    )
+
+
+def drop_close_marks(items: Sequence[Item], box: PanelBox, min_distance: float) -> list[Item]:
+    """Drop the vertical marks without words that are closer to another one than `min_distance` pixels."""
+    last, shown_items = -np.inf, []
     for item in items:
-        if isinstance(item, Upright):
-            x = box.x(item.x)
-            if not item.text and abs(x - last) < least:
+        if isinstance(item, VerticalMark):
+            x = box.to_pixel_x(item.x)
+            if not item.text and abs(x - last) < min_distance:
                 continue
             last = x
-        kept.append(item)
-    return kept
+        shown_items.append(item)
+    return shown_items

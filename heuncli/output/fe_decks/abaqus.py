@@ -1,7 +1,8 @@
-"""Load cases for Abaqus: a static step each, with forces at points and the inertia of all elements.
+"""Write load cases for Abaqus: a static step each, with forces at points and the inertia of all elements.
 
 GRAV    a load along its direction: g - a at the body's origin
-CENTRIF the square of w [rad2/s2], outwards; ROTA u [rad/s2]: both of the body, d'Alembert's forces (Theory Guide 6.1.1)
+CENTRIF the square of w [rad2/s2], outwards; ROTA u [rad/s2]: both of the body,
+        d'Alembert's forces (Theory Guide 6.1.1)
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from heuncli.output.fe_decks.input_deck import (
     rotary_line,
 )
 from heuncli.output.fe_decks.naming import DeckNames, DeckNodes, step_name
-from heuncli.output.fe_decks.readme import heading_of, readme
+from heuncli.output.fe_decks.readme import case_heading, readme
 
-TIE = (
+TIE_NOTE = (
     "Tie each point to the surface of its bore: *COUPLING with *DISTRIBUTING (spreads the load) or *KINEMATIC (keeps "
     "the bore rigid); of beams *MPC with BEAM."
 )
-CARDS = (
+CARD_NOTES = (
     "GRAV is a load along its direction, g - a at the body's origin. CENTRIF has the square of the angular velocity, "
     "ROTA the angular acceleration, of the body about the axes through 0, 0, 0: d'Alembert's forces of both.",
     "Every step is linear (NLGEOM=NO), with OP=NEW: no load of one is left in the next.",
@@ -32,15 +33,15 @@ CARDS = (
 
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
-    """The deck in pieces."""
+    """Yield the text of the deck, in pieces."""
     nodes, elements = DeckNodes(cases, names), names.elements
-    all_of_it = f"{elements} is the set of all elements of the mesh, with their density."
-    yield from readme(cases, nodes, MARK, TIE, (*CARDS, all_of_it))
+    elements_note = f"{elements} is the set of all elements of the mesh, with their density."
+    yield from readme(cases, nodes, MARK, TIE_NOTE, (*CARD_NOTES, elements_note))
     yield from node_lines(nodes)
     for k, case in enumerate(cases.cases, start=1):
-        yield from heading_of(case, k, MARK)
+        yield from case_heading(case, k, MARK)
         yield f"*STEP, NAME={step_name(k, case)}, NLGEOM=NO\n*STATIC\n"
-        yield from force_lines(nodes.loads(case), cases.units)
+        yield from force_lines(nodes.find_loads(case), cases.units)
         yield "*DLOAD, OP=NEW\n"
         yield from gravity_line(elements, case.field.linear)
         yield from centrifugal_line(elements, case)

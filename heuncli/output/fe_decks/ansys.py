@@ -1,4 +1,4 @@
-"""Load cases for ANSYS Mechanical APDL: points, forces, and the acceleration of the body as load steps.
+"""Write load cases for ANSYS Mechanical APDL: points, forces, and the acceleration of the body as load steps.
 
     ACEL    the acceleration of the frame: gravity -g in it is +g here; the mass resists with -m ACEL
     OMEGA   [rad/s], DOMEGA [rad/s2]: of the structure, about the global axes through the global origin
@@ -11,55 +11,55 @@ from collections.abc import Iterator
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.output.fe_decks.naming import DeckNames, DeckNodes, NodeLoad
-from heuncli.output.fe_decks.readme import exact, heading_of, parts_of, readme
+from heuncli.output.fe_decks.readme import case_heading, exact, part_lines, readme
 from heuncli.results.results import Array
 
 MARK = "!"
-TIE = (
+TIE_NOTE = (
     "Each point is a pilot node: give it a MASS21 without mass or a contact pair (TARGE170, CONTA174 with "
     "KEYOPT(2)=2), and tie it to the nodes of its bore by RBE3 (spreads the load) or CERIG (keeps the bore rigid)."
 )
-CARDS = (
+CARD_NOTES = (
     "ACEL is the acceleration of the frame, a - g at the body's origin: the mesh resists with -m ACEL, and gravity "
     "along -z stands as +z. OMEGA [rad/s] and DOMEGA [rad/s2] are of the body, about the axes through 0, 0, 0; "
     "no CGLOC, CGOMGA, DCGOMG, and no inertia relief (IRLF) beside them.",
     "Each case is written as a load step (LSWRITE); LSSOLVE,1,N solves them.",
 )
-LABELS = ("FX", "FY", "FZ", "MX", "MY", "MZ")
+FORCE_LABELS = ("FX", "FY", "FZ", "MX", "MY", "MZ")
 
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
-    """The macro in pieces."""
+    """Yield the text of the macro, in pieces."""
     nodes = DeckNodes(cases, names)
-    yield from readme(cases, nodes, MARK, TIE, CARDS)
+    yield from readme(cases, nodes, MARK, TIE_NOTE, CARD_NOTES)
     yield "/PREP7\n"
     for node in nodes.nodes:
-        yield f"N,{node.number},{','.join(map(exact, node.at.tolist()))}\n"
+        yield f"N,{node.number},{','.join(map(exact, node.place.tolist()))}\n"
     yield "FINISH\n/SOLU\nANTYPE,STATIC\n"
     for k, case in enumerate(cases.cases, start=1):
-        yield from _case(cases, case, nodes, k)
+        yield from _case_lines(cases, case, nodes, k)
 
 
-def _case(cases: LoadCases, case: LoadCase, nodes: DeckNodes, k: int) -> Iterator[str]:
-    yield from heading_of(case, k, MARK)
-    yield f"TIME,{k}\n"
+def _case_lines(cases: LoadCases, case: LoadCase, nodes: DeckNodes, number: int) -> Iterator[str]:
+    yield from case_heading(case, number, MARK)
+    yield f"TIME,{number}\n"
     for node in nodes.nodes:
         yield f"FDELE,{node.number},ALL\n"
-    for load in nodes.loads(case):
-        yield from parts_of(load, cases.units, MARK)
-        yield from _forces(load)
+    for load in nodes.find_loads(case):
+        yield from part_lines(load, cases.units, MARK)
+        yield from _force_lines(load)
     field = case.field
     for command, value in (("ACEL", field.linear), ("OMEGA", field.angular_velocity),
                            ("DOMEGA", field.angular_acceleration)):  # fmt: skip
-        yield _vector(command, value)
-    yield f"LSWRITE,{k}\n"
+        yield _vector_line(command, value)
+    yield f"LSWRITE,{number}\n"
 
 
-def _forces(load: NodeLoad) -> Iterator[str]:
-    for label, value in zip(LABELS, [*load.force.tolist(), *load.moment.tolist()], strict=True):
+def _force_lines(load: NodeLoad) -> Iterator[str]:
+    for label, value in zip(FORCE_LABELS, [*load.force.tolist(), *load.moment.tolist()], strict=True):
         if value:
             yield f"F,{load.node.number},{label},{exact(value)}\n"
 
 
-def _vector(command: str, value: Array) -> str:
+def _vector_line(command: str, value: Array) -> str:
     return f"{command},{','.join(map(exact, value.tolist()))}\n"

@@ -1,4 +1,6 @@
-"""Load cases as CSV: a row a vector, with its case, what it is of, and its unit; no comments: all programs read it."""
+"""Write load cases as CSV: one row for each vector, with its case, origin and unit. No comments, so any program can
+read it.
+"""
 
 from __future__ import annotations
 
@@ -12,62 +14,66 @@ from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
 from heuncli.output.fe_decks.naming import DeckNames
 from heuncli.results.results import Array
 
-HEAD = ("case", "time", "kind", "name", "by", "point", "quantity", "unit", "x", "y", "z")
+HEADER = ("case", "time", "kind", "name", "by", "point", "quantity", "unit", "x", "y", "z")
 
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
-    """The lines."""
-    yield _line(HEAD)
-    for row in rows(cases):
-        yield _line(row)
+    """Yield the lines."""
+    yield _format_line(HEADER)
+    for row in iter_rows(cases):
+        yield _format_line(row)
 
 
-def rows(cases: LoadCases) -> Iterator[tuple[object, ...]]:
-    """A row a vector: the body first, then the cases."""
+def iter_rows(cases: LoadCases) -> Iterator[tuple[object, ...]]:
+    """Yield one row for each vector: first the body, then the cases."""
     _, length, mass, _ = cases.units
     body = cases.body
-    own = ("", "", "body", body.name, "", "")
-    yield (*own, "mass", mass, body.mass, "", "")
-    yield (*own, "center", length, *_of(body.center))
+    body_columns = ("", "", "body", body.name, "", "")
+    yield (*body_columns, "mass", mass, body.mass, "", "")
+    yield (*body_columns, "center", length, *_format_vector(body.center))
     for name, row in zip("xyz", body.inertia, strict=True):
-        yield (*own, f"inertia.{name}", f"{mass}*{length}^2", *_of(row))
+        yield (*body_columns, f"inertia.{name}", f"{mass}*{length}^2", *_format_vector(row))
     for case in cases.cases:
-        yield from _case(cases, case)
+        yield from _iter_case_rows(cases, case)
 
 
-def _case(cases: LoadCases, case: LoadCase) -> Iterator[tuple[object, ...]]:
+def _iter_case_rows(cases: LoadCases, case: LoadCase) -> Iterator[tuple[object, ...]]:
     force, length, _, time = cases.units
-    pulse = f"*{time}" if case.struck else ""
-    lead = (case.name, repr(case.time))
-    for one in case.actions:
-        yield from _action((*lead, one.kind, one.name, one.by, one.point), one, (f"{force}{pulse}", length))
-    f, rate = case.field, "" if case.struck else "^2"
+    pulse = f"*{time}" if case.is_impulse else ""
+    case_columns = (case.name, repr(case.time))
+    for action in case.actions:
+        yield from _iter_action_rows(
+            (*case_columns, action.kind, action.name, action.source, action.point), action, (f"{force}{pulse}", length)
+        )
+    f, rate = case.field, "" if case.is_impulse else "^2"
     field = [("acceleration", f"{length}/{time}{rate}", f.origin), ("gravity", f"{length}/{time}{rate}", f.gravity),
              ("angular_velocity", f"rad/{time}", f.angular_velocity),
              ("angular_acceleration", f"rad/{time}{rate}", f.angular_acceleration)]  # fmt: skip
-    if case.struck:  # a blow changes velocities, and nothing else matters meanwhile
+    if case.is_impulse:  # an impulse changes only velocities
         field = [("velocity_jump", *field[0][1:]), ("angular_velocity_jump", *field[3][1:])]
     for quantity, unit, value in field:
-        yield (*lead, "inertia", cases.body.name, "", "origin", quantity, unit, *_of(value))
-    sums = cases.body.sums(case)
-    yield (*lead, "sum", "", "", "origin", "force", f"{force}{pulse}", *_of(sums.force))
-    yield (*lead, "sum", "", "", "origin", "moment", f"{force}{pulse}*{length}", *_of(sums.moment))
+        yield (*case_columns, "inertia", cases.body.name, "", "origin", quantity, unit, *_format_vector(value))
+    sums = cases.body.compute_sums(case)
+    yield (*case_columns, "sum", "", "", "origin", "force", f"{force}{pulse}", *_format_vector(sums.force))
+    yield (*case_columns, "sum", "", "", "origin", "moment", f"{force}{pulse}*{length}", *_format_vector(sums.moment))
 
 
-def _action(lead: Sequence[object], one: PointAction, units: tuple[str, str]) -> Iterator[tuple[object, ...]]:
+def _iter_action_rows(
+    first_columns: Sequence[object], action: PointAction, units: tuple[str, str]
+) -> Iterator[tuple[object, ...]]:
     force, length = units
-    yield (*lead, "position", length, *_of(one.at))
-    yield (*lead, "force", force, *_of(one.force))
-    yield (*lead, "moment", f"{force}*{length}", *_of(one.moment))
-    if one.per_length is not None:
-        yield (*lead, "force_per_length", f"{force}/{length}", *_of(one.per_length))
+    yield (*first_columns, "position", length, *_format_vector(action.at))
+    yield (*first_columns, "force", force, *_format_vector(action.force))
+    yield (*first_columns, "moment", f"{force}*{length}", *_format_vector(action.moment))
+    if action.per_length is not None:
+        yield (*first_columns, "force_per_length", f"{force}/{length}", *_format_vector(action.per_length))
 
 
-def _of(vector: Array) -> list[str]:
+def _format_vector(vector: Array) -> list[str]:
     return [repr(x) for x in (np.asarray(vector) + 0.0).tolist()]
 
 
-def _line(row: Sequence[object]) -> str:
+def _format_line(row: Sequence[object]) -> str:
     text = StringIO()
     csv.writer(text, lineterminator="\n").writerow(row)
     return text.getvalue()

@@ -1,4 +1,6 @@
-"""Load cases as JSON: the body, and each case with its loads, the acceleration of its origin, and what is left over."""
+"""Write load cases as JSON: the body, and each case with its loads, the acceleration of its origin, and the unbalanced
+sums.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +9,13 @@ from typing import Any
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.output.fe_decks.naming import DeckNames
-from heuncli.output.tables.export import dump
+from heuncli.output.tables.export import dump_json
 
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
-    """One object."""
+    """Yield one JSON object."""
     body = cases.body
-    yield dump({
+    yield dump_json({
         "heun": 1,
         "title": cases.title,
         "spec": {"path": cases.spec, "sha256": cases.digest},
@@ -23,25 +25,25 @@ def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
         "body": {"name": body.name, "mass": body.mass, "center": body.center, "inertia": body.inertia},
         "estimate": {"reactions": cases.estimate},
         **({"split": cases.split} if cases.split else {}),
-        "cases": [_case(cases, case) for case in cases.cases],
+        "cases": [_case_to_dict(cases, case) for case in cases.cases],
     })  # fmt: skip
 
 
-def _case(cases: LoadCases, case: LoadCase) -> dict[str, Any]:
-    sums, f = cases.body.sums(case), case.field
+def _case_to_dict(cases: LoadCases, case: LoadCase) -> dict[str, Any]:
+    sums, f = cases.body.compute_sums(case), case.field
     field: dict[str, Any] = {
         "acceleration": f.origin, "gravity": f.gravity, "angular_velocity": f.angular_velocity,
         "angular_acceleration": f.angular_acceleration,
     }  # fmt: skip
-    if case.struck:
+    if case.is_impulse:
         field = {"velocity_jump": f.origin, "angular_velocity_jump": f.angular_acceleration}
     return {
         "name": case.name,
         "time": case.time,
-        "blow": case.struck,
-        **({"blow_over": case.over} if case.over is not None else {}),
+        "blow": case.is_impulse,
+        **({"blow_over": case.averaging_time} if case.averaging_time is not None else {}),
         "loads": [
-            {"kind": one.kind, "name": one.name, "by": one.by, "point": one.point or None, "position": one.at,
+            {"kind": one.kind, "name": one.name, "by": one.source, "point": one.point or None, "position": one.at,
              "force": one.force, "moment": one.moment,
              **({"force_per_length": one.per_length} if one.per_length is not None else {})}
             for one in case.actions

@@ -1,7 +1,8 @@
-"""Words of a scene as decks may hold them, and the numbers of the points.
+"""Make texts of a scene safe for decks, and number the points.
 
-A deck is a program: a line that a title or a name begins would be a card. So what others wrote stands in comments
-alone, in printable ASCII, on one line, without the letters that end a comment; what names a step is spelled anew.
+A deck is a program: a line that begins with a title or a name would be a card. So foreign text appears in comments
+only, in printable ASCII, on one line, without the letters that end a comment. Step names are reduced to letters, digits
+and _.
 """
 
 from __future__ import annotations
@@ -10,18 +11,20 @@ import re
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
 SET_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}\Z")
-LONGEST_TEXT, LONGEST_NAME = 200, 60  # letters of a title in a comment, of the name of a step
+MAX_TEXT_LENGTH, MAX_NAME_LENGTH = 200, 60  # characters of a text in a comment, and of a step name
 
 
 class DeckNames(NamedTuple):
-    """What a deck calls things: the number of the first point, and the mesh's set of all elements.
+    """The names in a deck.
 
-    mesh: in the deck's units, where some of the loads stand at its nodes.
+    first_node: the number of the first point
+    elements: the mesh's set of all elements
+    mesh: in the deck's units, if some of the loads act at its nodes
     """
 
     first_node: int
@@ -29,24 +32,26 @@ class DeckNames(NamedTuple):
     mesh: SolidMesh | None = None
 
 
-def unfit_set(name: str) -> str:
-    """What keeps a word from being the name of a set in all programs; nothing where it can be."""
+def explain_invalid_set(name: str) -> str:
+    """Return why a word cannot name a set in all programs; empty if it can."""
     return "" if SET_NAME.match(name) else "expected a letter, then letters, digits and _, at most 32"
 
 
 def plain_text(text: str) -> str:
-    """What others wrote, for a comment: one line of ASCII; $ and ! begin and end commands in some programs."""
-    kept = shown(text).encode("ascii", "backslashreplace").decode().replace("$", "\\x24").replace("!", "\\x21")
-    return kept if len(kept) <= LONGEST_TEXT else kept[:LONGEST_TEXT] + " ..."
+    """Make foreign text safe for a comment: one line of ASCII without $ and !, which begin and end commands in some
+    programs.
+    """
+    safe_text = escape(text).encode("ascii", "backslashreplace").decode().replace("$", "\\x24").replace("!", "\\x21")
+    return safe_text if len(safe_text) <= MAX_TEXT_LENGTH else safe_text[:MAX_TEXT_LENGTH] + " ..."
 
 
 def step_name(number: int, case: LoadCase) -> str:
-    """The name of a case's step: letters, digits and _, with its number before it, so that no two are the same."""
-    return f"C{number}_{re.sub('[^A-Za-z0-9]+', '_', case.name).strip('_')}"[:LONGEST_NAME]
+    """Make the name of a case's step: letters, digits and _, with its number first, so that names are unique."""
+    return f"C{number}_{re.sub('[^A-Za-z0-9]+', '_', case.name).strip('_')}"[:MAX_NAME_LENGTH]
 
 
 class DeckNode(NamedTuple):
-    """A point of the body that carries loads: its number, its place, and what it is."""
+    """A point of the body that carries loads: its number, its place, and a label."""
 
     number: int
     at: Array
@@ -54,7 +59,7 @@ class DeckNode(NamedTuple):
 
 
 class NodeLoad(NamedTuple):
-    """What acts at a point in a case, all together: force and moment (3,), and of what it is made."""
+    """The total load at a point in a case: force and moment (3,), and the actions of which it is the sum."""
 
     node: DeckNode
     force: Array
@@ -63,29 +68,29 @@ class NodeLoad(NamedTuple):
 
 
 class DeckNodes:
-    """The points that carry loads in some case, numbered as they are met."""
+    """The points that carry loads in some case, numbered in order of appearance."""
 
     def __init__(self, cases: LoadCases, names: DeckNames) -> None:
         self._by_place: dict[tuple[float, ...], DeckNode] = {}
         for case in cases.cases:
             for action in case.actions:
                 what = f"{action.kind} {action.name}"
-                self._take(action.at, names, f"{action.point}, where {what} acts" if action.point else what)
+                self._add_node(action.at, names, f"{action.point}, where {what} acts" if action.point else what)
         self.nodes = [*self._by_place.values()]
 
-    def _take(self, at: Array, names: DeckNames, label: str) -> None:
-        place = tuple((at + 0.0).tolist())
-        if place not in self._by_place:
-            self._by_place[place] = DeckNode(names.first_node + len(self._by_place), at + 0.0, label)
+    def _add_node(self, point: Array, names: DeckNames, label: str) -> None:
+        key = tuple((point + 0.0).tolist())
+        if key not in self._by_place:
+            self._by_place[key] = DeckNode(names.first_node + len(self._by_place), point + 0.0, label)
 
-    def loads(self, case: LoadCase) -> list[NodeLoad]:
-        """What acts at each point in a case."""
-        found: dict[int, list[PointAction]] = {}
+    def find_loads(self, case: LoadCase) -> list[NodeLoad]:
+        """Sum the loads at each point in a case."""
+        actions_by_node: dict[int, list[PointAction]] = {}
         for action in case.actions:
-            found.setdefault(self._by_place[tuple((action.at + 0.0).tolist())].number, []).append(action)
+            actions_by_node.setdefault(self._by_place[tuple((action.at + 0.0).tolist())].number, []).append(action)
         by_number = {node.number: node for node in self.nodes}
         return [
-            NodeLoad(by_number[number], sum((one.force for one in own), 0.0 * own[0].force),
-                     sum((one.moment for one in own), 0.0 * own[0].moment), tuple(own))
-            for number, own in found.items()
+            NodeLoad(by_number[number], sum((part.force for part in actions), 0.0 * actions[0].force),
+                     sum((part.moment for part in actions), 0.0 * actions[0].moment), tuple(actions))
+            for number, actions in actions_by_node.items()
         ]  # fmt: skip

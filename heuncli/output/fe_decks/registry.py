@@ -1,6 +1,7 @@
-"""The forms in which load cases are written, a row each: a new one is a module of this folder and a row here.
+"""The formats of load cases, a row each. A new one is a module of this folder and a row here.
 
-A module has `written(cases, names)`, the text in pieces; and `notes(cases, names)` where the user has to know more.
+A module has `written(cases, names)`, which yields the text in pieces; and `notes(cases, names)` if there is something
+that the user has to know.
 """
 
 from __future__ import annotations
@@ -15,20 +16,20 @@ from heuncli.output.fe_decks.naming import DeckNames
 
 
 class Deck(NamedTuple):
-    """A form: the module that writes it, and whether it knows forces alone, as decks of static loads do."""
+    """A format: the module that writes it, and whether it holds only forces, as decks of static loads do."""
 
     file: str
     static: bool = True
 
-    def written(self, cases: LoadCases, names: DeckNames) -> Iterable[str]:
-        """The text in pieces."""
+    def iter_text(self, cases: LoadCases, names: DeckNames) -> Iterable[str]:
+        """Yield the text, in pieces."""
         pieces: Iterable[str] = self._module.written(cases, names)
         return pieces
 
     def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
-        """What the user has to do that no card does, in sentences."""
-        own: Callable[[LoadCases, DeckNames], list[str]] | None = getattr(self._module, "notes", None)
-        return own(cases, names) if own is not None else []
+        """Return what the user has to do that no card does, in sentences."""
+        module_notes: Callable[[LoadCases, DeckNames], list[str]] | None = getattr(self._module, "notes", None)
+        return module_notes(cases, names) if module_notes is not None else []
 
     @property
     def _module(self) -> Any:

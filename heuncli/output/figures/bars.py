@@ -1,9 +1,9 @@
-"""Section loads all along a bar: at an instant, at a blow, and the lowest and highest over a run.
+"""Section loads all along a bar: at an instant, at an impact, and the lowest and highest over a run.
 
-A run of cuts is looked at as a whole stretch, not at the cuts that were asked for (loads/kinetostatics/stretch.py):
-between two of its corners (joints, loads, point masses, changes of shape) the loads are smooth in s, the way along it;
-at a corner they are taken on either side, so that a jump has both its values at its very place. Of what moves over the
-body the corner moves, too, and is where it stands at that instant.
+A run of cuts is evaluated along its whole length, not only at the cuts in the spec (loads/kinetostatics/stretch.py).
+Between two of its corners (joints, loads, point masses, changes of shape) the loads are smooth in s, the distance along
+it. At a corner they are evaluated on both sides, so that a jump has both its values at its exact place. The corner of a
+load that moves over the body moves too, and is at its place of that instant.
 """
 
 from __future__ import annotations
@@ -17,37 +17,48 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached
-from heuncli.loads.kinetostatics.stretch import DEGREE, SIDES, TO_COEFFICIENTS, Stretch, chebyshev, laid
-from heuncli.output.figures.courses import instants
-from heuncli.output.figures.summits import bounds_of, halved
+from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts, list_attachment_points
+from heuncli.loads.kinetostatics.stretch import (
+    DEGREE,
+    SIDES,
+    TO_COEFFICIENTS,
+    Stretch,
+    chebyshev_polynomials,
+    make_cuts_at,
+)
+from heuncli.output.figures.courses import choose_instants
+from heuncli.output.figures.summits import find_bounds, halve_steps
 from heuncli.results.results import Array, Block, Mask, Results
-from heuncli.results.results_schema import AT_A_BLOW, RESULTANT_UNITS, RESULTANTS
+from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
 from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import Setup
-from heuncli.study.quantities.digits import Certainty, certainty
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.digits import Certainty, find_certainty
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import ColumnSearch, no_columns
-from heuncli.study.search.stretches import at_one_instant, stretch_named
+from heuncli.study.search.extremes import ColumnSearch, make_no_columns
+from heuncli.study.search.stretches import find_stretch, find_summits
 
 SECTIONS = frozenset({"sections"})
-ALONG, LEAST = 240, 8  # places along a bar, three pixels apart; and between two corners at least
-HALVINGS, MOST = 4, 16_000  # of the steps between instants, and how many of these at most
-SAME = 1e-6  # of the larger of two magnitudes: what is as large as the other in a picture
+N_PLACES, MIN_PLACES = 240, 8  # places along a bar, 3 pixels apart; minimum between two corners
+MAX_HALVINGS, MAX_INSTANTS = 4, 16_000  # halvings of the time steps; maximum number of instants
+SAME_MAGNITUDE = 1e-6  # relative difference of magnitudes that look equal in a figure
 
 
 class Extreme(NamedTuple):
-    """The lowest or the highest of a quantity along a bar: its value, place [m] and instant [s]."""
+    """The lowest or highest value of a quantity along a bar, with its place s [m] and instant [s]."""
 
     value: float
     s: float
     at: float
 
 
-class AlongBar(NamedTuple):
-    """A quantity along a bar at one instant (k,): places, twice where it jumps; values, nan where it is open."""
+class BarLine(NamedTuple):
+    """A quantity along a bar at one instant.
+
+    s: places (k,), twice where the quantity jumps
+    values: (k,), nan where it is open
+    """
 
     at: float
     s: Array
@@ -56,10 +67,10 @@ class AlongBar(NamedTuple):
     high: Extreme
 
 
-class Reach(NamedTuple):
-    """The lowest and the highest of a quantity over a run, at each place along a bar (k,), and of all of them.
+class BarRange(NamedTuple):
+    """The lowest and highest values of a quantity over a run, at each place along a bar (k,), and of all places.
 
-    at_lowest, at_highest: the quantity along the bar at the instants of these.
+    at_lowest, at_highest: the quantity along the bar at the instants of the extremes
     """
 
     s: Array
@@ -67,22 +78,22 @@ class Reach(NamedTuple):
     high: Array
     lowest: Extreme
     highest: Extreme
-    at_lowest: AlongBar
-    at_highest: AlongBar
+    at_lowest: BarLine
+    at_highest: BarLine
 
     @property
-    def line(self) -> AlongBar:
-        """At the instant of the largest magnitude; of two that are as large, the first."""
+    def main_line(self) -> BarLine:
+        """The line at the instant of the largest magnitude; of two equal ones the first."""
         low, high = abs(self.lowest.value), abs(self.highest.value)
-        if abs(high - low) <= SAME * max(high, low):
-            return min(self.at_lowest, self.at_highest, key=lambda line: line.at)
+        if abs(high - low) <= SAME_MAGNITUDE * max(high, low):
+            return min(self.at_lowest, self.at_highest, key=lambda line: line.time)
         return self.at_lowest if low > high else self.at_highest
 
 
-class Edges(NamedTuple):
-    """Places at which loads that move over a bar stand, (n_t, m), and the quantities just beside them (6, n_t, m).
+class MovingEdges(NamedTuple):
+    """Places of the loads that move over a bar, (n_t, m), and the quantities immediately beside them, (6, n_t, m).
 
-    side (m,): on which side of the load.
+    side (m,): on which side of the load
     """
 
     s: Array
@@ -90,246 +101,282 @@ class Edges(NamedTuple):
     side: Array
 
     @classmethod
-    def of(cls, section: Block) -> Edges | None:
-        """The ends of the pieces of a stretch that move over it, of its block; None where all stand still."""
+    def from_section(cls, section: Block) -> MovingEdges | None:
+        """Collect the ends of the pieces that move over a bar; None if none moves."""
         if section["s"].ndim == 1:
             return None
         ends = [..., [0, DEGREE]]
         s = section["s"].reshape(len(section["s"]), -1, DEGREE + 1)[*ends]
         values = np.stack([section[name].reshape(*s.shape[:2], DEGREE + 1)[*ends] for name in RESULTANTS])
-        s = np.where(s[..., 1:] > s[..., :1], s, np.nan)  # where it stands at a corner there is nothing beside it
-        known = np.isfinite(s)
-        moves = np.max(np.where(known, s, -np.inf), axis=0) > np.min(np.where(known, s, np.inf), axis=0)
+        s = np.where(s[..., 1:] > s[..., :1], s, np.nan)  # a load at a corner has no values beside it
+        is_known = np.isfinite(s)
+        moves = np.max(np.where(is_known, s, -np.inf), axis=0) > np.min(np.where(is_known, s, np.inf), axis=0)
         return cls(s[:, moves], values[:, :, moves], np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves])
 
     @property
-    def turns(self) -> list[float]:
-        """The first and the last place at which any of them stands, if one moves."""
+    def end_places(self) -> list[float]:
+        """The first and last place of all moving loads; empty if none moves."""
         return [float(f(self.s)) for f in (np.nanmin, np.nanmax)] if self.s.size else []
 
-    def passes(self, places: Array, near: float) -> Mask:
-        """Between which neighbouring instants a load passes places (k,), or comes so near to them, (n_t - 1, k)."""
-        found = np.zeros((len(self.s) - 1, len(places)), dtype=bool)
+    def find_passes(self, places: Array, tolerance: float) -> Mask:
+        """Return whether a load passes places (k,), or comes as near as `tolerance`, between neighbouring instants,
+        (n_t - 1, k).
+        """
+        has_passed = np.zeros((len(self.s) - 1, len(places)), dtype=bool)
         for s in self.s.T:
             low, high = np.minimum(s[:-1], s[1:]), np.maximum(s[:-1], s[1:])
-            found |= (low[:, None] - near <= places) & (places <= high[:, None] + near)
-        return found
+            has_passed |= (low[:, None] - tolerance <= places) & (places <= high[:, None] + tolerance)
+        return has_passed
 
-    def pass_over(self, places: Array, side: Array, low: Array, high: Array) -> None:
-        """Widen bounds (6, k) at places (k,), in place, by what they are when a load stands there, just beside it."""
+    def widen_bounds(self, places: Array, side: Array, low: Array, high: Array) -> None:
+        """Widen bounds (6, k) at places (k,), in place, by the values immediately beside a moving load when it is
+        there.
+        """
         a, b = self.s[:-1], self.s[1:]
         first = np.searchsorted(places, np.minimum(a, b), side="left")
         last = np.searchsorted(places, np.maximum(a, b), side="right")
         for k, j in zip(*np.nonzero((last > first) & (a != b)), strict=True):
-            own = np.arange(first[k, j], last[k, j])
-            own = own[side[own] != -self.side[j]]
-            share = (places[own] - a[k, j]) / (b[k, j] - a[k, j])
-            there = self.values[:, k, j, None] + share * (self.values[:, k + 1, j] - self.values[:, k, j])[:, None]
-            low[:, own], high[:, own] = np.fmin(low[:, own], there), np.fmax(high[:, own], there)
+            indices = np.arange(first[k, j], last[k, j])
+            indices = indices[side[indices] != -self.side[j]]
+            share = (places[indices] - a[k, j]) / (b[k, j] - a[k, j])
+            values_there = (
+                self.values[:, k, j, None] + share * (self.values[:, k + 1, j] - self.values[:, k, j])[:, None]
+            )
+            low[:, indices], high[:, indices] = (
+                np.fmin(low[:, indices], values_there),
+                np.fmax(high[:, indices], values_there),
+            )
 
 
 @record
 class WholeBar:
-    """A run of cuts of a solved scene: a bar, of which the loads are told anywhere along it."""
+    """A run of cuts of a solved scene as a bar, whose loads are computed anywhere along it."""
 
     study: Study
     name: str
 
     @cached_property
     def setup(self) -> Setup:
-        """The scene with this run alone, as a whole stretch."""
-        whole = self.study.stretched(False)
+        """The scene with only this run of cuts, evaluated along its whole length."""
+        whole = self.study.with_whole_cuts(False)
         return replace(whole, cuts=tuple(cuts for cuts in whole.cuts if cuts.name == self.name))
 
     @property
     def stretch(self) -> Stretch:
         """The run with its corners."""
-        return stretch_named(self.setup, self.name)
+        return find_stretch(self.setup, self.name)
 
     @property
-    def near(self) -> float:
-        """How far apart corners along it are told apart [m]."""
-        return 4.0 * self.stretch.asked.near
+    def corner_tolerance(self) -> float:
+        """The distance within which two corners count as one [m]."""
+        return 4.0 * self.stretch.cuts.plane_tolerance
 
     @property
     def length(self) -> float:
-        """From its first point to its last [m]."""
-        s = self.stretch.asked.s
+        """The distance from its first point to its last [m]."""
+        s = self.stretch.cuts.s
         assert s is not None
         return float(s[-1])
 
     @property
-    def struck(self) -> bool:
-        """Whether impulses are told of it, of a scene that is nothing but a blow."""
+    def has_impulses(self) -> bool:
+        """Whether it carries impulses, in a scene that is only an impact."""
         return self.study.spec.analysis.type == "impulse" and bool(self.study.results.impulses)
 
     @cached_property
     def certain(self) -> Certainty:
-        """How well its loads are known."""
-        return certainty(self.study.results, labels_of(self.study.spec), self.study.magnitudes)
+        """The accuracy of its loads."""
+        return find_certainty(self.study.results, make_labels(self.study.spec), self.study.magnitudes)
 
-    def unit(self, quantity: str) -> str:
-        """The SI unit of a quantity."""
-        own = RESULTANT_UNITS[quantity]
-        return AT_A_BLOW[own] if self.struck else own
+    def find_unit(self, quantity: str) -> str:
+        """Return the SI unit of a quantity."""
+        unit = RESULTANT_UNITS[quantity]
+        return IMPULSE_UNITS[unit] if self.has_impulses else unit
 
-    def error(self, quantity: str) -> float:
-        """The stated error of a quantity, in SI; not below what the sums that it is of lose by rounding."""
-        return self.certain.error("sections", self.unit(quantity))
+    def find_error(self, quantity: str) -> float:
+        """Return the stated error of a quantity, SI; not below the rounding error of the sums that it is computed
+        from.
+        """
+        return self.certain.error_of("sections", self.find_unit(quantity))
 
     @cached_property
-    def standing(self) -> list[tuple[float, list[str]]]:
-        """What stands along it, joints, loads and point masses, by its place [m], ascending."""
-        stretch, n = self.stretch, self.stretch.asked.n
-        assert stretch.asked.form is not None
-        near, first = self.near, float(stretch.height(np.array(0.0)))
-        masses = stretch.corners[stretch.asked.form.masses_in_plane(n, stretch.corners)] - first
-        acting = [
-            (float(point @ n) - first, what) for what, point in attached(self.setup.scene.mechanism, stretch.body)
+    def attachments(self) -> list[tuple[float, list[str]]]:
+        """The joints, loads and point masses along it, by their place [m], ascending."""
+        stretch, n = self.stretch, self.stretch.cuts.n
+        assert stretch.cuts.form is not None
+        tolerance, first = self.corner_tolerance, float(stretch.find_height(np.array(0.0)))
+        masses = stretch.corners[stretch.cuts.form.has_mass_in_plane(n, stretch.corners)] - first
+        acting_points = [
+            (float(point @ n) - first, what)
+            for what, point in list_attachment_points(self.setup.scene.mechanism, stretch.body)
         ]
-        found: dict[float, list[str]] = {}
-        for s, what in [*acting, *((s, "point mass") for s in masses.tolist())]:
-            if -near <= s <= self.length + near:
-                at = next((other for other in found if abs(other - s) <= near), s)
+        names_at: dict[float, list[str]] = {}
+        for s, what in [*acting_points, *((s, "point mass") for s in masses.tolist())]:
+            if -tolerance <= s <= self.length + tolerance:
+                same_place = next((other for other in names_at if abs(other - s) <= tolerance), s)
                 name = what.partition(" ")[2] if what != "point mass" else what
-                if name not in found.setdefault(at, []):
-                    found[at].append(name)
-        return sorted(found.items())
+                if name not in names_at.setdefault(same_place, []):
+                    names_at[same_place].append(name)
+        return sorted(names_at.items())
 
-    def open_somewhere(self, quantity: str) -> bool:
-        """Whether the laws of rigid bodies leave a quantity open at some cut and instant that is asked for."""
+    def is_open_somewhere(self, quantity: str) -> bool:
+        """Return whether a quantity is open (indeterminate for rigid bodies) at some cut and instant of the results."""
         results = self.study.results
-        blocks = [blow["sections"] for blow in results.impulses] if self.struck else [results.sections]
+        blocks = [impulse["sections"] for impulse in results.impulses] if self.has_impulses else [results.sections]
         return any(quantity in block[self.name]["open"] for block in blocks)
 
     @property
     def instants(self) -> Array:
-        """The instants at which it is told without being asked: that of a blow, a state, else all of the run, (n,)."""
-        if self.struck:
-            return np.array([float(blow["time"]) for blow in self.study.results.impulses])
-        return instants(self.study)
+        """The default instants, (n,): that of an impact or of a state, else all of the run."""
+        if self.has_impulses:
+            return np.array([float(impulse["time"]) for impulse in self.study.results.impulses])
+        return choose_instants(self.study)
 
-    def block(self, cuts: Cuts, at: float) -> Block:
-        """The loads at some cuts, (k,) each, at an instant, or at the blow of that instant."""
+    def solve_cuts(self, cuts: Cuts, time: float) -> Block:
+        """Return the loads at some cuts, (k,) each, at an instant, or at the impact of that instant."""
         setup = replace(self.setup, cuts=(cuts,))
-        if self.struck:
-            blow = next(blow for blow in self.study.impulses(setup) if blow["time"] == at)
-            own: Block = blow["sections"][self.name]
-            return {name: np.asarray(own[name]) for name in ("s", *RESULTANTS)}
-        own = self.study.reports_at(np.array([at]), SECTIONS, setup).sections[self.name]
-        return {"s": np.asarray(own["s"]).reshape(-1)} | {name: own[name][0] for name in RESULTANTS}
+        if self.has_impulses:
+            impulse = next(impulse for impulse in self.study.make_impulse_blocks(setup) if impulse["time"] == time)
+            section: Block = impulse["sections"][self.name]
+            return {name: np.asarray(section[name]) for name in ("s", *RESULTANTS)}
+        section = self.study.compute_reports(np.array([time]), SECTIONS, setup).sections[self.name]
+        return {"s": np.asarray(section["s"]).reshape(-1)} | {name: section[name][0] for name in RESULTANTS}
 
-    def at(self, at: float) -> dict[str, AlongBar]:
-        """All quantities along the bar at an instant."""
-        nodes = self.block(self.setup.cuts[0], at)
-        s, side = places(corners_of(nodes["s"], self.near), self.near)
-        told = self.block(laid(self.stretch.asked, s, side), at)
-        found = {}
+    def make_lines(self, time: float) -> dict[str, BarLine]:
+        """Make the lines of all quantities along the bar at an instant."""
+        nodes = self.solve_cuts(self.setup.cuts[0], time)
+        s, side = make_places(find_corners(nodes["s"], self.corner_tolerance), self.corner_tolerance)
+        loads = self.solve_cuts(make_cuts_at(self.stretch.cuts, s, side), time)
+        lines = {}
         for name in RESULTANTS:
-            both = [_extreme(s, side * told[name], side, at) for side in (-1.0, 1.0)]
+            extremes_of_line = [_find_extreme(s, side * loads[name], side, time) for side in (-1.0, 1.0)]
             if np.isfinite(nodes[name]).all():
-                summits = at_one_instant(self.stretch, nodes["s"], nodes[name])
-                both = [Extreme(one.value, one.place.s, at) for one in summits]
-            found[name] = AlongBar(at, s, told[name], *both)
-        return found
+                summits = find_summits(self.stretch, nodes["s"], nodes[name])
+                extremes_of_line = [Extreme(summit.value, summit.place.s, time) for summit in summits]
+            lines[name] = BarLine(time, s, loads[name], *extremes_of_line)
+        return lines
 
-    def reaches(self) -> dict[str, Reach]:
-        """All quantities along the bar over the run, up to its horizon."""
-        times = instants(self.study)
-        whole = self._searched()
-        marked = [one for both in whole.values() for one in both]
-        lines = {at: self.at(at) for at in extremes.distinct(np.array([one.at for one in marked])).tolist()}
-        s, low, high = self._bounds(times, [one.s for one in marked])
+    def make_ranges(self) -> dict[str, BarRange]:
+        """Make the ranges of all quantities along the bar over the run, up to its horizon."""
+        times = choose_instants(self.study)
+        searched_extremes = self._search_extremes()
+        all_extremes = [extreme for both in searched_extremes.values() for extreme in both]
+        lines = {
+            time: self.make_lines(time)
+            for time in extremes.sort_distinct(np.array([extreme.time for extreme in all_extremes])).tolist()
+        }
+        s, low, high = self._find_bounds(times, [extreme.s for extreme in all_extremes])
         return {
-            name: Reach(s, low[i], high[i], *both, lines[both[0].at][name], lines[both[1].at][name])
-            for i, (name, both) in enumerate(whole.items())
+            name: BarRange(s, low[i], high[i], *both, lines[both[0].time][name], lines[both[1].time][name])
+            for i, (name, both) in enumerate(searched_extremes.items())
         }
 
-    def _searched(self) -> dict[str, tuple[Extreme, Extreme]]:
-        """The lowest and the highest of each quantity along the bar and over the run, searched between all of it."""
-        errors = np.array([self.error(name) for name in RESULTANTS])
+    def _search_extremes(self) -> dict[str, tuple[Extreme, Extreme]]:
+        """Search the lowest and highest value of each quantity over the bar and the run, between places and samples."""
+        errors = np.array([self.find_error(name) for name in RESULTANTS])
 
         def along(results: Results) -> list[tuple[str, Array]]:
             return [(self.name, results.sections[self.name][name]) for name in RESULTANTS]
 
-        searched = ColumnSearch(no_columns, (), errors, np.zeros(len(errors), dtype=bool), along)
+        searched = ColumnSearch(make_no_columns, (), errors, np.zeros(len(errors), dtype=bool), along)
         sampled = StudyColumns(self.study, searched, SECTIONS, self.setup)
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]
-        found = sampled.placed(extremes.search(sampled.columns, times, sampled.groups, errors=errors))
-        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)
+        placed_extremes = sampled.add_places(
+            extremes.search_extremes(sampled.sample, times, sampled.groups, errors=errors)
+        )
+        rows = zip(
+            placed_extremes.low,
+            placed_extremes.low_at,
+            placed_extremes.high,
+            placed_extremes.high_at,
+            placed_extremes.places,
+            strict=True,
+        )
         return {
             name: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
             for name, (a, a_at, b, b_at, (low, high)) in zip(RESULTANTS, rows, strict=True)
         }
 
-    def _bounds(self, times: Array, more: Sequence[float]) -> tuple[Array, Array, Array]:
-        """Places along the bar (k,), some more among them, and the lowest and the highest of all quantities (6, k)."""
-        for _ in range(HALVINGS):
-            nodes = self.study.reports_at(times, SECTIONS, self.setup).sections[self.name]
-            jumps = extremes.sides_of_jumps(times)
-            moving = Edges.of(nodes)
-            turns = np.array([] if moving is None else moving.turns)
-            corners = self.stretch.corners - float(self.stretch.height(np.array(0.0)))
-            s, side = places(np.sort(np.append(corners, turns)), self.near, more)
+    def _find_bounds(self, times: Array, extra_places: Sequence[float]) -> tuple[Array, Array, Array]:
+        """Return places along the bar (k,), including extra ones, and the lowest and highest values of all quantities
+        (6, k).
+        """
+        for _ in range(MAX_HALVINGS):
+            nodes = self.study.compute_reports(times, SECTIONS, self.setup).sections[self.name]
+            jumps = extremes.find_jump_sides(times)
+            moving = MovingEdges.from_section(nodes)
+            moving_ends = np.array([] if moving is None else moving.end_places)
+            corners = self.stretch.corners - float(self.stretch.find_height(np.array(0.0)))
+            s, side = make_places(np.sort(np.append(corners, moving_ends)), self.corner_tolerance, extra_places)
             smooth = np.broadcast_to(~jumps[:, None], (len(jumps), len(s)))
             if moving is None:
-                to_places = between_nodes(nodes["s"], s, side)
+                to_places = make_interpolation(nodes["s"], s, side)
                 values = {name: nodes[name] @ to_places for name in RESULTANTS}
             else:
-                cuts = laid(self.stretch.asked, s, side)
-                values = self.study.reports_at(times, SECTIONS, replace(self.setup, cuts=(cuts,))).sections[self.name]
-                smooth = smooth & ~moving.passes(s, self.near)
-            found = [bounds_of(times, values[name], smooth, self.error(name)) for name in RESULTANTS]
-            if all(own.fine for own in found) or len(times) > MOST:
+                cuts = make_cuts_at(self.stretch.cuts, s, side)
+                values = self.study.compute_reports(times, SECTIONS, replace(self.setup, cuts=(cuts,))).sections[
+                    self.name
+                ]
+                smooth = smooth & ~moving.find_passes(s, self.corner_tolerance)
+            all_bounds = [find_bounds(times, values[name], smooth, self.find_error(name)) for name in RESULTANTS]
+            if all(quantity_bounds.is_fine for quantity_bounds in all_bounds) or len(times) > MAX_INSTANTS:
                 break
-            times = halved(times, jumps)
-        low, high = np.stack([own.low for own in found]), np.stack([own.high for own in found])
+            times = halve_steps(times, jumps)
+        low, high = (
+            np.stack([quantity_bounds.low for quantity_bounds in all_bounds]),
+            np.stack([quantity_bounds.high for quantity_bounds in all_bounds]),
+        )
         if moving is not None:
-            moving.pass_over(s, side, low, high)
+            moving.widen_bounds(s, side, low, high)
         return s, low, high
 
 
-def corners_of(nodes: Array, near: float) -> Array:
-    """Where along a bar the pieces of a stretch with nodes (9 m,) begin, and the last ends; without short ones."""
+def find_corners(nodes: Array, tolerance: float) -> Array:
+    """Return the places where the pieces of a run with nodes (9 m,) begin, and where the last ends; without short
+    pieces.
+    """
     pieces = nodes.reshape(-1, DEGREE + 1)
-    pieces = pieces[pieces[:, -1] - pieces[:, 0] > near]
+    pieces = pieces[pieces[:, -1] - pieces[:, 0] > tolerance]
     return np.append(pieces[:, 0], pieces[-1, -1])
 
 
-def between_nodes(nodes: Array, s: Array, side: Array) -> Array:
-    """What leads from values at the nodes (9 m,) of a stretch to those at places (k,) on their sides: (9 m, k)."""
-    corners = corners_of(nodes, 0.0)
-    first, last = (np.searchsorted(corners[1:-1], s, side=way) for way in ("right", "left"))
+def make_interpolation(nodes: Array, s: Array, side: Array) -> Array:
+    """Return the matrix (9 m, k) that interpolates values at the nodes (9 m,) to places (k,) on their sides."""
+    corners = find_corners(nodes, 0.0)
+    first, last = (np.searchsorted(corners[1:-1], s, side=side_name) for side_name in ("right", "left"))
     piece = np.where(side == BEFORE, last, first)
     a, b = corners[piece], corners[piece + 1]
-    rows = chebyshev((2.0 * s - a - b) / (b - a)) @ TO_COEFFICIENTS
-    found = np.zeros((len(nodes), len(s)))
+    rows = chebyshev_polynomials((2.0 * s - a - b) / (b - a)) @ TO_COEFFICIENTS
+    matrix = np.zeros((len(nodes), len(s)))
     for k in range(DEGREE + 1):
-        found[(DEGREE + 1) * piece + k, np.arange(len(s))] = rows[:, k]
-    return found
+        matrix[(DEGREE + 1) * piece + k, np.arange(len(s))] = rows[:, k]
+    return matrix
 
 
-def places(corners: Array, near: float, more: Iterable[float] = ()) -> tuple[Array, Array]:
-    """Places along a bar with corners (m,), and their sides: both sides of each corner, close places between, and more.
+def make_places(corners: Array, tolerance: float, extra_places: Iterable[float] = ()) -> tuple[Array, Array]:
+    """Return places along a bar with corners (m,), and their sides: both sides of each corner, close places between,
+    extra ones.
 
-    near: corners that are no farther apart are one.
+    tolerance: corners that are no farther apart count as one
     """
     length = float(corners[-1] - corners[0])
     s, side = list[Array](), list[Array]()
     for a, b in pairwise(corners.tolist()):
-        if b - a <= near:
+        if b - a <= tolerance:
             continue
-        count = max(LEAST, math.ceil(ALONG * (b - a) / length))
-        own = [a + (b - a) * k / count for k in range(1, count)] + [x for x in more if a + near < x < b - near]
-        s.append(np.array([a, *sorted(own), b]))
-        side.append(np.array([BEYOND, *[0.0] * len(own), BEFORE]))
+        count = max(MIN_PLACES, math.ceil(N_PLACES * (b - a) / length))
+        inner_places = [a + (b - a) * k / count for k in range(1, count)] + [
+            x for x in extra_places if a + tolerance < x < b - tolerance
+        ]
+        s.append(np.array([a, *sorted(inner_places), b]))
+        side.append(np.array([BEYOND, *[0.0] * len(inner_places), BEFORE]))
     return np.concatenate(s), np.concatenate(side)
 
 
-def _extreme(s: Array, heights: Array, side: float, at: float) -> Extreme:
-    """The lowest (side -1, of values with their sign turned) or highest of what is known of values along a bar."""
+def _find_extreme(s: Array, heights: Array, side: float, time: float) -> Extreme:
+    """Return the lowest (side -1, heights with their sign changed) or highest of the known values along a bar."""
     if np.isnan(heights).all():
-        return Extreme(math.nan, math.nan, at)
+        return Extreme(math.nan, math.nan, time)
     k = int(np.nanargmax(heights))
-    return Extreme(side * float(heights[k]), float(s[k]), at)
+    return Extreme(side * float(heights[k]), float(s[k]), time)

@@ -1,4 +1,4 @@
-"""One panel of a section diagram: curves over the way along a bar, hatches, signs, extremes, and what is open."""
+"""One panel of a section diagram: curves along a bar, hatches, signs, extremes, and what is open."""
 
 from __future__ import annotations
 
@@ -9,55 +9,63 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
-from heuncli.output.drawing.ticks import ends, short, ticks
-from heuncli.output.figures.bars import AlongBar, Extreme, Reach, WholeBar
-from heuncli.output.figures.error_bands import is_seen
-from heuncli.output.figures.happenings import instant
+from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
+from heuncli.output.figures.bars import BarLine, BarRange, Extreme, WholeBar
+from heuncli.output.figures.error_bands import is_visible
+from heuncli.output.figures.happenings import format_instant
 from heuncli.results.results import Array, Mask
-from heuncli.study.quantities.digits import OPEN, style, write
+from heuncli.study.quantities.digits import OPEN, choose_style, write_numbers
 from heuncli.study.quantities.table_units import Units
 
-HIGH, LOW = 150.0, 56.0  # pixels of a panel, and of one in which all is open
-ORDINATES = 60  # of a hatch along a bar
-FREE = 0.011  # of a bar's length: how far from a sign ordinates are
-WIDE, HIGH_ENOUGH = 0.05, 0.15  # of a bar's length, of the largest value: what is less has no sign written in it
-MARKED = 0.004  # of the largest magnitude of a quantity: half a pixel, below which an extreme is not marked
-TICKS = 4  # of an axis that is turned over
-SPARE = 0.22  # of a panel's height, beyond what is drawn: room for the words at extremes
-UNKNOWN = "not known: the stated error is as large as the numbers"
+PANEL_HEIGHT, OPEN_PANEL_HEIGHT = 150.0, 56.0  # pixels; the second if all is open
+N_ORDINATES = 60  # of a hatch along a bar
+SIGN_CLEARANCE = 0.011  # share of the bar's length without ordinates beside a sign
+MIN_LOBE_WIDTH, MIN_LOBE_HEIGHT = (
+    0.05,
+    0.15,
+)  # shares of the length and of the largest value; smaller lobes have no sign
+MIN_MARKED = 0.004  # share of the largest magnitude (half a pixel); smaller extremes are not marked
+MAX_TICKS = 4  # of an inverted axis
+LABEL_MARGIN = 0.22  # share of a panel's height, for labels of extremes
+UNKNOWN_NOTE = "not known: the stated error is as large as the numbers"
 
 
-class DrawnBar(NamedTuple):
-    """What is drawn of a bar with a pen: its quantities at an instant, or over the run."""
+class BarCurves(NamedTuple):
+    """The curves of a bar that are drawn with one pen: its quantities at an instant, or over the run."""
 
     name: str
     pen: int
     bar: WholeBar
-    lines: Mapping[str, AlongBar]
-    reaches: Mapping[str, Reach]
+    lines: Mapping[str, BarLine]
+    reaches: Mapping[str, BarRange]
 
-    def extremes(self, quantity: str) -> tuple[Extreme, Extreme]:
-        """The lowest and the highest of a quantity."""
-        if quantity in self.reaches:
-            return self.reaches[quantity].lowest, self.reaches[quantity].highest
+    def find_extremes(self, quantity: str) -> tuple[Extreme, Extreme]:
+        """Return the lowest and highest value of a quantity."""
+        if quantity in self.ranges:
+            return self.ranges[quantity].lowest, self.ranges[quantity].highest
         return self.lines[quantity].low, self.lines[quantity].high
 
-    def size(self, quantity: str) -> float:
-        """Its largest magnitude; nan where it is open all over."""
-        return max(abs(one.value) for one in self.extremes(quantity))
+    def find_magnitude(self, quantity: str) -> float:
+        """Return the largest magnitude of a quantity; nan if it is open everywhere."""
+        return max(abs(extreme.value) for extreme in self.find_extremes(quantity))
 
-    def open_in_part(self, quantity: str) -> bool:
-        """Whether it is open anywhere along the bar, at any instant."""
-        lines = [self.lines[quantity].values, *([self.reaches[quantity].low] if self.reaches else [])]
-        return self.bar.open_somewhere(quantity) or any(bool(np.isnan(values).any()) for values in lines)
+    def is_partly_open(self, quantity: str) -> bool:
+        """Return whether a quantity is open anywhere along the bar, at any instant."""
+        lines = [self.lines[quantity].values, *([self.ranges[quantity].low] if self.ranges else [])]
+        return self.bar.is_open_somewhere(quantity) or any(bool(np.isnan(values).any()) for values in lines)
 
     def is_zero(self, quantity: str) -> bool:
-        """Whether it is not told from 0 wherever it is known."""
-        return self.size(quantity) <= self.bar.error(quantity)
+        """Return whether a quantity is no larger than its error wherever it is known."""
+        return self.find_magnitude(quantity) <= self.bar.find_error(quantity)
 
 
-class Scales(NamedTuple):
-    """How numbers stand in a panel: how many units of s and of the quantity are one in SI; up: -1 if turned over."""
+class DisplayScales(NamedTuple):
+    """How numbers are shown in a panel.
+
+    s, value: number of display units in one SI unit, of the distance and of the quantity
+    sign: -1 if the axis points down
+    units: names of the display units
+    """
 
     s: float
     value: float
@@ -65,134 +73,157 @@ class Scales(NamedTuple):
     units: tuple[str, str]
 
 
-def diagram(quantity: str, drawn: Sequence[DrawnBar], units: Units, label: str, *, over: bool) -> Panel:
-    """The panel of a quantity; over: with its axis turned over, so that what is positive points down."""
-    length, own = units.of("m"), units.of(drawn[0].bar.unit(quantity))
-    to = Scales(length[1], own[1], -1.0 if over else 1.0, (length[0], own[0]))
-    y = _scaling(quantity, drawn, to, label)
-    items = [item for each in drawn for item in _of_one(each, quantity, to, y, alone=len(drawn) == 1)]
-    is_open = all(np.isnan(each.size(quantity)) for each in drawn)
-    return Panel(y, y, tuple(items), LOW if is_open else HIGH)
+def make_panel(quantity: str, bars: Sequence[BarCurves], units: Units, label: str, *, is_inverted: bool) -> Panel:
+    """Make the panel of a quantity; is_inverted: positive values point down."""
+    length_unit, quantity_unit = units.find("m"), units.find(bars[0].bar.find_unit(quantity))
+    scales = DisplayScales(
+        length_unit[1], quantity_unit[1], -1.0 if is_inverted else 1.0, (length_unit[0], quantity_unit[0])
+    )
+    y = _make_axis(quantity, bars, scales, label)
+    items = [item for bar in bars for item in _draw_bar(bar, quantity, scales, y, alone=len(bars) == 1)]
+    is_open = all(np.isnan(bar.find_magnitude(quantity)) for bar in bars)
+    return Panel(y, y, tuple(items), OPEN_PANEL_HEIGHT if is_open else PANEL_HEIGHT)
 
 
-def _scaling(quantity: str, drawn: Sequence[DrawnBar], to: Scales, label: str) -> Scaling:
-    """The axis of a quantity, with its zero."""
-    told = [each for each in drawn if not each.is_zero(quantity)]
-    values = np.array([to.up * to.value * one.value for each in told for one in each.extremes(quantity)])
+def _make_axis(quantity: str, bars: Sequence[BarCurves], scales: DisplayScales, label: str) -> Scaling:
+    """Make the axis of a quantity, which includes zero."""
+    nonzero_bars = [bar for bar in bars if not bar.is_zero(quantity)]
+    values = np.array(
+        [scales.sign * scales.value * extreme.value for bar in nonzero_bars for extreme in bar.find_extremes(quantity)]
+    )
     known = values[np.isfinite(values)]
     if not known.size:
-        return Scaling(label, -1.0, 1.0, named=((0.0, "0"),))
-    low, high = ends(float(known.min()), float(known.max()), zero=True, spare=SPARE)
-    if to.up > 0.0:
+        return Scaling(label, -1.0, 1.0, tick_texts=((0.0, "0"),))
+    low, high = choose_ends(float(known.min()), float(known.max()), zero=True, margin=LABEL_MARGIN)
+    if scales.sign > 0.0:
         return Scaling(label, low, high)
-    return Scaling(label, low, high, named=tuple((-v, text) for v, text in ticks(Scaling(label, -high, -low), TICKS)))
+    return Scaling(
+        label,
+        low,
+        high,
+        tick_texts=tuple((-v, text) for v, text in choose_ticks(Scaling(label, -high, -low), MAX_TICKS)),
+    )
 
 
-def _of_one(drawn: DrawnBar, quantity: str, to: Scales, y: Scaling, *, alone: bool) -> Iterator[Item]:
-    """What is drawn of a bar; alone: it is the only one, whose ordinates are hatched."""
-    line, reach = drawn.lines[quantity], drawn.reaches.get(quantity)
-    whose = f"{drawn.name}: " if drawn.name else ""
-    if drawn.is_zero(quantity) and not drawn.open_in_part(quantity):
-        yield Blank(0.0, to.s * drawn.bar.length, f"{whose}{UNKNOWN}")
+def _draw_bar(bar: BarCurves, quantity: str, scales: DisplayScales, y: Scaling, *, alone: bool) -> Iterator[Item]:
+    """Yield the items of one bar; alone: it is the only one, and its ordinates are hatched."""
+    line, load_range = bar.lines[quantity], bar.ranges.get(quantity)
+    prefix = f"{bar.name}: " if bar.name else ""
+    if bar.is_zero(quantity) and not bar.is_partly_open(quantity):
+        yield Blank(0.0, scales.s * bar.bar.length, f"{prefix}{UNKNOWN_NOTE}")
         return
-    s, known = line.s, np.isfinite(line.values)
-    if reach is not None:
-        known = np.isfinite(reach.low)
-        s = reach.s
-    for a, b in stretches(s, ~known):
-        yield Blank(to.s * a, to.s * b, f"{whose}{OPEN}")
-    if drawn.is_zero(quantity):  # where it is known
-        yield Trace(f"{whose}{quantity}", to.s * line.s, 0.0 * line.values, drawn.pen)
+    s, is_known = line.s, np.isfinite(line.values)
+    if load_range is not None:
+        is_known = np.isfinite(load_range.low)
+        s = load_range.s
+    for a, b in find_intervals(s, ~is_known):
+        yield Blank(scales.s * a, scales.s * b, f"{prefix}{OPEN}")
+    if bar.is_zero(quantity):  # zero where it is known
+        yield Trace(f"{prefix}{quantity}", scales.s * line.s, 0.0 * line.values, bar.pen)
         return
-    up = to.up * to.value
-    if reach is not None:
-        both = np.sort(up * np.stack([reach.low, reach.high]), axis=0)
-        yield Band(f"{whose}lowest and highest of {quantity}", to.s * reach.s, both[0], both[1], drawn.pen)
-    values, error = up * line.values, to.value * drawn.bar.error(quantity)
-    if is_seen(error, y, HIGH):
-        both = np.clip([values - error, values + error], y.low, y.high)
-        yield Band(f"{whose}stated error of {quantity}", to.s * line.s, both[0], both[1], drawn.pen)
+    factor = scales.sign * scales.value
+    if load_range is not None:
+        band = np.sort(factor * np.stack([load_range.low, load_range.high]), axis=0)
+        yield Band(f"{prefix}lowest and highest of {quantity}", scales.s * load_range.s, band[0], band[1], bar.pen)
+    values, error = factor * line.values, scales.value * bar.bar.find_error(quantity)
+    if is_visible(error, y, PANEL_HEIGHT):
+        band = np.clip([values - error, values + error], y.low, y.high)
+        yield Band(f"{prefix}stated error of {quantity}", scales.s * line.s, band[0], band[1], bar.pen)
     if alone:
-        signs = list(_signs(to.s * line.s, values, to.up))
-        yield from _hatch(to.s * line.s, values, drawn.pen, [sign.x for sign in signs])
+        signs = list(_draw_signs(scales.s * line.s, values, scales.sign))
+        yield from _draw_hatch(scales.s * line.s, values, bar.pen, [sign.x for sign in signs])
         yield from signs
-    yield from _closed(to.s * line.s, values, drawn.pen)
-    yield Trace(f"{whose}{quantity}", to.s * line.s, values, drawn.pen)
-    yield from _extremes(drawn, quantity, to)
+    yield from _draw_end_ordinates(scales.s * line.s, values, bar.pen)
+    yield Trace(f"{prefix}{quantity}", scales.s * line.s, values, bar.pen)
+    yield from _mark_extremes(bar, quantity, scales)
 
 
-def _hatch(s: Array, values: Array, pen: int, free: Sequence[float]) -> Iterator[Strokes]:
-    """Ordinates from zero to a curve, evenly spaced; free: places about which there are none, for a sign."""
-    at = np.linspace(s[0], s[-1], ORDINATES + 1)[1:-1]
-    between = np.interp(at, s, values)
-    own = np.isfinite(between)
-    for place in free:
-        own &= np.abs(at - place) > FREE * (s[-1] - s[0])
-    yield Strokes(_ordinates(at[own], between[own]), pen, 0.6)
+def _draw_hatch(s: Array, values: Array, pen: int, clear_places: Sequence[float]) -> Iterator[Strokes]:
+    """Draw ordinates from zero to a curve, evenly spaced; none near `clear_places`, where a sign stands."""
+    ordinate_places = np.linspace(s[0], s[-1], N_ORDINATES + 1)[1:-1]
+    between = np.interp(ordinate_places, s, values)
+    is_drawn = np.isfinite(between)
+    for place in clear_places:
+        is_drawn &= np.abs(ordinate_places - place) > SIGN_CLEARANCE * (s[-1] - s[0])
+    yield Strokes(_make_ordinates(ordinate_places[is_drawn], between[is_drawn]), pen, 0.6)
 
 
-def _closed(s: Array, values: Array, pen: int) -> Iterator[Strokes]:
-    """The ordinates at the ends of what is known of a curve."""
-    known = np.isfinite(values)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
+def _draw_end_ordinates(s: Array, values: Array, pen: int) -> Iterator[Strokes]:
+    """Draw the ordinates at the ends of the known parts of a curve."""
+    is_known = np.isfinite(values)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], is_known, [False]]).astype(np.int8)))
     at_ends = np.concatenate([edges[::2], edges[1::2] - 1])
-    yield Strokes(_ordinates(s[at_ends], values[at_ends]), pen, 1.2)
+    yield Strokes(_make_ordinates(s[at_ends], values[at_ends]), pen, 1.2)
 
 
-def _ordinates(s: Array, values: Array) -> Array:
-    """Strokes from zero to the values, (n, 2, 2)."""
+def _make_ordinates(s: Array, values: Array) -> Array:
+    """Return strokes from zero to the values, (n, 2, 2)."""
     return np.stack([np.stack([s, np.zeros_like(s)], axis=1), np.stack([s, values], axis=1)], axis=1)
 
 
-def _signs(s: Array, values: Array, up: float) -> Iterator[Words]:
-    """The sign of each lobe that has room for it, in the middle of its area."""
+def _draw_signs(s: Array, values: Array, sign: float) -> Iterator[Words]:
+    """Draw the sign of each lobe that has room for it, in the middle of its area."""
     known = np.where(np.isfinite(values), values, 0.0)
-    most = float(np.abs(known).max())
-    for a, b in stretches(s, known > 0.0) + stretches(s, known < 0.0):
-        own = (s >= a) & (s <= b)
-        x, height = s[own], np.abs(known[own])
+    largest = float(np.abs(known).max())
+    for a, b in find_intervals(s, known > 0.0) + find_intervals(s, known < 0.0):
+        in_lobe = (s >= a) & (s <= b)
+        x, height = s[in_lobe], np.abs(known[in_lobe])
         steps = np.diff(x) * 0.5 * (height[1:] + height[:-1])
-        if b - a < WIDE * (s[-1] - s[0]) or height.max() < HIGH_ENOUGH * most or not steps.sum() > 0.0:
+        if b - a < MIN_LOBE_WIDTH * (s[-1] - s[0]) or height.max() < MIN_LOBE_HEIGHT * largest or not steps.sum() > 0.0:
             continue
         middle = float(np.sum(steps * 0.5 * (x[1:] + x[:-1])) / steps.sum())
         value = float(np.interp(middle, s, known))
-        yield Words(middle, 0.5 * value, "+" if up * value > 0.0 else "\N{MINUS SIGN}")
+        yield Words(middle, 0.5 * value, "+" if sign * value > 0.0 else "\N{MINUS SIGN}")
 
 
-def stretches(s: Array, which: Mask) -> list[tuple[float, float]]:
-    """From where to where along a bar something holds, told of its places one after the other."""
+def find_intervals(s: Array, which: Mask) -> list[tuple[float, float]]:
+    """Return from where to where along a bar a mask of its places holds."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], which, [False]]).astype(np.int8)))
-    found = [(float(s[a]), float(s[b - 1])) for a, b in pairwise(edges.tolist())][::2]
-    return [(a, b) for a, b in found if b > a]
+    intervals = [(float(s[a]), float(s[b - 1])) for a, b in pairwise(edges.tolist())][::2]
+    return [(a, b) for a, b in intervals if b > a]
 
 
-def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
-    """The highest and the lowest with their values, and where and when they are; what is 0 is not marked."""
-    low, high = drawn.extremes(quantity)
-    error, bar = drawn.bar.error(quantity), drawn.bar
-    how = style(to.value * drawn.size(quantity), to.value * error, to.value * bar.certain.lost(bar.unit(quantity)))
-    reach = drawn.reaches.get(quantity)
-    steady = high.value - low.value <= error
-    for one in (high,) if steady else (high, low):
-        if not abs(one.value) > max(error, MARKED * drawn.size(quantity)):
+def _mark_extremes(bar_curves: BarCurves, quantity: str, scales: DisplayScales) -> Iterator[Spot]:
+    """Mark the highest and lowest value with their place and instant; values of 0 are not marked."""
+    low, high = bar_curves.find_extremes(quantity)
+    error, bar = bar_curves.bar.find_error(quantity), bar_curves.bar
+    number_style = choose_style(
+        scales.value * bar_curves.find_magnitude(quantity),
+        scales.value * error,
+        scales.value * bar.certain.rounding_of(bar.find_unit(quantity)),
+    )
+    load_range = bar_curves.ranges.get(quantity)
+    is_constant = high.value - low.value <= error
+    for extreme in (high,) if is_constant else (high, low):
+        if not abs(extreme.value) > max(error, MIN_MARKED * bar_curves.find_magnitude(quantity)):
             continue
-        (value,) = write([to.value * one.value], how)
-        line = drawn.lines[quantity] if reach is None else reach.at_lowest if one is low else reach.at_highest
-        s = first_place(one, line, error)
-        where = [] if steady else [f"s = {short(to.s * s, 4)} {to.units[0]}"]
-        when = [f"t = {instant(one.at)}"] if reach is not None and varies_at(s, reach, error) else []
+        (value,) = write_numbers([scales.value * extreme.value], number_style)
+        line = (
+            bar_curves.lines[quantity]
+            if load_range is None
+            else load_range.at_lowest
+            if extreme is low
+            else load_range.at_highest
+        )
+        s = find_first_place(extreme, line, error)
+        where = [] if is_constant else [f"s = {format_short(scales.s * s, 4)} {scales.units[0]}"]
+        when = (
+            [f"t = {format_instant(extreme.time)}"]
+            if load_range is not None and is_varying_at(s, load_range, error)
+            else []
+        )
         text = f"{value} at {', '.join([*where, *when])}" if where or when else value
-        yield Spot(to.s * s, to.up * to.value * one.value, text, drawn.pen, filled=True)
+        yield Spot(scales.s * s, scales.sign * scales.value * extreme.value, text, bar_curves.pen, is_filled=True)
 
 
-def first_place(one: Extreme, line: AlongBar, error: float) -> float:
-    """Where an extreme is: of a stretch along which it is the same to its error, the beginning."""
+def find_first_place(extreme: Extreme, line: BarLine, error: float) -> float:
+    """Return the place of an extreme; if it is the same within its error over a length, the beginning of that."""
     with np.errstate(invalid="ignore"):
-        same = np.abs(line.values - one.value) <= error
-    return min(float(line.s[same][0]), one.s) if same.any() else one.s
+        is_same = np.abs(line.values - extreme.value) <= error
+    return min(float(line.s[is_same][0]), extreme.s) if is_same.any() else extreme.s
 
 
-def varies_at(s: float, reach: Reach, error: float) -> bool:
-    """Whether a quantity changes with time at a place by more than its error."""
-    k = np.abs(reach.s - s) <= np.abs(reach.s - s).min()
-    return bool(np.nanmax(reach.high[k]) - np.nanmin(reach.low[k]) > 2.0 * error)
+def is_varying_at(s: float, load_range: BarRange, error: float) -> bool:
+    """Return whether a quantity changes with time at a place by more than its error."""
+    nearest = np.abs(load_range.s - s) <= np.abs(load_range.s - s).min()
+    return bool(np.nanmax(load_range.high[nearest]) - np.nanmin(load_range.low[nearest]) > 2.0 * error)

@@ -1,4 +1,4 @@
-"""Where the stated error of what is drawn can be seen: a band about a curve that is wider than the curve's own line."""
+"""Whether a stated error is visible: whether a band about a curve is wider than the curve's own line."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import math
 
 from heuncli.output.drawing.figure import HEIGHT, Scaling
 
-VISIBLE = 0.5  # pixels: half of a band, below which it is not seen
+MIN_HALF_WIDTH = 0.5  # pixels: half width of a band
 
 
-def is_seen(error: float, y: Scaling, height: float = HEIGHT) -> bool:
-    """Whether an error shows on an axis upwards of a height [pixels], both in the unit of the axis."""
-    return math.isfinite(error) and error * height > VISIBLE * (y.high - y.low)
+def is_visible(error: float, y: Scaling, height: float = HEIGHT) -> bool:
+    """Return whether an error is visible on a vertical axis of a height [pixels]; error and axis have the same unit."""
+    return math.isfinite(error) and error * height > MIN_HALF_WIDTH * (y.high - y.low)

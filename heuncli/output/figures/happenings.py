@@ -1,4 +1,4 @@
-"""What happens at an instant, as vertical marks of a history: events, blows, jumps of what is drawn, horizons."""
+"""Vertical marks of a history: events, impacts, jumps of the curves, horizons."""
 
 from __future__ import annotations
 
@@ -7,81 +7,87 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.output.drawing.figure import Upright
-from heuncli.output.drawing.ticks import short
-from heuncli.output.figures.courses import NumberCourse, Pictured, jumps_of
+from heuncli.output.drawing.figure import VerticalMark
+from heuncli.output.drawing.ticks import format_short
+from heuncli.output.figures.courses import FigureSource, NumberCourse, find_jumps
 from heuncli.results.results import Array, Results
 
-OFTEN = 5  # times
-INSTANT_DIGITS = 6  # as tables show at most
+MAX_REPEATED_LABELS = 5  # more repetitions are labelled once
+INSTANT_DIGITS = 6  # maximum, as in tables
 
 
-def marks_of(sources: Sequence[Pictured], courses: Sequence[NumberCourse]) -> tuple[list[Upright], list[str]]:
-    """The marks, ascending, each instant once, and notes; of several runs what happens in any of them.
+def make_marks(
+    sources: Sequence[FigureSource], courses: Sequence[NumberCourse]
+) -> tuple[list[VerticalMark], list[str]]:
+    """Make the marks, ascending, each instant once, and notes; of several runs the events of any of them.
 
-    What happens again and again has its words where it does so first.
+    An event that repeats often is labelled only at its first instant.
     """
-    names: dict[float, dict[str, None]] = {}  # of one instant, what happens then in any order of the runs
+    names: dict[float, dict[str, None]] = {}  # by instant: names of what happens in any run, in order
     for source in sources:
         results = source.study.results
-        claimed = _claimed_to(results)
-        for at, words in (*_blows(results), *_events(results)):
-            if at < claimed:
-                names.setdefault(at, {})[words] = None
-    if len(sources) > 1:  # the end of one of several curves is told where it is; of all of them the panel is hatched
+        horizon_time = _find_horizon(results)
+        for time, words in (*_iter_impacts(results), *_iter_events(results)):
+            if time < horizon_time:
+                names.setdefault(time, {})[words] = None
+    if len(sources) > 1:  # with one run the panel is hatched beyond the horizon instead
         for source in sources:
-            if (horizon := _claimed_to(source.study.results)) < np.inf:
+            if (horizon := _find_horizon(source.study.results)) < np.inf:
                 names.setdefault(horizon, {})[f"horizon of {source.name}"] = None
-    found = {at: ", ".join(own) for at, own in names.items()}
-    known = np.sort(np.array(list(found)))
-    for at in (at for course in courses for at in jumps_of(course).tolist()):
-        if not _near(known, at):
-            found.setdefault(at, "")
-    often: dict[str, list[float]] = {}
-    for at, words in sorted(found.items()):
-        often.setdefault(words, []).append(at)
+    texts = {time: ", ".join(own) for time, own in names.items()}
+    sorted_times = np.sort(np.array(list(texts)))
+    for time in (time for course in courses for time in find_jumps(course).tolist()):
+        if not _has_instant(sorted_times, time):
+            texts.setdefault(time, "")
+    times_of_text: dict[str, list[float]] = {}
+    for time, words in sorted(texts.items()):
+        times_of_text.setdefault(words, []).append(time)
     marks = [
-        Upright(at, words if at == often[words][0] or len(often[words]) <= OFTEN else "", told(words, at))
-        for at, words in sorted(found.items())
+        VerticalMark(
+            time,
+            words if time == times_of_text[words][0] or len(times_of_text[words]) <= MAX_REPEATED_LABELS else "",
+            format_event(words, time),
+        )
+        for time, words in sorted(texts.items())
     ]
     return marks, [
-        f"{words}: {len(ats)} times, first at {instant(ats[0])}, last at {instant(ats[-1])}"
-        for words, ats in often.items() if words and len(ats) > OFTEN
+        f"{words}: {len(repeated_times)} times, first at {format_instant(repeated_times[0])}, last at {format_instant(repeated_times[-1])}"
+        for words, repeated_times in times_of_text.items() if words and len(repeated_times) > MAX_REPEATED_LABELS
     ]  # fmt: skip
 
 
-def _claimed_to(results: Results) -> float:
-    """The horizon of a run, or without end."""
+def _find_horizon(results: Results) -> float:
+    """Return the horizon of a run, or infinity."""
     horizon = results.horizon
     return np.inf if horizon is None else float(horizon)
 
 
-def told(words: str, at: float) -> str:
-    """A happening with its instant."""
-    return f"{words} at {instant(at)}" if words else ""
+def format_event(words: str, time: float) -> str:
+    """Format an event with its instant."""
+    return f"{words} at {format_instant(time)}" if words else ""
 
 
-def instant(at: float) -> str:
-    """An instant in words."""
-    return f"{short(at, INSTANT_DIGITS)} s"
+def format_instant(time: float) -> str:
+    """Format an instant."""
+    return f"{format_short(time, INSTANT_DIGITS)} s"
 
 
-def _near(known: Array, at: float) -> bool:
-    """Whether one of the known instants, ascending, is that one, but for rounding."""
-    if not known.size:
+def _has_instant(times: Array, time: float) -> bool:
+    """Return whether one of the ascending instants equals the time within rounding."""
+    if not times.size:
         return False
-    k = int(np.searchsorted(known, at))
-    return bool(np.abs(known[max(k - 1, 0) : k + 1] - at).min() <= tolerances.SAME_INSTANT * max(1.0, abs(at)))
+    k = int(np.searchsorted(times, time))
+    return bool(np.abs(times[max(k - 1, 0) : k + 1] - time).min() <= tolerances.SAME_INSTANT * max(1.0, abs(time)))
 
 
-def _blows(results: Results) -> Iterator[tuple[float, str]]:
-    """The instants of blows with the names of what strikes."""
-    for blow in results.impulses:
-        yield float(blow["time"]), ", ".join(blow["names"]) or "blow"
+def _iter_impacts(results: Results) -> Iterator[tuple[float, str]]:
+    """Yield the instants of impacts with the names of what met."""
+    for impulse in results.impulses:
+        yield float(impulse["time"]), ", ".join(impulse["names"]) or "blow"
 
 
-def _events(results: Results) -> Iterator[tuple[float, str]]:
-    """The instants at which conditions change, with their names."""
+def _iter_events(results: Results) -> Iterator[tuple[float, str]]:
+    """Yield the instants at which conditions change, with their names."""
     for name, event in results.events.items():
-        for at in np.asarray(event["time"]).tolist():
-            yield float(at), name
+        for time in np.asarray(event["time"]).tolist():
+            yield float(time), name

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from itertools import count, product
 
 
-def letters(first: str) -> Iterator[str]:
-    """As many as are asked for, from the first letter of the alphabet on, capital or small."""
+def iter_letters(first: str) -> Iterator[str]:
+    """Yield names without end from the first letter of the alphabet on, capital or small."""
     alphabet = [chr(ord(first) + k) for k in range(26)]
     for length in count(1):
         yield from ("".join(word) for word in product(alphabet, repeat=length))

@@ -1,4 +1,4 @@
-"""Measured points over a history: squares, or where there are many a line through all their peaks."""
+"""Draw measured points in a history: squares, or if there are many a line through all their peaks."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ from collections.abc import Iterator
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Item, Spot, Trace
-from heuncli.output.figures.thinning import seen_places
+from heuncli.output.figures.thinning import find_visible_points
 from heuncli.results.results import Array
 
-MOST_SPOTS = 150  # points that are told apart; more are drawn as a line
+MAX_SPOTS = 150  # more points are drawn as a line
 
 
 class MeasuredPoints(NamedTuple):
-    """Points that were measured, (n,): over what a panel shows, in SI, and of which unit."""
+    """Measured points (n,), in SI units of the axes of a panel.
+
+    unit: SI unit of y
+    """
 
     name: str
     unit: str
@@ -21,12 +24,15 @@ class MeasuredPoints(NamedTuple):
     y: Array
 
 
-def seen(points: MeasuredPoints, pen: int, size_x: float, size_y: float) -> Iterator[Item]:
-    """Squares, or where there are many a thin line through them; sizes: from SI to the units that are shown."""
+def draw_points(points: MeasuredPoints, pen: int, size_x: float, size_y: float) -> Iterator[Item]:
+    """Draw squares, or if there are many a thin line through them.
+
+    size_x, size_y: factors from SI to the display units
+    """
     x, y = size_x * points.x, size_y * points.y
-    if len(x) <= MOST_SPOTS:
+    if len(x) <= MAX_SPOTS:
         for a, b in zip(x.tolist(), y.tolist(), strict=True):
             yield Spot(a, b, "", pen, "square")
         return
-    kept = seen_places(y)
-    yield Trace(points.name, x[kept], y[kept], pen, thin=True)
+    visible = find_visible_points(y)
+    yield Trace(points.name, x[visible], y[visible], pen, is_thin=True)

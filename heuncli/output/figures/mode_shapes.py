@@ -1,7 +1,7 @@
-"""The shapes of small oscillations: the machine's lines as it rests, and as far to both sides as a mode takes it.
+"""The shapes of small oscillations: the machine's lines at rest, and displaced to both sides by a mode.
 
-Displacements are those of the first order, drawn so large that the farthest point moves by a share of the machine.
-Where points do not pass the pose at rest together, as on turning shafts, the second lines are a quarter of a period
+Displacements are of first order, scaled so that the farthest point moves by a fixed share of the machine's size. If the
+points do not pass the rest pose at the same time, as on turning shafts, the second lines are a quarter of a period
 later.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.analyses.modes.moved_bodies import MovedBodies
+from heuncli.analyses.modes.moved_bodies import BodyModes
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.linearisation.oscillations import Mode
@@ -20,22 +20,25 @@ from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, St
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.views import SceneView
-from heuncli.output.tables.mode_words import about, figures_of, notes
+from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 
 HEIGHT = 230.0  # pixels
-MOST = 12  # modes that are drawn
-SHARE = 0.12  # of the machine's extent: how far its farthest point is drawn to move
-TURNED = 0.35  # [rad] the farthest turn, beyond which lines drawn by the first order are too long
-FAR = 3.0  # of the extent: supports farther off, as of planes, are not drawn
-EDGE = 0.05  # of the extent: beyond what is drawn
-PHASE = 0.02  # of the largest displacement: smaller parts of the other phase are none
+MAX_MODES = 12  # maximum number drawn
+DISPLACEMENT_SHARE = 0.12  # of the machine's extent: largest displacement drawn
+MAX_TURN = 0.35  # [rad] largest turn for which first-order lines keep their length
+MAX_SUPPORT_DISTANCE = 3.0  # of the extent: farther supports, as of planes, are not drawn
+MARGIN = 0.05  # of the extent, around all
+MIN_PHASE_PART = 0.02  # of the largest displacement: a smaller part of the other phase is neglected
 REST, ONE, OTHER = None, 0, 1  # pens
 
 
-class DrawnMode(NamedTuple):
-    """A mode: its title, its lines the one way and the other, each (n, 3), and whether that is a quarter later."""
+class ModeLines(NamedTuple):
+    """A mode: its title, and its lines on the one side and on the other, (n, 3) each.
+
+    is_quarter_later: whether the other lines are a quarter of a period later
+    """
 
     title: str
     one: list[Array]
@@ -44,64 +47,74 @@ class DrawnMode(NamedTuple):
 
 
 class MovingLine(NamedTuple):
-    """A line of the machine: its name, its points (n, 3), and which body they go with (n,), -1 with the ground."""
+    """A line of the machine: its name, its points (n, 3), and the body of each point (n,); -1 is the ground."""
 
     name: str
     points: Array
     bodies: tuple[int, ...]
 
 
-def mode_shapes(found: MovedBodies, machine: Machine, view: SceneView) -> Figure:
-    """The figure of a scene's modes, a panel each. Raises NotDrawable where nothing is free to oscillate."""
-    modes = found.modes.modes
+def make_mode_shapes(moved_bodies: BodyModes, machine: Machine, view: SceneView) -> Figure:
+    """Make the figure of a scene's modes, a panel each. Raises NotDrawable if nothing is free to oscillate."""
+    modes = moved_bodies.modes.modes
     if not modes:
         raise NotDrawable("modes: nothing is free to oscillate", "heun run moves what is driven")
-    lines = list(_lines(found, machine))
+    lines = list(_iter_lines(moved_bodies, machine))
     resting = np.concatenate([line.points for line in lines])
-    extent = float(np.ptp(view.flat(resting), axis=0).max()) or 1.0
+    extent = float(np.ptp(view.project(resting), axis=0).max()) or 1.0
     middle = resting.mean(axis=0)
-    supports = [place for place in _supports(machine) if np.linalg.norm(place - middle) <= FAR * extent]
-    drawn = [_drawn(found, k, mode, lines, extent) for k, mode in enumerate(modes[:MOST])]
-    every = np.concatenate([view.flat(np.concatenate(way)) for mode in drawn for way in (mode.one, mode.other)])
-    every = np.concatenate([every, *(view.flat(place)[None] for place in supports)])
-    low, high = every.min(axis=0) - EDGE * extent, every.max(axis=0) + EDGE * extent
+    supports = [
+        place for place in _iter_supports(machine) if np.linalg.norm(place - middle) <= MAX_SUPPORT_DISTANCE * extent
+    ]
+    mode_lines = [_make_mode_lines(moved_bodies, k, mode, lines, extent) for k, mode in enumerate(modes[:MAX_MODES])]
+    all_points = np.concatenate(
+        [view.project(np.concatenate(displaced)) for mode in mode_lines for displaced in (mode.one, mode.other)]
+    )
+    all_points = np.concatenate([all_points, *(view.project(place)[None] for place in supports)])
+    low, high = all_points.min(axis=0) - MARGIN * extent, all_points.max(axis=0) + MARGIN * extent
     axes = tuple(Scaling("", float(a), float(b)) for a, b in zip(low, high, strict=True))
-    panels = [_panel(mode, lines, supports, view, (axes[0], axes[1])) for mode in drawn]
-    told = list(notes(found.modes))
-    if len(modes) > MOST:
-        told.append(f"the first {MOST} of {len(modes)} modes are drawn; heun modes lists them all")
-    later = " (where phases differ a quarter of a period later)" if any(mode.apart for mode in drawn) else ""
-    legend = [("one way", ONE), (f"the other way{later}", OTHER)]
-    return Figure(found.modes.title, about(found.modes), panels, legend, told)
+    panels = [_make_panel(mode, lines, supports, view, (axes[0], axes[1])) for mode in mode_lines]
+    sentences = list(iter_notes(moved_bodies.modes))
+    if len(modes) > MAX_MODES:
+        sentences.append(f"the first {MAX_MODES} of {len(modes)} modes are drawn; heun modes lists them all")
+    later_phrase = (
+        " (where phases differ a quarter of a period later)"
+        if any(mode.is_quarter_later for mode in mode_lines)
+        else ""
+    )
+    legend = [("one way", ONE), (f"the other way{later_phrase}", OTHER)]
+    return Figure(moved_bodies.modes.title, describe_modes(moved_bodies.modes), panels, legend, sentences)
 
 
-def _lines(found: MovedBodies, machine: Machine) -> Iterator[MovingLine]:
-    """The edges of bodies, or the lines between their points; springs, rods and ropes between theirs."""
-    places = {name: k for k, name in enumerate(found.names)}
+def _iter_lines(moved_bodies: BodyModes, machine: Machine) -> Iterator[MovingLine]:
+    """Yield the edges of bodies, or the lines between their points, and the lines of springs, rods and ropes."""
+    places = {name: k for k, name in enumerate(moved_bodies.names)}
     for body in machine.bodies:
         k = places[body.name]
-        own = [edge for surface in body.surfaces for edge in surface.edges] or list(body.strokes)
-        if sum(map(len, own)) < 2:
-            own = _cross(found.scene.mechanism.bodies[k])
-        for line in own:
-            yield MovingLine(body.name, _in_world(found, k, line), (k,) * len(line))
+        body_lines = [edge for surface in body.surfaces for edge in surface.edges] or list(body.strokes)
+        if sum(map(len, body_lines)) < 2:
+            body_lines = _make_cross(moved_bodies.scene.mechanism.bodies[k])
+        for line in body_lines:
+            yield MovingLine(body.name, _to_world(moved_bodies, k, line), (k,) * len(line))
     ropes = [(j.name, j.a, j.p, j.b, j.q) for j in machine.joints if JOINTS[j.kind].keeps_distance]
-    springs = [(one.name, one.a, one.p, one.b, one.q) for one in machine.lines]
+    springs = [
+        (force_line.name, force_line.a, force_line.p, force_line.b, force_line.q) for force_line in machine.lines
+    ]
     for name, a, p, b, q in (*springs, *ropes):
         ends = places.get(a, -1), places.get(b, -1)
-        points = np.array([_in_world(found, k, at) for k, at in zip(ends, (p, q), strict=True)])
+        points = np.array([_to_world(moved_bodies, k, point) for k, point in zip(ends, (p, q), strict=True)])
         yield MovingLine(name, points, ends)
 
 
-def _cross(body: Body) -> list[Array]:
-    """Lines along the axes of a body that has neither shape nor points, as long as its mass reaches."""
+def _make_cross(body: Body) -> list[Array]:
+    """Return lines along the axes of a body without shape and points, as long as its mass extends."""
     second = (0.5 * np.trace(body.inertia) - np.diag(body.inertia)) / body.mass
-    reach = np.sqrt(np.maximum(second, 0.0))
-    return [np.array([body.center - a * e, body.center + a * e]) for a, e in zip(reach, np.eye(3), strict=True)]
+    half_lengths = np.sqrt(np.maximum(second, 0.0))
+    return [np.array([body.center - a * e, body.center + a * e]) for a, e in zip(half_lengths, np.eye(3), strict=True)]
 
 
-def _supports(machine: Machine) -> Iterator[Array]:
-    """Where joints stand on the ground, (3,)."""
+def _iter_supports(machine: Machine) -> Iterator[Array]:
+    """Yield the points of joints on the ground, (3,)."""
     for joint in machine.joints:
         if joint.a == GROUND:
             yield joint.p
@@ -109,64 +122,66 @@ def _supports(machine: Machine) -> Iterator[Array]:
             yield joint.q
 
 
-def _in_world(found: MovedBodies, body: int, points: Array) -> Array:
-    """Points (..., 3) of a body, or of the ground, in the world."""
+def _to_world(moved_bodies: BodyModes, body: int, points: Array) -> Array:
+    """Transform points (..., 3) of a body, or of the ground, to the world."""
     if body < 0:
         return np.asarray(points, dtype=np.float64)
-    return np.asarray(points @ found.attitudes[body].T + found.places[body])
+    return np.asarray(points @ moved_bodies.attitudes[body].T + moved_bodies.places[body])
 
 
-def _displacements(found: MovedBodies, mode: int, line: MovingLine) -> Array:
-    """How far the points of a line go, (n, 3) complex."""
-    moved = np.zeros(line.points.shape, dtype=complex)
+def _find_displacements(moved_bodies: BodyModes, mode: int, line: MovingLine) -> Array:
+    """Return the displacements of the points of a line, (n, 3) complex."""
+    displacements = np.zeros(line.points.shape, dtype=complex)
     for body in set(line.bodies) - {-1}:
-        own = np.array(line.bodies) == body
-        moved[own] = found.moved(mode, body, line.points[own])
-    return moved
+        of_body = np.array(line.bodies) == body
+        displacements[of_body] = moved_bodies.displace_points(mode, body, line.points[of_body])
+    return displacements
 
 
-def _drawn(found: MovedBodies, k: int, mode: Mode, lines: list[MovingLine], extent: float) -> DrawnMode:
-    """A mode's lines, so far from where they rest as is seen."""
-    parts = [_displacements(found, k, line) for line in lines]
+def _make_mode_lines(moved_bodies: BodyModes, k: int, mode: Mode, lines: list[MovingLine], extent: float) -> ModeLines:
+    """Return a mode's lines, displaced far enough to be visible."""
+    parts = [_find_displacements(moved_bodies, k, line) for line in lines]
     whole = np.concatenate(parts)
     flat = whole.reshape(-1)
     largest = flat[int(np.argmax(np.abs(flat)))] if np.abs(flat).max(initial=0.0) > 0.0 else 1.0
     phase = np.conj(largest) / abs(largest)
     size = float(np.sqrt((np.abs(whole) ** 2).sum(axis=1)).max())
-    turned = float(np.sqrt((np.abs(found.turns[k]) ** 2).sum(axis=1)).max(initial=0.0))
-    scale = min(SHARE * extent / size if size else 0.0, TURNED / turned if turned else np.inf)
-    apart = bool(np.abs((phase * flat).imag).max() > PHASE * abs(largest))
-    later = phase * (1j if apart else -1.0)
-    one = [line.points + scale * (phase * part).real for line, part in zip(lines, parts, strict=True)]
-    other = [line.points + scale * (later * part).real for line, part in zip(lines, parts, strict=True)]
-    return DrawnMode(_title(k, mode, found), one, other, apart)
+    largest_turn = float(np.sqrt((np.abs(moved_bodies.turns[k]) ** 2).sum(axis=1)).max(initial=0.0))
+    scale = min(
+        DISPLACEMENT_SHARE * extent / size if size else 0.0, MAX_TURN / largest_turn if largest_turn else np.inf
+    )
+    has_phases = bool(np.abs((phase * flat).imag).max() > MIN_PHASE_PART * abs(largest))
+    later = phase * (1j if has_phases else -1.0)
+    one_side = [line.points + scale * (phase * part).real for line, part in zip(lines, parts, strict=True)]
+    other_side = [line.points + scale * (later * part).real for line, part in zip(lines, parts, strict=True)]
+    return ModeLines(_make_title(k, mode, moved_bodies), one_side, other_side, has_phases)
 
 
-def _title(k: int, mode: Mode, found: MovedBodies) -> str:
-    """A mode in a line: its number, its frequency and damping or its growth, what moves most."""
-    figures = figures_of(mode)
-    moving = ", ".join(found.modes.largest[k])
+def _make_title(k: int, mode: Mode, moved_bodies: BodyModes) -> str:
+    """Return a mode in one line: its number, frequency and damping or growth, and what moves most."""
+    texts = format_mode(mode)
+    moving = ", ".join(moved_bodies.modes.largest[k])
     if mode.kind == "free":
         return f"mode {k + 1}: free; {moving}"
     unstable = "UNSTABLE, " if mode.growth > 0.0 else ""
     if not mode.frequency:
-        return f"mode {k + 1}: {unstable}{mode.kind}, growth {figures.growth} 1/s; {moving}"
-    return f"mode {k + 1}: {unstable}{figures.frequency} Hz, damping {figures.damping}; {moving}"
+        return f"mode {k + 1}: {unstable}{mode.kind}, growth {texts.growth} 1/s; {moving}"
+    return f"mode {k + 1}: {unstable}{texts.frequency} Hz, damping {texts.damping}; {moving}"
 
 
-def _panel(
-    mode: DrawnMode, lines: list[MovingLine], supports: list[Array], view: SceneView, axes: tuple[Scaling, Scaling]
+def _make_panel(
+    mode: ModeLines, lines: list[MovingLine], supports: list[Array], view: SceneView, axes: tuple[Scaling, Scaling]
 ) -> Panel:
-    """A mode: at rest, and displaced."""
+    """Make the panel of a mode: at rest, and displaced."""
     items: list[Item] = []
     for line in lines:
-        flat = view.flat(line.points)
+        flat = view.project(line.points)
         items.append(Strokes(np.stack([flat[:-1], flat[1:]], axis=1), REST, 0.8))
-    for number, way in ((OTHER, mode.other), (ONE, mode.one)):
-        for line, points in zip(lines, way, strict=True):
-            flat = view.flat(points)
-            items.append(Trace(line.name, flat[:, 0], flat[:, 1], number, thin=number == OTHER))
+    for number, displaced in ((OTHER, mode.other), (ONE, mode.one)):
+        for line, points in zip(lines, displaced, strict=True):
+            flat = view.project(points)
+            items.append(Trace(line.name, flat[:, 0], flat[:, 1], number, is_thin=number == OTHER))
     for place in supports:
-        across, up = view.flat(place)
+        across, up = view.project(place)
         items.append(Spot(float(across), float(up), "", REST, "triangle"))
-    return Panel(*axes, tuple(items), HEIGHT, equal=True, bare=True, title=mode.title)
+    return Panel(*axes, tuple(items), HEIGHT, has_equal_scales=True, is_bare=True, title=mode.title)

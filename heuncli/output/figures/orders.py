@@ -1,4 +1,4 @@
-"""The orders of a cycle as bars: force and moment on the foundation, what inertia and loads put on the shaft."""
+"""The orders of a cycle as bars: force and moment on the foundation, torques of inertia and loads on the shaft."""
 
 from __future__ import annotations
 
@@ -7,90 +7,95 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow
-from heuncli.analyses.balancing.words import cycle_of, place_of, unit_of
+from heuncli.analyses.balancing.words import format_cycle, format_reference_point, get_unit
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, Scaling, Spot
-from heuncli.output.drawing.ticks import ends
+from heuncli.output.drawing.ticks import choose_ends
 from heuncli.study.quantities.table_units import Units
 
-NAMES = {
+QUANTITY_TITLES = {
     "force": "force of the masses ON the foundation", "moment": "moment of the masses ON the foundation",
     "torque": "torque of the inertia", "load": "torque of loads and weight on the shaft",
 }  # fmt: skip
-BARS = "bars: the largest magnitude that an order reaches over a turn"
-WRITTEN = 1e-3  # of the largest bar: smaller ones are not written beside
-LEFT = "with the counterweights"
-PEN, PEN_LEFT = 0, 1
+BARS_SENTENCE = "bars: the largest magnitude that an order reaches over a turn"
+MIN_LABELLED = 1e-3  # of the largest bar: smaller bars have no label
+COUNTERBALANCED = "with the counterweights"
+PEN, COUNTERBALANCED_PEN = 0, 1
 
 
 class BalancedScene(NamedTuple):
-    """A balance in a figure, and how it is called there: its file and case; nothing where it is the only one."""
+    """A balance in a figure, and its name there (file and case); empty if it is the only one."""
 
     name: str
     found: BalanceResults
 
 
-def orders(sources: Sequence[BalancedScene], units: Units) -> Figure:
-    """The figure of some balances: a panel a quantity, the same of all with the same ends."""
+def make_orders_figure(sources: Sequence[BalancedScene], units: Units) -> Figure:
+    """Make the figure of some balances: a panel for each quantity, with the same limits for all scenes."""
     panels = []
-    for quantity in NAMES:
-        some = [source for source in sources if quantity in source.found.orders]
+    for quantity in QUANTITY_TITLES:
+        sources_with_quantity = [source for source in sources if quantity in source.results.orders]
         high: dict[str, float] = {}
-        for source in some:
-            unit = unit_of(source.found, quantity)
-            high[unit] = max(high.get(unit, 0.0), _largest(source.found, quantity))
-        panels += [_panel(source, quantity, high[unit_of(source.found, quantity)], units) for source in some]
-    words = [*(sentence for source in sources for sentence in _words(source)), BARS]
-    left = any(source.found.counterbalance is not None for source in sources)
-    legend = [("as it is", PEN), (LEFT, PEN_LEFT)] if left else []
-    notes = [note for source in sources for note in source.found.notes]
-    titles = dict.fromkeys(source.found.title for source in sources if source.found.title)
+        for source in sources_with_quantity:
+            unit = get_unit(source.results, quantity)
+            high[unit] = max(high.get(unit, 0.0), _find_largest(source.results, quantity))
+        panels += [
+            _make_panel(source, quantity, high[get_unit(source.results, quantity)], units)
+            for source in sources_with_quantity
+        ]
+    words = [*(sentence for source in sources for sentence in _describe_source(source)), BARS_SENTENCE]
+    has_counterweights = any(source.results.counterbalance is not None for source in sources)
+    legend = [("as it is", PEN), (COUNTERBALANCED, COUNTERBALANCED_PEN)] if has_counterweights else []
+    notes = [note for source in sources for note in source.results.notes]
+    titles = dict.fromkeys(source.results.title for source in sources if source.results.title)
     return Figure(" · ".join(titles) or "Balance", words, panels, legend, notes)
 
 
-def _largest(found: BalanceResults, quantity: str) -> float:
-    """The largest order that is drawn."""
-    rows = [*found.orders[quantity], *_left(found).get(quantity, ())]
-    return max((row.reach for row in rows if row.order in found.shown), default=0.0)
+def _find_largest(results: BalanceResults, quantity: str) -> float:
+    """Return the largest order that is drawn."""
+    rows = [*results.orders[quantity], *_find_counterbalanced_orders(results).get(quantity, ())]
+    return max((row.peak for row in rows if row.order in results.shown_orders), default=0.0)
 
 
-def _left(found: BalanceResults) -> Mapping[str, tuple[OrderRow, ...]]:
-    """What counterweights leave."""
-    return {} if found.counterbalance is None else found.counterbalance.orders
+def _find_counterbalanced_orders(results: BalanceResults) -> Mapping[str, tuple[OrderRow, ...]]:
+    """Return the orders that remain with the counterweights."""
+    return {} if results.counterbalance is None else results.counterbalance.orders
 
 
-def _panel(source: BalancedScene, quantity: str, high: float, units: Units) -> Panel:
-    """The bars of one quantity, an order beside the other."""
-    found = source.found
-    unit, size = units.of(unit_of(found, quantity))
-    places = {order: float(k) for k, order in enumerate(found.shown)}
+def _make_panel(source: BalancedScene, quantity: str, high: float, units: Units) -> Panel:
+    """Make the panel of one quantity, a bar for each order."""
+    results = source.results
+    unit, size = units.find(get_unit(results, quantity))
+    places = {order: float(k) for k, order in enumerate(results.shown_orders)}
     names = tuple((place, f"{order:g}") for order, place in places.items())
-    x = Scaling("order", -0.5, max(len(places), 1) - 0.5, named=names)
-    y = Scaling(f"[{unit}]", 0.0, ends(0.0, size * high or 1.0, spare=0.25)[1])
-    about = f", about {place_of(found)}" if quantity == "moment" else ""
-    title = f"{f'{source.name}: ' if source.name else ''}{NAMES[quantity]}{about}"
-    sizes = {row.order: size * row.reach for row in found.orders[quantity] if row.order in places and row.reach > 0.0}
+    x = Scaling("order", -0.5, max(len(places), 1) - 0.5, tick_texts=names)
+    y = Scaling(f"[{unit}]", 0.0, choose_ends(0.0, size * high or 1.0, margin=0.25)[1])
+    point_phrase = f", about {format_reference_point(results)}" if quantity == "moment" else ""
+    title = f"{f'{source.name}: ' if source.name else ''}{QUANTITY_TITLES[quantity]}{point_phrase}"
+    sizes = {row.order: size * row.peak for row in results.orders[quantity] if row.order in places and row.peak > 0.0}
     items: list[Item] = [
-        Bars(NAMES[quantity], np.array([places[order] for order in sizes]), np.array(list(sizes.values())), PEN)
+        Bars(
+            QUANTITY_TITLES[quantity], np.array([places[order] for order in sizes]), np.array(list(sizes.values())), PEN
+        )
     ]
-    items += _written(sizes, places, size * high)
-    for row in _left(found).get(quantity, ()):
+    items += _label_bars(sizes, places, size * high)
+    for row in _find_counterbalanced_orders(results).get(quantity, ()):
         if row.order in places:
-            items.append(Spot(places[row.order], size * row.reach, "", PEN_LEFT, "diamond", filled=True))
+            items.append(Spot(places[row.order], size * row.peak, "", COUNTERBALANCED_PEN, "diamond", is_filled=True))
     return Panel(x, y, tuple(items), title=title)
 
 
-def _written(sizes: Mapping[float, float], places: Mapping[float, float], largest: float) -> Iterator[Spot]:
-    """The sizes of the bars that are seen."""
+def _label_bars(sizes: Mapping[float, float], places: Mapping[float, float], largest: float) -> Iterator[Spot]:
+    """Label the bars that are large enough to be visible."""
     for order, value in sizes.items():
-        if value > WRITTEN * largest:
-            yield Spot(places[order], value, f"{value:.4g}", PEN, filled=True)
+        if value > MIN_LABELLED * largest:
+            yield Spot(places[order], value, f"{value:.4g}", PEN, is_filled=True)
 
 
-def _words(source: BalancedScene) -> Iterator[str]:
-    """The cycle, and what becomes of its orders, as `heun balance` tells them."""
-    found = source.found
-    called = f"{source.name}: " if source.name else ""
-    yield called + cycle_of(found)
+def _describe_source(source: BalancedScene) -> Iterator[str]:
+    """Yield the cycle, and what becomes of its orders, in the words of `heun balance`."""
+    results = source.results
+    prefix = f"{source.name}: " if source.name else ""
+    yield prefix + format_cycle(results)
     for name in ("force", "moment"):
-        yield f"{called}{name}: {found.words[name]}"
+        yield f"{prefix}{name}: {results.summaries[name]}"

@@ -1,4 +1,4 @@
-"""What cannot be drawn, and what to ask for in its place."""
+"""The error for what cannot be drawn, with a hint."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from heuncli.base.errors import HeunError, Problem
 
 
 class NotDrawable(HeunError):
-    """What is to be drawn makes no such picture."""
+    """The requested quantity cannot be drawn in this kind of figure."""
 
     exit_code = 2
 

@@ -1,4 +1,4 @@
-"""Ropes over sheaves as they run at an instant, and marks: stops, latches, the ground under wheels and ropes' ends."""
+"""Draw ropes over sheaves at an instant, and marks: stops, latches, the ground under wheels and rope ends."""
 
 from __future__ import annotations
 
@@ -7,40 +7,40 @@ from collections.abc import Iterator
 import numpy as np
 
 from heuncli.output.drawing.figure import PlaceLabel, Strokes, Symbol
-from heuncli.output.figures.machine_items import APPLIED, ARM, THIN, Stood, on_paper
-from heuncli.output.machine_geometry.ropes import lines_of
+from heuncli.output.figures.machine_items import ARM, LOAD_PEN, THIN, PosedMachine, to_pair
+from heuncli.output.machine_geometry.ropes import iter_rope_lines
 from heuncli.results.results import Array
 
-SEEN = 0.2  # of a mark's direction that is seen: what shows less of it has no side in the picture
+MIN_SEEN = 0.2  # visible share of a mark's direction; with less it is not drawn
 
 
-def ropes(stood: Stood, k: int, *, thin: bool = False) -> Iterator[Strokes]:
-    """All ropes at an instant; thin: one that is not the first."""
-    for rope in stood.machine.ropes:
-        for line in lines_of(rope, stood.poses, k):
-            flat = stood.size * stood.view.flat(line)
-            yield Strokes(np.stack([flat[:-1], flat[1:]], axis=1), APPLIED, THIN if thin else ARM)
+def draw_ropes(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> Iterator[Strokes]:
+    """Draw all ropes at an instant; thin: for a later instant."""
+    for rope in posed_machine.machine.ropes:
+        for line in iter_rope_lines(rope, posed_machine.poses, k):
+            flat = posed_machine.size * posed_machine.view.project(line)
+            yield Strokes(np.stack([flat[:-1], flat[1:]], axis=1), LOAD_PEN, THIN if thin else ARM)
 
 
-def marks(stood: Stood, k: int) -> Iterator[Symbol]:
-    """The marks whose sides are seen."""
-    for mark in stood.machine.marks:
-        places, ways = mark.stands(stood.poses)
-        along = stood.view.flat(ways[k])
-        if float(np.hypot(*along)) > SEEN * float(np.linalg.norm(ways[k])):
-            place = stood.size * stood.view.flat(places[k])
-            yield Symbol(*on_paper(place), mark.symbol, on_paper(along), None, mark.told)
+def draw_marks(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
+    """Draw the marks whose direction is visible."""
+    for mark in posed_machine.machine.marks:
+        places, directions = mark.locate(posed_machine.poses)
+        seen_direction = posed_machine.view.project(directions[k])
+        if float(np.hypot(*seen_direction)) > MIN_SEEN * float(np.linalg.norm(directions[k])):
+            place = posed_machine.size * posed_machine.view.project(places[k])
+            yield Symbol(*to_pair(place), mark.symbol, to_pair(seen_direction), None, mark.description)
 
 
-def reach(stood: Stood) -> Iterator[Array]:
-    """Where marks stand at all instants, (n, 2) each."""
-    for mark in stood.machine.marks:
-        yield stood.size * stood.view.flat(mark.stands(stood.poses)[0])
+def iter_mark_places(posed_machine: PosedMachine) -> Iterator[Array]:
+    """Yield the places of marks at all instants, (n, 2) each."""
+    for mark in posed_machine.machine.marks:
+        yield posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0])
 
 
-def names(stood: Stood, k: int) -> Iterator[PlaceLabel]:
-    """The names of stops and latches."""
-    for mark in stood.machine.marks if stood.are_named else ():
+def make_labels(posed_machine: PosedMachine, k: int) -> Iterator[PlaceLabel]:
+    """Yield the labels of stops and latches."""
+    for mark in posed_machine.machine.marks if posed_machine.has_names else ():
         if mark.name:
-            x, y = on_paper(stood.size * stood.view.flat(mark.stands(stood.poses)[0][k]))
+            x, y = to_pair(posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0][k]))
             yield PlaceLabel(x, y, mark.name, mark.name)

@@ -1,6 +1,6 @@
-"""A sweep as a figure: curves over one variable, a field over two, places at random as points, names as bars.
+"""A sweep as a figure: curves over one variable, a field over two, points for random variables, bars for names.
 
-A panel a measure. Where a variant has no number nothing is drawn, and why is counted in a note.
+There is a panel for each measure. A variant without a number is not drawn; a note counts these with their reasons.
 """
 
 from __future__ import annotations
@@ -22,235 +22,267 @@ from heuncli.output.drawing.figure import (
     Spot,
     Strokes,
     Trace,
-    over_one_axis,
+    share_x_axis,
 )
 from heuncli.output.drawing.pens import PENS
-from heuncli.output.figures.certain import certain
-from heuncli.output.figures.error_bands import is_seen
+from heuncli.output.figures.certain import format_certain
+from heuncli.output.figures.error_bands import is_visible
 from heuncli.output.figures.refusals import NotDrawable
-from heuncli.output.figures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, example, picked
-from heuncli.output.figures.variable_axes import NAMES_MOST, axis_of, edges_of, measured_axis
+from heuncli.output.figures.swept import (
+    SweepNumbers,
+    SweepSelection,
+    SweepTable,
+    SweepVariable,
+    make_example,
+    select_sweep,
+)
+from heuncli.output.figures.variable_axes import MAX_NAMES, find_cell_edges, make_axis, make_measure_axis
 from heuncli.results.results import Array, Indices
 from heuncli.study.quantities.table_units import Units
 
-MARKED = 40  # points of a curve that are marked, at most
-POINTS = ("circle", "square", "triangle", "diamond", "tip", "bow")
-FEW_LEVELS = 3  # of the second of two variables: these are curves, no field
-MOST_CELLS = 40_000
-MOST_SPOTS = 1_500
-MOST_PANELS = 16
-FIELD, SHADES, STEPS = 300.0, 16.0, 48  # pixels: a field's height, and that of its shades; how many of these
+MAX_MARKED = 40  # points of a curve; with more they have no marks
+POINT_SHAPES = ("circle", "square", "triangle", "diamond", "tip", "bow")
+MAX_CURVE_LEVELS = 3  # of the second of two variables: up to this, curves and no field
+MAX_CELLS = 40_000
+MAX_SPOTS = 1_500
+MAX_PANELS = 16
+FIELD_HEIGHT, SHADES_HEIGHT, N_SHADES = (
+    300.0,
+    16.0,
+    48,
+)  # heights of a field and of its scale in pixels; shades of the scale
 
 
-def sweep(table: SweptTable, units: Units, words: Sequence[str] = ()) -> Figure:
-    """The figure of a sweep; words: what is picked of it. Raises NotDrawable."""
-    if not table.rows:
+def make_sweep_figure(table: SweepTable, units: Units, words: Sequence[str] = ()) -> Figure:
+    """Make the figure of a sweep. Raises NotDrawable.
+
+    words: what to pick from the sweep
+    """
+    if not table.n_rows:
         raise NotDrawable(f"{table.origin}: the sweep has no rows", "let it run, then draw it")
-    own = picked(table, words)
-    if not own.varied:
+    picked_table = select_sweep(table, words)
+    if not picked_table.variables:
         raise NotDrawable(f"{table.origin}: one variant is no curve", "vary something, or hold fewer variables")
-    panels, legend, notes = _kind(own)(own, units)
-    told = [table.origin, *(["with " + ", ".join(own.held)] if own.held else [])]
-    return Figure(table.title, told, panels, legend, [*notes, *_counted(own.table)])
+    panels, legend, notes = _choose_kind(picked_table)(picked_table, units)
+    sentences = [table.origin, *(["with " + ", ".join(picked_table.fixed_texts)] if picked_table.fixed_texts else [])]
+    return Figure(table.title, sentences, panels, legend, [*notes, *_count_variants(picked_table.table)])
 
 
-Drawn = tuple[list[Panel], list[tuple[str, int]], list[str]]
+FigureParts = tuple[list[Panel], list[tuple[str, int]], list[str]]
 
 
-def _kind(own: PickedTable) -> Callable[[PickedTable, Units], Drawn]:
-    """How a sweep is drawn."""
-    if own.scattered:
-        return _scatter
-    if len(own.varied) == 1:
-        return _bars if own.varied[0].texts else _curves
-    if len(own.varied) == 2:
-        first, second = own.varied
+def _choose_kind(picked_table: SweepSelection) -> Callable[[SweepSelection, Units], FigureParts]:
+    """Choose the function that draws the sweep."""
+    if picked_table.is_scattered:
+        return _draw_scatter
+    if len(picked_table.variables) == 1:
+        return _draw_bars if picked_table.variables[0].texts else _draw_curves
+    if len(picked_table.variables) == 2:
+        first, second = picked_table.variables
         numbers = not first.texts and not second.texts
-        if numbers and min(len(first.levels), len(second.levels)) > FEW_LEVELS:
-            return _fields
+        if numbers and min(len(first.levels), len(second.levels)) > MAX_CURVE_LEVELS:
+            return _draw_fields
         if first.texts and second.texts:
-            return _fields
-    return _curves
+            return _draw_fields
+    return _draw_curves
 
 
-def _curves(own: PickedTable, units: Units) -> Drawn:
-    """Curves over one variable, one for each combination of the others."""
-    across, others = _across(own)
-    groups = _groups(own, others)
-    x = axis_of(across)
+def _draw_curves(picked_table: SweepSelection, units: Units) -> FigureParts:
+    """Draw curves over one variable, one for each combination of the others."""
+    x_variable, others = _choose_x_variable(picked_table)
+    groups = _group_rows(picked_table, others)
+    x = make_axis(x_variable)
     panels = []
-    for measure in own.table.measures:
-        shown, size = units.of(measure.unit)
+    for measure in picked_table.table.measures:
+        shown_unit, size = units.find(measure.unit)
         items: list[Item] = []
-        y = measured_axis(shown, size * measure.values, size * measure.errors)
+        y = make_measure_axis(shown_unit, size * measure.values, size * measure.errors)
         for number, (name, rows) in enumerate(groups):
-            order = rows[np.argsort(across.values[rows], kind="stable")]
-            own_x, values = across.values[order], size * measure.values[order]
-            if not across.texts:  # between names there is nothing
-                items += _curve(name or measure.text, own_x, values, size * measure.errors[order], y, number)
-            items += _points(across, measure, size, order, number, marked=len(groups) == 1)
+            order = rows[np.argsort(x_variable.values[rows], kind="stable")]
+            x_values, values = x_variable.values[order], size * measure.values[order]
+            if not x_variable.texts:  # there is nothing between names
+                items += _draw_curve(name or measure.text, x_values, values, size * measure.errors[order], y, number)
+            items += _draw_points(x_variable, measure, size, order, number, mark_extremes=len(groups) == 1)
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
     legend = [(name, number) for number, (name, _) in enumerate(groups) if name]
-    return over_one_axis(panels), legend, [x.note] if x.note else []
+    return share_x_axis(panels), legend, [x.note] if x.note else []
 
 
-def _across(own: PickedTable) -> tuple[SweptVariable, list[SweptVariable]]:
-    """The variable along the axis across, and the others."""
-    numbers = [one for one in own.varied if not one.texts]
-    if own.named or not numbers:
-        across = own.varied[0]
+def _choose_x_variable(picked_table: SweepSelection) -> tuple[SweepVariable, list[SweepVariable]]:
+    """Return the variable along the horizontal axis, and the others."""
+    numeric = [variable for variable in picked_table.variables if not variable.texts]
+    if picked_table.has_named_axis or not numeric:
+        x_variable = picked_table.variables[0]
     else:
-        across = max(numbers, key=lambda one: len(one.levels)) if len(own.varied) == 2 else numbers[0]
-    return across, [one for one in own.varied if one is not across]
+        x_variable = (
+            max(numeric, key=lambda variable: len(variable.levels)) if len(picked_table.variables) == 2 else numeric[0]
+        )
+    return x_variable, [variable for variable in picked_table.variables if variable is not x_variable]
 
 
-def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str, Indices]]:
-    """Of each combination of the others its name, and its rows. Raises NotDrawable where there are too many."""
+def _group_rows(picked_table: SweepSelection, others: Sequence[SweepVariable]) -> list[tuple[str, Indices]]:
+    """Return the name and the rows of each combination of the others. Raises NotDrawable if there are too many."""
     if not others:
-        return [("", np.arange(own.table.rows))]
-    combinations = np.unique(np.column_stack([one.values for one in others]), axis=0)
+        return [("", np.arange(picked_table.table.n_rows))]
+    combinations = np.unique(np.column_stack([variable.values for variable in others]), axis=0)
     if len(combinations) > len(PENS):
-        names = ", ".join(one.name for one in own.varied)
-        message = f"{own.table.origin}: {len(own.varied)} variables ({names}) would make {len(combinations)} curves"
-        held = example(others[0])
-        raise NotDrawable(message, f"hold some, as {held}, until two vary or at most {len(PENS)} curves are left")
-    found = []
+        names = ", ".join(variable.name for variable in picked_table.variables)
+        message = f"{picked_table.table.origin}: {len(picked_table.variables)} variables ({names}) would make {len(combinations)} curves"
+        hint_example = make_example(others[0])
+        raise NotDrawable(
+            message, f"hold some, as {hint_example}, until two vary or at most {len(PENS)} curves are left"
+        )
+    groups = []
     for values in combinations:
-        mask = np.ones(own.table.rows, dtype=bool)
-        for one, value in zip(others, values, strict=True):
-            mask &= one.values == value
-        name = ", ".join(f"{one.name} = {one.word(value)}" for one, value in zip(others, values, strict=True))
-        found.append((name, np.flatnonzero(mask)))
-    return found
+        mask = np.ones(picked_table.table.n_rows, dtype=bool)
+        for variable, value in zip(others, values, strict=True):
+            mask &= variable.values == value
+        name = ", ".join(
+            f"{variable.name} = {variable.format_value(value)}" for variable, value in zip(others, values, strict=True)
+        )
+        groups.append((name, np.flatnonzero(mask)))
+    return groups
 
 
-def _curve(name: str, x: Array, values: Array, errors: Array, y: Scaling, number: int) -> Iterator[Item]:
-    """A curve with the band of its stated errors where that is seen."""
-    if is_seen(float(np.nanmax(np.where(np.isfinite(values), errors, 0.0), initial=0.0)), y):
+def _draw_curve(name: str, x: Array, values: Array, errors: Array, y: Scaling, number: int) -> Iterator[Item]:
+    """Draw a curve, with the band of its stated errors if that is visible."""
+    if is_visible(float(np.nanmax(np.where(np.isfinite(values), errors, 0.0), initial=0.0)), y):
         yield Band(f"stated error of {name}", x, values - errors, values + errors, number)
     yield Trace(name, x, values, number)
 
 
-def _points(
-    across: SweptVariable, measure: SweptNumbers, size: float, order: Indices, number: int, *, marked: bool
+def _draw_points(
+    x_variable: SweepVariable, measure: SweepNumbers, size: float, order: Indices, number: int, *, mark_extremes: bool
 ) -> Iterator[Spot]:
-    """The points of a curve, where they are few; marked: the greatest and the least with their places."""
-    x, values, errors = across.values[order], size * measure.values[order], size * measure.errors[order]
+    """Draw the points of a curve if they are few; mark_extremes: label the largest and the smallest with their
+    places.
+    """
+    x, values, errors = x_variable.values[order], size * measure.values[order], size * measure.errors[order]
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return
     high, low = int(np.nanargmax(values)), int(np.nanargmin(values))
-    best = [high, low] if marked and values[high] > values[low] else []
-    for k in best:
-        text = f"{certain(float(values[k]), float(errors[k]))} at {across.word(x[k])}"
-        yield Spot(float(x[k]), float(values[k]), text, number, filled=True)
-    alone = [k for k in known.tolist() if np.isfinite(values[max(k - 1, 0) : k + 2]).sum() == 1]
-    shape = POINTS[number % len(POINTS)] if across.texts else POINTS[0]
-    for k in known.tolist() if len(x) <= MARKED or across.texts else alone:
-        if k not in best:
+    extremes = [high, low] if mark_extremes and values[high] > values[low] else []
+    for k in extremes:
+        text = f"{format_certain(float(values[k]), float(errors[k]))} at {x_variable.format_value(x[k])}"
+        yield Spot(float(x[k]), float(values[k]), text, number, is_filled=True)
+    isolated = [k for k in known.tolist() if np.isfinite(values[max(k - 1, 0) : k + 2]).sum() == 1]
+    shape = POINT_SHAPES[number % len(POINT_SHAPES)] if x_variable.texts else POINT_SHAPES[0]
+    for k in known.tolist() if len(x) <= MAX_MARKED or x_variable.texts else isolated:
+        if k not in extremes:
             yield Spot(float(x[k]), float(values[k]), "", number, shape)
 
 
-def _bars(own: PickedTable, units: Units) -> Drawn:
-    """A bar a name, as of load cases; with their stated errors where these are seen."""
-    (across,) = own.varied
-    x = axis_of(across)
+def _draw_bars(picked_table: SweepSelection, units: Units) -> FigureParts:
+    """Draw a bar for each name, as of load cases, with the stated errors that are visible."""
+    (x_variable,) = picked_table.variables
+    x = make_axis(x_variable)
     panels = []
-    for measure in own.table.measures:
-        shown, size = units.of(measure.unit)
+    for measure in picked_table.table.measures:
+        shown_unit, size = units.find(measure.unit)
         values, errors = size * measure.values, size * measure.errors
-        y = measured_axis(shown, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
-        items: list[Item] = [Bars(measure.text, across.values, values)]
-        seen = np.isfinite(values) & np.array([is_seen(error, y) for error in errors.tolist()])
-        if seen.any():
-            at, middle, off = across.values[seen], values[seen], errors[seen]
-            low, high = np.column_stack([at, middle - off]), np.column_stack([at, middle + off])
+        y = make_measure_axis(shown_unit, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
+        items: list[Item] = [Bars(measure.text, x_variable.values, values)]
+        has_band = np.isfinite(values) & np.array([is_visible(error, y) for error in errors.tolist()])
+        if has_band.any():
+            bar_places, middle, half_lengths = x_variable.values[has_band], values[has_band], errors[has_band]
+            low, high = (
+                np.column_stack([bar_places, middle - half_lengths]),
+                np.column_stack([bar_places, middle + half_lengths]),
+            )
             items.append(Strokes(np.stack([low, high], axis=1), width=1.4))
         items += [
-            Spot(a, b, certain(b, error), 0, filled=True)
-            for a, b, error in zip(across.values.tolist(), values.tolist(), errors.tolist(), strict=True)
-            if np.isfinite(b) and len(values) <= NAMES_MOST
+            Spot(a, b, format_certain(b, error), 0, is_filled=True)
+            for a, b, error in zip(x_variable.values.tolist(), values.tolist(), errors.tolist(), strict=True)
+            if np.isfinite(b) and len(values) <= MAX_NAMES
         ]
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
-    return over_one_axis(panels), [], [x.note] if x.note else []
+    return share_x_axis(panels), [], [x.note] if x.note else []
 
 
-def _fields(own: PickedTable, units: Units) -> Drawn:
-    """A field over two variables, and beneath it which shade is which value."""
-    across, upward = own.varied
-    if len(across.levels) * len(upward.levels) > MOST_CELLS:
-        message = f"{own.table.origin}: {len(across.levels)} by {len(upward.levels)} cells; at most {MOST_CELLS:,}"
-        raise NotDrawable(message, f"hold one, as {example(across)}")
-    x, y = axis_of(across, cells=True), axis_of(upward, cells=True)
+def _draw_fields(picked_table: SweepSelection, units: Units) -> FigureParts:
+    """Draw a field over two variables, and below it the scale of its shades."""
+    x_variable, y_variable = picked_table.variables
+    if len(x_variable.levels) * len(y_variable.levels) > MAX_CELLS:
+        message = f"{picked_table.table.origin}: {len(x_variable.levels)} by {len(y_variable.levels)} cells; at most {MAX_CELLS:,}"
+        raise NotDrawable(message, f"hold one, as {make_example(x_variable)}")
+    x, y = make_axis(x_variable, cells=True), make_axis(y_variable, cells=True)
     panels: list[Panel] = []
-    notes = [one.note for one in (x, y) if one.note]
-    for measure in own.table.measures:
-        shown, size = units.of(measure.unit)
-        values = np.full((len(upward.levels), len(across.levels)), np.nan)
-        at = np.searchsorted(upward.levels, upward.values), np.searchsorted(across.levels, across.values)
-        values[at] = size * measure.values
-        cells = Cells(measure.text, edges_of(across, x.scaling), edges_of(upward, y.scaling), values)
-        panels.append(Panel(x.scaling, y.scaling, (cells,), FIELD, title=f"{measure.text} [{shown or '-'}]"))
+    notes = [axis.note for axis in (x, y) if axis.note]
+    for measure in picked_table.table.measures:
+        shown_unit, size = units.find(measure.unit)
+        values = np.full((len(y_variable.levels), len(x_variable.levels)), np.nan)
+        cell_indices = (
+            np.searchsorted(y_variable.levels, y_variable.values),
+            np.searchsorted(x_variable.levels, x_variable.values),
+        )
+        values[cell_indices] = size * measure.values
+        cells = Cells(
+            measure.text, find_cell_edges(x_variable, x.scaling), find_cell_edges(y_variable, y.scaling), values
+        )
+        panels.append(
+            Panel(x.scaling, y.scaling, (cells,), FIELD_HEIGHT, title=f"{measure.text} [{shown_unit or '-'}]")
+        )
         known = np.isfinite(measure.values)
         if known.any():
-            panels += _shades(values, shown)
-            notes.append(_least_and_greatest(measure, size, shown, (across, upward)))
+            panels += _draw_shades(values, shown_unit)
+            notes.append(_describe_extremes(measure, size, shown_unit, (x_variable, y_variable)))
     return panels, [], notes
 
 
-def _shades(field: Array, unit: str) -> Iterator[Panel]:
-    """Which shade of a field is which value."""
+def _draw_shades(field: Array, unit: str) -> Iterator[Panel]:
+    """Draw the scale of the shades of a field."""
     low, high = float(np.nanmin(field)), float(np.nanmax(field))
     if not high > low:
         return
     cells = Cells(
-        "shades", np.linspace(low, high, STEPS + 1), np.array([0.0, 1.0]), np.linspace(low, high, STEPS)[None]
+        "shades", np.linspace(low, high, N_SHADES + 1), np.array([0.0, 1.0]), np.linspace(low, high, N_SHADES)[None]
     )
-    yield Panel(Scaling(f"[{unit or '-'}]", low, high), Scaling("", 0.0, 1.0, named=((0.5, ""),)), (cells,), SHADES)
+    yield Panel(
+        Scaling(f"[{unit or '-'}]", low, high), Scaling("", 0.0, 1.0, tick_texts=((0.5, ""),)), (cells,), SHADES_HEIGHT
+    )
 
 
-def _least_and_greatest(
-    measure: SweptNumbers, size: float, unit: str, variables: tuple[SweptVariable, SweptVariable]
+def _describe_extremes(
+    measure: SweepNumbers, size: float, unit: str, variables: tuple[SweepVariable, SweepVariable]
 ) -> str:
-    """Where a field is lowest and highest."""
-    found = []
+    """Describe where a field is smallest and largest."""
+    texts = []
     for name, k in (("least", int(np.nanargmin(measure.values))), ("greatest", int(np.nanargmax(measure.values)))):
-        place = ", ".join(f"{one.name} = {one.word(one.values[k])}" for one in variables)
-        value = certain(size * float(measure.values[k]), size * float(measure.errors[k]))
-        found.append(f"{name} {value} {unit}".rstrip() + f" at {place}")
-    return f"{measure.text}: {'; '.join(found)}"
+        place = ", ".join(f"{variable.name} = {variable.format_value(variable.values[k])}" for variable in variables)
+        value = format_certain(size * float(measure.values[k]), size * float(measure.errors[k]))
+        texts.append(f"{name} {value} {unit}".rstrip() + f" at {place}")
+    return f"{measure.text}: {'; '.join(texts)}"
 
 
-def _scatter(own: PickedTable, units: Units) -> Drawn:
-    """Each variable against each measure, a point a variant. Raises NotDrawable."""
-    count = len(own.varied) * len(own.table.measures)
-    if count > MOST_PANELS:
-        message = (
-            f"{own.table.origin}: {len(own.varied)} variables by {len(own.table.measures)} measures: {count} panels"
-        )
-        raise NotDrawable(message, f"name some of the measures, such as '{own.table.measures[0].text}'")
-    every = -(-own.table.rows // MOST_SPOTS)
-    chosen = own.varied[:1] if own.named else own.varied
+def _draw_scatter(picked_table: SweepSelection, units: Units) -> FigureParts:
+    """Draw each variable against each measure, a point for each variant. Raises NotDrawable."""
+    count = len(picked_table.variables) * len(picked_table.table.measures)
+    if count > MAX_PANELS:
+        message = f"{picked_table.table.origin}: {len(picked_table.variables)} variables by {len(picked_table.table.measures)} measures: {count} panels"
+        raise NotDrawable(message, f"name some of the measures, such as '{picked_table.table.measures[0].text}'")
+    stride = -(-picked_table.table.n_rows // MAX_SPOTS)
+    chosen = picked_table.variables[:1] if picked_table.has_named_axis else picked_table.variables
     panels = []
-    for measure, variable in product(own.table.measures, chosen):
-        shown, size = units.of(measure.unit)
+    for measure, variable in product(picked_table.table.measures, chosen):
+        shown_unit, size = units.find(measure.unit)
         values = size * measure.values
-        y, x = measured_axis(shown, values, np.zeros_like(values)), axis_of(variable)
-        some = zip(variable.values[::every].tolist(), values[::every].tolist(), strict=True)
-        spots = tuple(Spot(a, b, "", 0) for a, b in some if np.isfinite(b))
+        y, x = make_measure_axis(shown_unit, values, np.zeros_like(values)), make_axis(variable)
+        drawn_points = zip(variable.values[::stride].tolist(), values[::stride].tolist(), strict=True)
+        spots = tuple(Spot(a, b, "", 0) for a, b in drawn_points if np.isfinite(b))
         panels.append(Panel(x.scaling, y, spots, title=measure.text))
-    notes = [f"every {every}th of {own.table.rows:,} variants is drawn"] if every > 1 else []
-    return panels, [], notes + [note for one in chosen if (note := axis_of(one).note)]
+    notes = [f"every {stride}th of {picked_table.table.n_rows:,} variants is drawn"] if stride > 1 else []
+    return panels, [], notes + [note for chosen_variable in chosen if (note := make_axis(chosen_variable).note)]
 
 
-def _counted(table: SweptTable) -> Iterator[str]:
-    """How many variants there are, and how many have no number, and why."""
-    if table.planned is not None and table.rows < table.planned:
-        yield f"{table.rows:,} of {table.planned:,} variants are done"
+def _count_variants(table: SweepTable) -> Iterator[str]:
+    """Yield how many variants there are, how many of them have no number, and why."""
+    if table.n_planned is not None and table.n_rows < table.n_planned:
+        yield f"{table.n_rows:,} of {table.n_planned:,} variants are done"
     failed = Counter(code for code in table.codes if code)
     if failed:
         codes = ", ".join(f"{count} {code}" for code, count in failed.most_common())
-        yield f"{failed.total():,} of {table.rows:,} variants could not be solved, and are not drawn: {codes}"
+        yield f"{failed.total():,} of {table.n_rows:,} variants could not be solved, and are not drawn: {codes}"
     for measure in table.measures:
-        for word, count in Counter(word for word in measure.lost if word).items():
-            yield f"{measure.text}: {word} in {count:,} of {table.rows:,} variants, not drawn there"
+        for word, count in Counter(word for word in measure.missing_reasons if word).items():
+            yield f"{measure.text}: {word} in {count:,} of {table.n_rows:,} variants, not drawn there"

@@ -1,7 +1,7 @@
-"""The rows of a sweep as columns of numbers, and what of them is drawn: which variable runs across, which are held.
+"""The rows of a sweep as columns of numbers, and the choice of what to draw: the horizontal variable, fixed variables.
 
-Words pick: NAME=VALUE holds a variable, the name of a variable lays it across, that of a measure (or a part of it that
-only one has) draws it alone.
+Words make the choice: NAME=VALUE fixes a variable, the name of a variable puts it on the horizontal axis, the name of a
+measure (or a part of it that only one has) draws only that measure.
 """
 
 from __future__ import annotations
@@ -11,20 +11,20 @@ from itertools import compress
 
 import numpy as np
 
-from heuncli.analyses.variants.axes import figure_of
+from heuncli.analyses.variants.axes import parse_figure
 from heuncli.base import tolerances
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array, Mask
 
-APART = 0.8  # of the rows: a variable with more values than that is no axis of a grid, where there are several such
-FEWEST = 4  # rows by which that is seen
+MIN_DISTINCT_SHARE = 0.8  # of the rows: two variables with more distinct values form no grid
+MIN_ROWS = 4  # fewer rows form a grid
 
 
-class SweptVariable(NamedTuple):
-    """What is varied: its name, its unit (empty: SI), its values (n,): numbers, or places among `texts`."""
+class SweepVariable(NamedTuple):
+    """A varied quantity: its name, unit (empty for SI), and values (n,), which are numbers or indices of `texts`."""
 
     name: str
     unit: str
@@ -32,26 +32,28 @@ class SweptVariable(NamedTuple):
     texts: tuple[str, ...] = ()
 
     @property
-    def head(self) -> str:
-        """What an axis says of it."""
+    def axis_label(self) -> str:
+        """The label of its axis."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     @property
     def levels(self) -> Array:
-        """Its values, each once, ascending."""
+        """Its distinct values, ascending."""
         return np.unique(self.values)
 
-    def word(self, value: float) -> str:
-        """A value in words."""
+    def format_value(self, value: float) -> str:
+        """Format a value."""
         if self.texts:
             return self.texts[int(value)]
         return f"{value:.6g} {self.unit}".rstrip()
 
 
-class SweptNumbers(NamedTuple):
-    """A measure in each row (n,), in SI, nan where there is none; errors as the runs state them, 0 where none.
+class SweepNumbers(NamedTuple):
+    """A measure in each row.
 
-    lost: in each row of a solved variant why there is none, else empty.
+    values (n,): SI, nan if there is none
+    errors (n,): as stated by the runs, 0 if there is none
+    missing_reasons: why the row of a solved variant has no number, else empty
     """
 
     text: str
@@ -61,121 +63,138 @@ class SweptNumbers(NamedTuple):
     lost: tuple[str, ...]
 
 
-class SweptTable(NamedTuple):
-    """A sweep: what is varied, what was measured; planned: variants, where that is known.
+class SweepTable(NamedTuple):
+    """A sweep: its variables and measures.
 
-    codes: of each row that of what could not be solved, else empty.
-    random: whether the variables were drawn, or listed row by row; None where the rows have to tell.
+    codes: of each row the code of the error that prevented its solution, else empty
+    n_planned: number of variants, if known
+    random: whether the variables were drawn at random or listed row by row; None if that must be inferred from the rows
     """
 
     title: str
     origin: str
-    variables: tuple[SweptVariable, ...]
-    measures: tuple[SweptNumbers, ...]
+    variables: tuple[SweepVariable, ...]
+    measures: tuple[SweepNumbers, ...]
     codes: tuple[str, ...]
     planned: int | None
     random: bool | None = None
 
     @property
-    def rows(self) -> int:
-        """How many there are."""
+    def n_rows(self) -> int:
+        """The number of rows."""
         return len(self.codes)
 
 
-class PickedTable(NamedTuple):
-    """What is drawn of a sweep: its rows, the variables that vary in them, that across first if it was named; words."""
+class SweepSelection(NamedTuple):
+    """What is drawn of a sweep.
 
-    table: SweptTable
-    varied: tuple[SweptVariable, ...]
+    variables: those that vary in its rows, the horizontal one first if it was named
+    has_named_axis: whether the horizontal variable was named
+    fixed_texts: the fixed variables with their values
+    """
+
+    table: SweepTable
+    varied: tuple[SweepVariable, ...]
     named: bool
     held: tuple[str, ...]
 
     @property
-    def scattered(self) -> bool:
-        """Whether there are no axes, but places at random."""
-        if len(self.varied) < 2:
-            return bool(self.table.random) and bool(self.varied)
+    def is_scattered(self) -> bool:
+        """Whether its points are at random places, and not on a grid."""
+        if len(self.variables) < 2:
+            return bool(self.table.random) and bool(self.variables)
         if self.table.random is not None:
             return self.table.random
-        rows = self.table.rows
-        return rows >= FEWEST and sum(len(one.levels) >= APART * rows for one in self.varied) >= 2
+        rows = self.table.n_rows
+        return (
+            rows >= MIN_ROWS
+            and sum(len(variable.levels) >= MIN_DISTINCT_SHARE * rows for variable in self.variables) >= 2
+        )
 
 
-def picked(table: SweptTable, words: Sequence[str]) -> PickedTable:
-    """What some words pick of a sweep. Raises NotDrawable."""
-    kept = np.ones(table.rows, dtype=bool)
-    across: str | None = None
-    measures: list[SweptNumbers] = []
+def select_sweep(table: SweepTable, words: Sequence[str]) -> SweepSelection:
+    """Select what some words pick from a sweep. Raises NotDrawable."""
+    row_mask = np.ones(table.n_rows, dtype=bool)
+    x_name: str | None = None
+    measures: list[SweepNumbers] = []
     for word in words:
         name, equals, value = word.partition("=")
-        variable = next((one for one in table.variables if one.name == name.strip()), None)
+        variable = next((candidate for candidate in table.variables if candidate.name == name.strip()), None)
         if equals and variable is not None:
-            kept &= _held(variable, value.strip())
+            row_mask &= _find_rows(variable, value.strip())
         elif variable is not None:
-            across = variable.name
+            x_name = variable.name
         else:
-            measures.append(_measure(table, word))
-    own = _of_rows(table._replace(measures=tuple(measures) or table.measures), kept)
-    varied = [one for one in own.variables if len(one.levels) > 1]
-    varied.sort(key=lambda one: one.name != across)
-    if across is not None and across not in [one.name for one in varied]:
-        raise NotDrawable(f"{across} has one value in what is drawn", "name another to run across, or hold fewer")
-    held = tuple(f"{one.name} = {one.word(one.values[0])}" for one in own.variables if len(one.levels) == 1)
-    return PickedTable(own, tuple(varied), across is not None, held)
+            measures.append(_find_measure(table, word))
+    selected = _select_rows(table._replace(measures=tuple(measures) or table.measures), row_mask)
+    varying = [candidate for candidate in selected.variables if len(candidate.levels) > 1]
+    varying.sort(key=lambda candidate: candidate.name != x_name)
+    if x_name is not None and x_name not in [candidate.name for candidate in varying]:
+        raise NotDrawable(f"{x_name} has one value in what is drawn", "name another to run across, or hold fewer")
+    fixed_texts = tuple(
+        f"{candidate.name} = {candidate.format_value(candidate.values[0])}"
+        for candidate in selected.variables
+        if len(candidate.levels) == 1
+    )
+    return SweepSelection(selected, tuple(varying), x_name is not None, fixed_texts)
 
 
-def _held(variable: SweptVariable, text: str) -> Mask:
-    """The rows in which a variable has a value."""
+def _find_rows(variable: SweepVariable, text: str) -> Mask:
+    """Return the mask of the rows in which a variable has a value."""
     if variable.texts:
-        found = np.array([variable.texts[int(k)] == text for k in variable.values], dtype=bool)
+        row_mask = np.array([variable.texts[int(k)] == text for k in variable.values], dtype=bool)
     else:
-        figure = figure_of(text)
+        figure = parse_figure(text)
         if figure is None or figure.unit not in ("", variable.unit):
             unit = f" in {variable.unit}" if variable.unit else ""
-            raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {example(variable)}")
-        found = np.isclose(variable.values, figure.value, rtol=tolerances.SAME_VALUE, atol=0.0)
-    if not found.any():
-        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {example(variable)}")
-    return np.asarray(found)
+            raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {make_example(variable)}")
+        row_mask = np.isclose(variable.values, figure.value, rtol=tolerances.SAME_VALUE, atol=0.0)
+    if not row_mask.any():
+        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {make_example(variable)}")
+    return np.asarray(row_mask)
 
 
-def example(variable: SweptVariable) -> str:
-    """A value that is there, as it is typed: NAME=VALUE."""
+def make_example(variable: SweepVariable) -> str:
+    """Return an existing value in the form in which it is typed: NAME=VALUE."""
     levels = variable.levels
     if variable.texts:
-        return f"{variable.name}={shown(variable.texts[int(levels[0])])}"
+        return f"{variable.name}={escape(variable.texts[int(levels[0])])}"
     return f"{variable.name}={levels[len(levels) // 2]:.12g}"
 
 
-def _measure(table: SweptTable, word: str) -> SweptNumbers:
-    """The measure that a word names, or a part of whose words it is."""
-    exact = [one for one in table.measures if word == one.text]
-    found = exact or [one for one in table.measures if word in one.text]
+def _find_measure(table: SweepTable, word: str) -> SweepNumbers:
+    """Return the measure that a word names completely or in part."""
+    exact = [column for column in table.measures if word == column.text]
+    found = exact or [column for column in table.measures if word in column.text]
     if len(found) == 1:
         return found[0]
-    names = [one.name for one in table.variables] + [one.text for one in table.measures]
+    names = [column.name for column in table.variables] + [column.text for column in table.measures]
     if found:
         raise NotDrawable(f"{word}: {len(found)} measures have this in their words", f"name one: {found[0].text}")
-    hint = did_you_mean(word, names, "columns") or f"there are: {', '.join(names)}"
+    hint = suggest(word, names, "columns") or f"there are: {', '.join(names)}"
     raise NotDrawable(f"{word}: no column of the sweep has this name", hint)
 
 
-def _of_rows(table: SweptTable, kept: Mask) -> SweptTable:
-    """Some of the rows."""
-    if kept.all():
+def _select_rows(table: SweepTable, row_mask: Mask) -> SweepTable:
+    """Return some of the rows."""
+    if row_mask.all():
         return table
-    variables = tuple(_of_texts(one._replace(values=one.values[kept])) for one in table.variables)
+    variables = tuple(_drop_unused_texts(column._replace(values=column.values[row_mask])) for column in table.variables)
     measures = tuple(
-        one._replace(values=one.values[kept], errors=one.errors[kept], lost=tuple(compress(one.lost, kept)))
-        for one in table.measures
+        column._replace(
+            values=column.values[row_mask],
+            errors=column.errors[row_mask],
+            missing_reasons=tuple(compress(column.missing_reasons, row_mask)),
+        )
+        for column in table.measures
     )
     return table._replace(
-        variables=variables, measures=measures, codes=tuple(compress(table.codes, kept)), planned=None
+        variables=variables, measures=measures, codes=tuple(compress(table.codes, row_mask)), n_planned=None
     )
 
 
-def _of_texts(variable: SweptVariable) -> SweptVariable:
-    """The variable with those of its texts that occur."""
+def _drop_unused_texts(variable: SweepVariable) -> SweepVariable:
+    """Return the variable with only those of its texts that occur."""
     if not variable.texts:
         return variable
     levels, places = np.unique(variable.values, return_inverse=True)

@@ -1,4 +1,4 @@
-"""Long courses with as many points as can be seen: of each short stretch its least, its greatest, and its gaps."""
+"""Reduce long courses to the points that can be seen: of each short interval its minimum, its maximum, and its gaps."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from numpy.typing import NDArray
 
 from heuncli.results.results import Array
 
-STRETCHES = 1500  # two a pixel of a panel, nearly
+N_INTERVALS = 1500  # nearly two a pixel of a panel
 
 
-def seen_places(values: Array, stretches: int = STRETCHES) -> NDArray[np.intp]:
-    """The places (m,) of values (n,), ascending, that a picture shows; all of them where they are few."""
+def find_visible_points(values: Array, n_intervals: int = N_INTERVALS) -> NDArray[np.intp]:
+    """Return the indices (m,) of values (n,), ascending, that a figure shows; all of them if they are few."""
     count = len(values)
-    if count <= 4 * stretches:
+    if count <= 4 * n_intervals:
         return np.arange(count)
-    of_each = -(-count // stretches)
-    places = np.minimum(np.arange(stretches * of_each), count - 1).reshape(stretches, of_each)
+    n_per_interval = -(-count // n_intervals)
+    places = np.minimum(np.arange(n_intervals * n_per_interval), count - 1).reshape(n_intervals, n_per_interval)
     parts = values[places]
     unknown = np.isnan(parts)
-    each = np.arange(stretches)
-    kept = [
-        places[each, np.where(unknown, np.inf, parts).argmin(axis=1)],
-        places[each, np.where(unknown, -np.inf, parts).argmax(axis=1)],
-        places[each, unknown.argmax(axis=1)],  # a gap, else the first
+    rows = np.arange(n_intervals)
+    chosen = [
+        places[rows, np.where(unknown, np.inf, parts).argmin(axis=1)],
+        places[rows, np.where(unknown, -np.inf, parts).argmax(axis=1)],
+        places[rows, unknown.argmax(axis=1)],  # a gap, else the first
         places[-1:, -1],
     ]
-    return np.unique(np.concatenate(kept))
+    return np.unique(np.concatenate(chosen))

@@ -1,4 +1,4 @@
-"""The ways of named points over a run, as thin curves."""
+"""The paths of named points over a run, as thin curves."""
 
 from __future__ import annotations
 
@@ -8,66 +8,74 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import PlaceLabel, Trace
-from heuncli.output.figures.courses import Pictured, instants
-from heuncli.output.figures.machine_items import Stood, on_paper
-from heuncli.output.machine_geometry.poses import poses_of
+from heuncli.output.figures.courses import FigureSource, choose_instants
+from heuncli.output.figures.machine_items import PosedMachine, to_pair
+from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.results.results import Array
 
-CENTER = "center"  # a body's point of that name is its centre of mass, where the spec names none so
-MOST = 8  # ways that are drawn because the spec reports its points
-SAME_WAY = 1e-6  # of how far a way goes: two that are nearer are drawn as one
+CENTER = "center"  # the centre of mass, unless the spec has a point of that name
+MAX_REPORTED = 8  # paths of points that the spec reports
+SAME_PATH = 1e-6  # of a path's size: closer paths are drawn once
 
 
-class Traced(NamedTuple):
-    """A named point and its way over the run, (n, 3), world axes."""
+class PointPath(NamedTuple):
+    """A named point and its positions over the run, (n, 3), world axes."""
 
     name: str
     body: str
     way: Array
 
 
-def traced(source: Pictured, names: Sequence[str]) -> list[Traced]:
-    """The ways of points, `body.point`, over the run, up to its horizon."""
+def make_paths(source: FigureSource, names: Sequence[str]) -> list[PointPath]:
+    """Make the paths of points, `body.point`, over the run up to its horizon."""
     study = source.study
-    if not names or study.of_one_instant:
+    if not names or study.has_one_instant:
         return []
-    poses = poses_of(study, instants(study))
+    poses = compute_poses(study, choose_instants(study))
     centers = {body.name: np.asarray(body.center) for body in study.setup.scene.mechanism.bodies}
-    found = []
+    paths = []
     for name in names:
         body, _, point = name.partition(".")
-        own = study.spec.bodies[body].points
-        place = np.array(own[point]) if point in own else centers[body]
-        found.append(Traced(name, body, np.array([poses.at(body, place, k) for k in range(len(poses.times))])))
-    return found
+        named_points = study.spec.bodies[body].points
+        place = np.array(named_points[point]) if point in named_points else centers[body]
+        paths.append(
+            PointPath(name, body, np.array([poses.locate_points(body, place, k) for k in range(len(poses.times))]))
+        )
+    return paths
 
 
-def reported(source: Pictured) -> list[Traced]:
-    """Those that the spec reports and that move: each way once, and of many the first."""
+def make_reported_paths(source: FigureSource) -> list[PointPath]:
+    """Make the paths of the points that the spec reports and that move: each path once, and of many the first ones."""
     spec = source.study.spec
     if "points" not in (spec.report or ()):
         return []
-    found: list[Traced] = []
-    for one in traced(source, [f"{body}.{point}" for body, own in spec.bodies.items() for point in own.points]):
-        size = float(np.ptp(one.way, axis=0).max())
-        if size > 0.0 and not any(np.allclose(one.way, other.way, rtol=0.0, atol=SAME_WAY * size) for other in found):
-            found.append(one)
-    return found[:MOST]
+    paths: list[PointPath] = []
+    for path in make_paths(
+        source, [f"{body}.{point}" for body, body_spec in spec.bodies.items() for point in body_spec.points]
+    ):
+        size = float(np.ptp(path.positions, axis=0).max())
+        if size > 0.0 and not any(
+            np.allclose(path.positions, other.positions, rtol=0.0, atol=SAME_PATH * size) for other in paths
+        ):
+            paths.append(path)
+    return paths[:MAX_REPORTED]
 
 
-def seen(stood: Stood, one: Traced) -> Array:
-    """A way as it is seen, (n, 2) in the unit of the picture."""
-    return np.asarray(stood.size * stood.view.flat(one.way))
+def project_path(posed_machine: PosedMachine, path: PointPath) -> Array:
+    """Project a path to the view, (n, 2) in the unit of the figure."""
+    return np.asarray(posed_machine.size * posed_machine.view.project(path.positions))
 
 
-def curves(stood: Stood, ways: Sequence[Traced]) -> Iterator[Trace]:
-    """The curves."""
-    for one in ways:
-        x, y = seen(stood, one).T
-        yield Trace(one.name, x, y, stood.pens[one.body], thin=True)
+def draw_paths(posed_machine: PosedMachine, paths: Sequence[PointPath]) -> Iterator[Trace]:
+    """Draw the paths."""
+    for path in paths:
+        x, y = project_path(posed_machine, path).T
+        yield Trace(path.name, x, y, posed_machine.pens[path.body], is_thin=True)
 
 
-def names(stood: Stood, ways: Sequence[Traced]) -> Iterator[PlaceLabel]:
-    """The names of the points, where their ways begin."""
-    for one in ways:
-        yield PlaceLabel(*on_paper(seen(stood, one)[0]), one.name, one.name, stood.pens[one.body])
+def make_labels(posed_machine: PosedMachine, paths: Sequence[PointPath]) -> Iterator[PlaceLabel]:
+    """Yield the labels of the points at the beginning of their paths."""
+    for path in paths:
+        yield PlaceLabel(
+            *to_pair(project_path(posed_machine, path)[0]), path.name, path.name, posed_machine.pens[path.body]
+        )

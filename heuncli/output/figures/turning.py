@@ -1,7 +1,7 @@
-"""How a run turns: the angle that it turns in, and its last whole cycle where the motion comes back.
+"""How a run turns: the angle in which it keeps turning, and its last whole cycle if the motion is periodic.
 
-A cycle is one turn or two, as of four-stroke engines. Whether the motion comes back is seen by the cycle before, at the
-same angles; a run that does not, or that has no more than one, is seen as a whole.
+A cycle is one turn or two, as of four-stroke engines. The motion is periodic if the cycle before is equal at the same
+angles. A run that is not periodic, or has only one cycle, is shown as a whole.
 """
 
 from __future__ import annotations
@@ -17,25 +17,29 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
-from heuncli.study.ask.curves import numbers_at
+from heuncli.study.ask.curves import sample_numbers
 from heuncli.study.ask.study import Study
 
 TURN = 2.0 * math.pi
-LEAST = 0.25 * TURN  # what turns less is no crank
-CLOSELY = 721  # instants of what is drawn
-COMPARED = 128  # angles of a cycle at which it is held against the one before
-ALMOST = 1e-6  # of a turn: a run that was to end with it
+MIN_SPAN = 0.25 * TURN  # an angle that turns less is no crank angle
+N_INSTANTS = 721  # instants of the curves
+N_COMPARED = 128  # angles at which two cycles are compared
+TURN_TOLERANCE = 1e-6  # of a turn: tolerance for a run that ends with a whole turn
 
 
-class TurnedVectors(NamedTuple):
-    """What is looked at: at some instants (n,) vectors (n, k, 3), and the errors of these (k,)."""
+class VectorSource(NamedTuple):
+    """Vectors that are evaluated at instants: (n,) to (n, k, 3), and their errors (k,)."""
 
     at: Callable[[Array], Array]
     errors: Array
 
 
 class TurningRun(NamedTuple):
-    """The instants of a run that are seen, its angle if it turns on in one, and how many turns come back (0: none)."""
+    """The instants of a run that are shown, and the angle in which it keeps turning.
+
+    path: of the angle, empty if there is none
+    turns: number of turns of the cycle, 0 if the motion is not periodic
+    """
 
     times: Array
     path: str
@@ -43,88 +47,97 @@ class TurningRun(NamedTuple):
     turns: int
 
     @property
-    def way(self) -> float:
-        """1 where the angle rises, -1 where it falls."""
+    def direction(self) -> float:
+        """1 if the angle rises, -1 if it falls."""
         return 1.0 if self.angles[-1] > self.angles[0] else -1.0
 
     @property
-    def counted(self) -> Array:
-        """The angles in degrees, of a cycle that comes back counted from its own zero."""
-        found = np.degrees(self.angles)
+    def degrees(self) -> Array:
+        """The angles in degrees; in a periodic motion they start at the zero of the cycle."""
+        degrees = np.degrees(self.angles)
         if self.turns:
-            whole = 360.0 * self.turns
-            found = found - whole * math.floor(float(min(found[0], found[-1])) / whole + ALMOST)
-        return np.asarray(found)
+            cycle = 360.0 * self.turns
+            degrees = degrees - cycle * math.floor(float(min(degrees[0], degrees[-1])) / cycle + TURN_TOLERANCE)
+        return np.asarray(degrees)
 
     @property
-    def in_words(self) -> str:
-        """What of the run is seen."""
+    def description(self) -> str:
+        """A sentence on the part of the run that is shown."""
         span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} s"
         if not self.turns:
             return f"the whole run, {span}"
         return f"the last {'turn' if self.turns == 1 else 'two turns'} of {self.path}, {span}"
 
 
-def angles_of(spec: Spec) -> list[str]:
-    """The angles in which a scene may turn, as paths: driven ones, else those against the ground, else all."""
+def list_angle_paths(spec: Spec) -> list[str]:
+    """Return the paths of the angles in which a scene may turn: driven ones, else those against the ground, else
+    all.
+    """
     turning = {name: joint for name, joint in spec.joints.items() if "angle" in JOINTS[joint.kind].coordinates}
     driven = [drive.joint for drive in spec.drives.values() if drive.joint in turning]
     grounded = [name for name, joint in turning.items() if GROUND in (joint.a, joint.b)]
     return [f"coordinates.{name}.angle" for name in dict.fromkeys(driven or grounded or turning)]
 
 
-def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors: TurnedVectors) -> TurningRun:
-    """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
-    whole, farthest = TurningRun(times, "", np.zeros(0), 0), LEAST
+def find_turning_run(study: Study, times: Array, candidates: Sequence[str], vectors: VectorSource) -> TurningRun:
+    """Find how a run turns, by the angle among the candidates that turns farthest.
+
+    times (n,): the instants of the whole run
+    """
+    whole_run, farthest = TurningRun(times, "", np.zeros(0), 0), MIN_SPAN
     for path in candidates:
-        angles = numbers_at(study, path, times)
-        if np.isfinite(angles).all() and goes_on(angles) and span(angles) > farthest:
-            whole, farthest = TurningRun(times, path, angles, 0), span(angles)
+        angles = sample_numbers(study, path, times)
+        if np.isfinite(angles).all() and is_monotonic(angles) and find_span(angles) > farthest:
+            whole_run, farthest = TurningRun(times, path, angles, 0), find_span(angles)
     for turns in (1, 2):
-        if whole.path and comes_back(study, whole, turns, vectors):
-            return last_of(study, whole, turns)
-    return whole
+        if whole_run.path and is_periodic(study, whole_run, turns, vectors):
+            return select_last_turns(study, whole_run, turns)
+    return whole_run
 
 
-def goes_on(angles: Array) -> bool:
-    """Whether angles rise or fall all the time."""
+def is_monotonic(angles: Array) -> bool:
+    """Return whether angles only rise or only fall."""
     steps = np.diff(angles)
     return bool((steps >= 0.0).all() or (steps <= 0.0).all())
 
 
-def span(angles: Array) -> float:
-    """From the first to the last."""
+def find_span(angles: Array) -> float:
+    """Return the angle from the first to the last."""
     return abs(float(angles[-1] - angles[0])) if len(angles) else 0.0
 
 
-def comes_back(study: Study, whole: TurningRun, turns: int, vectors: TurnedVectors) -> bool:
-    """Whether the last so many turns are as those before them."""
-    angle = whole.way * TURN * turns
-    if span(whole.angles) < 2.0 * abs(angle) - ALMOST * TURN:
+def is_periodic(study: Study, whole_run: TurningRun, turns: int, vectors: VectorSource) -> bool:
+    """Return whether the last `turns` turns equal those before them."""
+    angle = whole_run.direction * TURN * turns
+    if find_span(whole_run.angles) < 2.0 * abs(angle) - TURN_TOLERANCE * TURN:
         return False
-    near = seen_from(study, whole, float(instants_at(whole, whole.angles[-1:] - 2.0 * angle)[0]))
-    back = angle * np.linspace(1.0, 0.0, COMPARED)
-    last, before = (vectors.at(instants_at(near, near.angles[-1] - back - k * angle)) for k in (0, 1))
-    size, off = (np.nanmax(np.abs(own), axis=(0, 2), initial=0.0) for own in (last, last - before))
-    return bool((off <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all())  # each by its own size
+    last_cycles = refine_from(study, whole_run, float(find_instants(whole_run, whole_run.angles[-1:] - 2.0 * angle)[0]))
+    angles_back = angle * np.linspace(1.0, 0.0, N_COMPARED)
+    last, before = (
+        vectors.evaluate(find_instants(last_cycles, last_cycles.angles[-1] - angles_back - k * angle)) for k in (0, 1)
+    )
+    size, differences = (np.nanmax(np.abs(values), axis=(0, 2), initial=0.0) for values in (last, last - before))
+    return bool(
+        (differences <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all()
+    )  # each by its own size
 
 
-def last_of(study: Study, whole: TurningRun, turns: int) -> TurningRun:
-    """The last so many turns of a run."""
-    angle = whole.way * TURN * turns
-    near = seen_from(study, whole, float(instants_at(whole, whole.angles[-1:] - 2.0 * angle)[0]))
-    begin = float(instants_at(near, near.angles[-1:] - angle)[0])
-    return seen_from(study, whole, begin)._replace(turns=turns)
+def select_last_turns(study: Study, whole_run: TurningRun, turns: int) -> TurningRun:
+    """Return the last `turns` turns of a run."""
+    angle = whole_run.direction * TURN * turns
+    last_cycles = refine_from(study, whole_run, float(find_instants(whole_run, whole_run.angles[-1:] - 2.0 * angle)[0]))
+    begin = float(find_instants(last_cycles, last_cycles.angles[-1:] - angle)[0])
+    return refine_from(study, whole_run, begin)._replace(turns=turns)
 
 
-def seen_from(study: Study, whole: TurningRun, begin: float) -> TurningRun:
-    """A run from an instant on, looked at closely."""
-    even = np.linspace(begin, whole.times[-1], CLOSELY)
-    times = np.unique(np.concatenate([even, whole.times[whole.times > begin]]))
-    return TurningRun(times, whole.path, numbers_at(study, whole.path, times), 0)
+def refine_from(study: Study, whole_run: TurningRun, begin: float) -> TurningRun:
+    """Return a run from an instant on, with closely spaced instants."""
+    even_times = np.linspace(begin, whole_run.times[-1], N_INSTANTS)
+    times = np.unique(np.concatenate([even_times, whole_run.times[whole_run.times > begin]]))
+    return TurningRun(times, whole_run.path, sample_numbers(study, whole_run.path, times), 0)
 
 
-def instants_at(turning: TurningRun, angles: Array) -> Array:
-    """The instants at which a run has some angles, on the line between those at which it was seen, (n,)."""
-    order = slice(None, None, int(turning.way))
+def find_instants(turning: TurningRun, angles: Array) -> Array:
+    """Return the instants at which a run has some angles, by linear interpolation, (n,)."""
+    order = slice(None, None, int(turning.direction))
     return np.asarray(np.interp(angles, turning.angles[order], turning.times[order]))

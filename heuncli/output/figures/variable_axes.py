@@ -1,4 +1,4 @@
-"""Axes of what a sweep varied, and of what it measured."""
+"""The axes of the variables and of the measures of a sweep."""
 
 from __future__ import annotations
 
@@ -6,70 +6,74 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Scaling
-from heuncli.output.drawing.ticks import ends, near_zero
-from heuncli.output.figures.swept import SweptVariable
+from heuncli.output.drawing.ticks import choose_ends, is_zero_near
+from heuncli.output.figures.swept import SweepVariable
 from heuncli.results.results import Array
 
-NAMES_WIDE, NAMES_MOST = 100, 12  # letters and names below an axis; more are numbered
-EVEN = 1e-6  # of steps between values: those of equal steps
+MAX_LETTERS, MAX_NAMES = 100, 12  # of names below an axis; more names are numbered
+EVEN_TOLERANCE = 1e-6  # relative difference of equal steps
 
 
 class VariableAxis(NamedTuple):
-    """A variable along an axis: its places (n,) of all rows, its levels, how these are told, and what is numbered."""
+    """A variable along an axis, and a note that lists its names if the axis shows numbers in their place."""
 
-    variable: SweptVariable
+    variable: SweepVariable
     scaling: Scaling
     note: str
 
 
-def axis_of(variable: SweptVariable, *, cells: bool = False) -> VariableAxis:
-    """A variable along an axis; cells: each of its values has a cell."""
+def make_axis(variable: SweepVariable, *, cells: bool = False) -> VariableAxis:
+    """Make the axis of a variable; cells: each of its values has a cell."""
     levels = variable.levels
     if variable.texts:
         names = [variable.texts[int(k)] for k in levels]
-        numbered = len(names) > NAMES_MOST or sum(map(len, names)) > NAMES_WIDE
-        told = [str(k + 1) for k in range(len(names))] if numbered else names
+        numbered = len(names) > MAX_NAMES or sum(map(len, names)) > MAX_LETTERS
+        tick_texts = [str(k + 1) for k in range(len(names))] if numbered else names
         scaling = Scaling(
             variable.name, float(levels[0]) - 0.5, float(levels[-1]) + 0.5,
-            named=tuple(zip(levels.tolist(), told, strict=True)),
+            tick_texts=tuple(zip(levels.tolist(), tick_texts, strict=True)),
         )  # fmt: skip
-        pairs = ", ".join(f"{k} {name}" for k, name in zip(told, names, strict=True))
+        pairs = ", ".join(f"{k} {name}" for k, name in zip(tick_texts, names, strict=True))
         return VariableAxis(variable, scaling, f"{variable.name}: {pairs}" if numbered else "")
-    by_ratio = _by_ratio(levels)
+    by_ratio = _is_logarithmic(levels)
     if cells:
-        edges = _between(levels, by_ratio)
-        return VariableAxis(variable, Scaling(variable.head, float(edges[0]), float(edges[-1]), by_ratio), "")
+        edges = _find_edges(levels, by_ratio)
+        return VariableAxis(variable, Scaling(variable.axis_label, float(edges[0]), float(edges[-1]), by_ratio), "")
     if by_ratio:
-        return VariableAxis(variable, Scaling(variable.head, float(levels[0]), float(levels[-1]), logarithmic=True), "")
-    return VariableAxis(variable, Scaling(variable.head, *ends(float(levels[0]), float(levels[-1]), spare=0.03)), "")
+        return VariableAxis(
+            variable, Scaling(variable.axis_label, float(levels[0]), float(levels[-1]), is_logarithmic=True), ""
+        )
+    return VariableAxis(
+        variable, Scaling(variable.axis_label, *choose_ends(float(levels[0]), float(levels[-1]), margin=0.03)), ""
+    )
 
 
-def _by_ratio(levels: Array) -> bool:
-    """Whether values stand evenly by their logarithms, and not by themselves."""
+def _is_logarithmic(levels: Array) -> bool:
+    """Return whether the logarithms of the values are evenly spaced, but not the values."""
     if len(levels) < 3 or levels[0] <= 0.0:
         return False
     steps, ratios = np.diff(levels), np.diff(np.log(levels))
-    return bool(np.ptp(ratios) <= EVEN * ratios.max() and np.ptp(steps) > EVEN * steps.max())
+    return bool(np.ptp(ratios) <= EVEN_TOLERANCE * ratios.max() and np.ptp(steps) > EVEN_TOLERANCE * steps.max())
 
 
-def _between(levels: Array, by_ratio: bool) -> Array:
-    """The edges of the cells of values, (n + 1,): half way between neighbours."""
-    at = np.log(levels) if by_ratio else levels
-    middle = 0.5 * (at[1:] + at[:-1])
-    edges = np.concatenate([[2.0 * at[0] - middle[0]], middle, [2.0 * at[-1] - middle[-1]]])
+def _find_edges(levels: Array, by_ratio: bool) -> Array:
+    """Return the edges of the cells of values, (n + 1,): half way between neighbours."""
+    positions = np.log(levels) if by_ratio else levels
+    middle = 0.5 * (positions[1:] + positions[:-1])
+    edges = np.concatenate([[2.0 * positions[0] - middle[0]], middle, [2.0 * positions[-1] - middle[-1]]])
     return np.asarray(np.exp(edges) if by_ratio else edges)
 
 
-def edges_of(variable: SweptVariable, scaling: Scaling) -> Array:
-    """The edges of the cells of a variable along its axis."""
+def find_cell_edges(variable: SweepVariable, scaling: Scaling) -> Array:
+    """Return the edges of the cells of a variable along its axis."""
     if variable.texts:
         return np.asarray(np.arange(len(variable.levels) + 1) + scaling.low)
-    return _between(variable.levels, scaling.logarithmic)
+    return _find_edges(variable.levels, scaling.is_logarithmic)
 
 
-def measured_axis(unit: str, values: Array, errors: Array, spare: float = 0.12) -> Scaling:
-    """The axis of a measure."""
+def make_measure_axis(unit: str, values: Array, errors: Array, spare: float = 0.12) -> Scaling:
+    """Make the axis of a measure."""
     known = np.isfinite(values)
     low = float((values - errors)[known].min()) if known.any() else 0.0
     high = float((values + errors)[known].max()) if known.any() else 1.0
-    return Scaling(f"[{unit or '-'}]", *ends(low, high, zero=near_zero(low, high), spare=spare))
+    return Scaling(f"[{unit or '-'}]", *choose_ends(low, high, zero=is_zero_near(low, high), margin=spare))

@@ -1,16 +1,16 @@
-"""What drives joints, and what acts in them, by its symbols: a row of SHOWN a kind."""
+"""The symbols of drives and of loads in joints; each kind has a row in SYMBOLS_BY_KIND."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from heuncli.base.joint_kinds import JOINTS, TYPES, Kind
+from heuncli.base.joint_kinds import JOINTS, TYPES, JointKind
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import Spec
 
 DRIVE = "drive"
-# a kind: symbols about an axis that points to the eye, about one that points away from it, along one
-SHOWN: Mapping[str, tuple[str, str, str]] = {
+# by kind: symbol about an axis towards the eye, about an axis away from the eye, and along an axis
+SYMBOLS_BY_KIND: Mapping[str, tuple[str, str, str]] = {
     DRIVE: ("turning", "turning back", "sliding"),
     "torque": ("turning", "turning back", "sliding"),
     "motor": ("turning", "turning back", "sliding"),
@@ -20,10 +20,12 @@ SHOWN: Mapping[str, tuple[str, str, str]] = {
 }
 
 
-class ActingLook(NamedTuple):
-    """A drive of a joint, or a load in it: its name and kind; its symbols towards the eye and away from it.
+class JointSymbol(NamedTuple):
+    """The symbol of a joint's drive, or of a load in a joint.
 
-    slides: along the joint's axis rather than about it.
+    load_kind: a key of SYMBOLS_BY_KIND
+    symbols: seen with the joint's axis towards the eye, and away from it
+    slides: whether the symbol acts along the joint's axis and not about it
     """
 
     name: str
@@ -33,21 +35,23 @@ class ActingLook(NamedTuple):
     slides: bool
 
 
-def kind_in(spec: Spec, type_: str) -> Kind:
-    """What a joint of a type is, in a scene declared planar, too."""
+def find_scene_joint_kind(spec: Spec, type_: str) -> JointKind:
+    """Find the kind of a joint of a given type; in a scene declared planar, its planar kind."""
     kind = TYPES[type_]
     return JOINTS[kind.planar] if spec.space == "planar" and kind.planar is not None else kind
 
 
-def acting_of(spec: Spec) -> Iterator[ActingLook]:
-    """All that acts in joints; what pulls along a rod or rope is drawn with that."""
-    acting = [(drive.joint, drive.name, DRIVE) for drive in spec.drives.values()]
+def iter_joint_symbols(spec: Spec) -> Iterator[JointSymbol]:
+    """Yield the symbols of all drives and loads in joints. A load along a rod or rope is drawn with that rod or
+    rope.
+    """
+    joint_loads = [(drive.joint, drive.name, DRIVE) for drive in spec.drives.values()]
     for name, force in spec.forces.items():
         if force.type in ("torque", "turn_spring", "motor", "friction", "damper"):
-            acting.append((force.joint, name, force.type))
-    for joint, name, what in acting:
-        kind = kind_in(spec, spec.joints[joint].kind)
+            joint_loads.append((force.joint, name, force.type))
+    for joint, name, load_kind in joint_loads:
+        kind = find_scene_joint_kind(spec, spec.joints[joint].kind)
         if not kind.keeps_distance:
-            slides = kind.follows_path or (bool(kind.shifts) and kind.turn.asks == "all")
-            towards, away, along = SHOWN[what]
-            yield ActingLook(name, what, joint, (along, along) if slides else (towards, away), slides)
+            slides = kind.follows_path or (bool(kind.shifts) and kind.turn.condition == "all")
+            to_eye, away_from_eye, sliding = SYMBOLS_BY_KIND[load_kind]
+            yield JointSymbol(name, load_kind, joint, (sliding, sliding) if slides else (to_eye, away_from_eye), slides)

@@ -1,6 +1,6 @@
-"""What cams and paths look like: the outline of a disc, and the way of a point, as lines in their body's axes.
+"""The geometry of cams and paths as lines in body axes: the outline of a cam disc, and the path of a point.
 
-The outline is that of disc and follower whose axes agree at coordinate zero, as they mostly do.
+The outline is that of the cam and follower whose axes coincide at coordinate zero, the usual case.
 """
 
 from __future__ import annotations
@@ -9,69 +9,82 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.multibody.mechanism.build import joint
+from heuncli.multibody.mechanism.build import build_joint
 from heuncli.multibody.mechanism.build_couplings import cam_rows
-from heuncli.multibody.mechanism.cam_profiles import Flank, flank
+from heuncli.multibody.mechanism.cam_profiles import Flank, compute_flank
 from heuncli.multibody.mechanism.couplings import CouplingPart
 from heuncli.output.machine_geometry.discs import Disc
-from heuncli.output.machine_geometry.threads import pose
+from heuncli.output.machine_geometry.threads import find_drawn_pose
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Cam
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.shapes.rotations import perpendicular
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
-MOST = 400  # places of a line
-ROUND = 36  # of a roller
-OVER = 1.5  # of what the flank comes to: how far a flat face is drawn
+MAX_POINTS = 400  # of a line
+ROLLER_POINTS = 36  # of a roller
+FACE_EXTENSION = 1.5  # length of a drawn flat face, relative to what the contact needs
 
 
-def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
-    """The outlines (n, 3) of the discs that a body is, and of the rollers and faces that it has."""
-    for given in spec.couplings.values():
-        if isinstance(given, Cam) and given.radius and spec.joints[given.follower].b == body:
-            axis = np.array(spec.joints[given.shaft].axis)
-            arm = given.radius * np.array(perpendicular(axis / np.sqrt(axis @ axis)))
-            phi = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)[:, None]
-            yield np.array(given.at) + np.cos(phi) * arm[0] + np.sin(phi) * arm[1]
-        if not isinstance(given, Cam) or body not in (spec.joints[given.shaft].b, spec.joints[given.follower].b):
+def iter_cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
+    """Yield the outlines (n, 3) of the cam discs, rollers and flat faces that belong to a body."""
+    for coupling in spec.couplings.values():
+        if isinstance(coupling, Cam) and coupling.radius and spec.joints[coupling.follower].b == body:
+            axis = np.array(spec.joints[coupling.shaft].axis)
+            arm = coupling.radius * np.array(perpendicular_pair(axis / np.sqrt(axis @ axis)))
+            phi = np.linspace(0.0, 2.0 * np.pi, ROLLER_POINTS + 1)[:, None]
+            yield np.array(coupling.at) + np.cos(phi) * arm[0] + np.sin(phi) * arm[1]
+        if not isinstance(coupling, Cam) or body not in (
+            spec.joints[coupling.shaft].b,
+            spec.joints[coupling.follower].b,
+        ):
             continue
-        joints = [joint(spec.joints[name], 0, 1, False) for name in (given.shaft, given.follower)]
-        (row,) = cam_rows(given, 0, joints[0], 1, joints[1])
-        own = flank(row.parts[0], joints[0], joints[1], np.eye(3), np.eye(3))
-        if spec.joints[given.shaft].b == body:
-            yield outline(own, row.parts[0], joints[0].axis) + joints[0].q
-        elif given.normal is not None:
-            yield face(own, given.at, np.cross(joints[0].axis, given.normal))
+        joints = [build_joint(spec.joints[name], 0, 1, False) for name in (coupling.shaft, coupling.follower)]
+        (row,) = cam_rows(coupling, 0, joints[0], 1, joints[1])
+        cam_flank = compute_flank(row.parts[0], joints[0], joints[1], np.eye(3), np.eye(3))
+        if spec.joints[coupling.shaft].b == body:
+            yield make_cam_outline(cam_flank, row.parts[0], joints[0].axis) + joints[0].q
+        elif coupling.normal is not None:
+            yield make_follower_face(cam_flank, coupling.at, np.cross(joints[0].axis, coupling.normal))
 
 
-def face(own: Flank, at: tuple[float, float, float], along: Array) -> Array:
-    """A flat face, (2, 3), somewhat longer than what the flank comes to, the same to both sides; along: of it."""
-    off = own.places - own.centres
-    reach = OVER * float(np.sqrt(np.max(np.sum(off * off, axis=1)) / (along @ along)))
-    return np.asarray(np.array(at) + np.outer([-reach, reach], along))
+def make_follower_face(cam_flank: Flank, center: tuple[float, float, float], direction: Array) -> Array:
+    """Make the line (2, 3) of a flat follower face, symmetric about its center and a little longer than the contact
+    needs.
+    """
+    offsets = cam_flank.places - cam_flank.centres
+    reach = FACE_EXTENSION * float(np.sqrt(np.max(np.sum(offsets * offsets, axis=1)) / (direction @ direction)))
+    return np.asarray(np.array(center) + np.outer([-reach, reach], direction))
 
 
-def outline(own: Flank, part: CouplingPart, axis: Array) -> Array:
-    """The flank of a disc as a closed line (n, 3) about its axis; of a part of a turn the sector."""
+def make_cam_outline(cam_flank: Flank, part: CouplingPart, axis: Array) -> Array:
+    """Make a closed line (n, 3) of a cam's flank about its axis; for a profile over less than one turn, the outline of
+    a sector.
+    """
     assert part.cam is not None
-    line = own.places[:: max(1, round(2.0 * np.pi / np.ptp(own.angles)) * len(own.places) // MOST)]
+    line = cam_flank.places[
+        :: max(1, round(2.0 * np.pi / np.ptp(cam_flank.angles)) * len(cam_flank.places) // MAX_POINTS)
+    ]
     if part.cam.lift.period:
-        return np.concatenate([own.around(axis, line), own.places[:1]])
-    hub = axis * (own.places[0] @ axis)
-    return np.array([hub, *line, own.places[-1], hub])
+        return np.concatenate([cam_flank.repeat_around(axis, line), cam_flank.places[:1]])
+    hub = axis * (cam_flank.places[0] @ axis)
+    return np.array([hub, *line, cam_flank.places[-1], hub])
 
 
-def rollers_of(spec: Spec) -> Iterator[tuple[str, Disc]]:
-    """The rollers that run beside paths, each with its body, in a scene as it is drawn."""
-    for own in spec.joints.values():
-        if own.path is not None and own.path.radius:
-            n = pose(spec, own.b)[0].T @ pose(spec, own.a)[0] @ np.asarray(own.path.normal)
-            yield own.b, Disc(np.array(own.q), n, own.path.radius)
+def iter_path_rollers(spec: Spec) -> Iterator[tuple[str, Disc]]:
+    """Yield the rollers that run on paths, each with its body, in the pose in which the spec is drawn."""
+    for path_joint in spec.joints.values():
+        if path_joint.path is not None and path_joint.path.radius:
+            n = (
+                find_drawn_pose(spec, path_joint.b)[0].T
+                @ find_drawn_pose(spec, path_joint.a)[0]
+                @ np.asarray(path_joint.path.normal)
+            )
+            yield path_joint.b, Disc(np.array(path_joint.q), n, path_joint.path.radius)
 
 
-def paths_of(spec: Spec, body: str) -> Iterator[Array]:
-    """The lines (n, 3) along which points run that are fixed in a body, or in the ground."""
-    for own in spec.joints.values():
-        if own.path is not None and own.a == body:
-            s = own.path.looked_at
-            yield np.array(own.p) + own.path.track(s[:: max(1, len(s) // MOST)])[0]
+def iter_paths(spec: Spec, body: str) -> Iterator[Array]:
+    """Yield the paths (n, 3) of points that are fixed in a body, or in the ground."""
+    for path_joint in spec.joints.values():
+        if path_joint.path is not None and path_joint.a == body:
+            s = path_joint.path.sample_parameters
+            yield np.array(path_joint.p) + path_joint.path.evaluate_track(s[:: max(1, len(s) // MAX_POINTS)])[0]

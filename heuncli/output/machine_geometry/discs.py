@@ -1,4 +1,4 @@
-"""What is round and turns: wheels, gears, pulleys, sheaves, in their body's axes, with spokes that show the turning."""
+"""Round parts that rotate: wheels, gears, pulleys, sheaves, in body axes, with spokes that show the rotation."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.machine_geometry.solids import Surface
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape, Vec
-from heuncli.scene.shapes.rotations import perpendicular
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
-CORNERS = 48  # of a circle
-THICK = 0.06  # of its radius: how far a disc goes on either side of its rim
-BEFORE = 1.02  # times as far out as a face stand the marks on it, else it hides them
-NEAR = (0.5, 1.2)  # of the radius: corners so far off the axis are of the wheel that a body is there
+CIRCLE_CORNERS = 48  # of a circle
+HALF_THICKNESS = 0.06  # of the radius
+SPOKE_OFFSET = 1.02  # spokes are drawn further out than their face by this factor, to be visible
+RIM_RANGE = (0.5, 1.2)  # of the radius: surface corners at these distances from the axis belong to the wheel
 
 
 class Disc(NamedTuple):
-    """A circle about an axis of unit length; spins: with its body, so that spokes tell how it turns.
+    """A circle about an axis of unit length.
 
-    solid: a body without shapes is drawn as that disc.
+    is_solid: whether a body without shapes is drawn as this disc
+    has_spokes: whether it rotates with its body, so that spokes show its angle
     """
 
     centre: Array
@@ -32,41 +33,43 @@ class Disc(NamedTuple):
 
     @property
     def rim(self) -> Array:
-        """The circle, (CORNERS + 1, 3)."""
-        e, f = perpendicular(self.axis)
-        turn = np.linspace(0.0, 2.0 * np.pi, CORNERS + 1)[:, None]
+        """The circle as a closed line, (CIRCLE_CORNERS + 1, 3)."""
+        e, f = perpendicular_pair(self.axis)
+        turn = np.linspace(0.0, 2.0 * np.pi, CIRCLE_CORNERS + 1)[:, None]
         found: Array = self.centre + self.radius * (np.cos(turn) * e + np.sin(turn) * f)
         return found
 
     @property
     def shape(self) -> Shape:
-        """A disc, thin as a coin."""
-        half = THICK * self.radius * self.axis
-        return Shape("cylinder", from_=vec(self.centre - half), to=vec(self.centre + half), radius=self.radius)
+        """The disc as a thin cylinder."""
+        half = HALF_THICKNESS * self.radius * self.axis
+        return Shape("cylinder", from_=to_vec(self.centre - half), to=to_vec(self.centre + half), radius=self.radius)
 
-    def spokes(self, surfaces: tuple[Surface, ...]) -> Iterator[Array]:
-        """Lines (2, 3) from rim to rim, across both faces of what its body's surfaces make of it."""
+    def iter_spokes(self, surfaces: tuple[Surface, ...]) -> Iterator[Array]:
+        """Yield lines (2, 3) from rim to rim, two on each face that the disc has among its body's surfaces."""
         ends = np.array([-1.0, 1.0])[:, None]
-        for height in self.faces(surfaces):
-            for way in perpendicular(self.axis):
-                yield self.centre + BEFORE * height * self.axis + self.radius * ends * way
+        for height in self.find_face_heights(surfaces):
+            for diameter in perpendicular_pair(self.axis):
+                yield self.centre + SPOKE_OFFSET * height * self.axis + self.radius * ends * diameter
 
-    def faces(self, surfaces: tuple[Surface, ...]) -> tuple[float, ...]:
-        """How far along the axis its faces stand: those of the corners about its rim; without any its own plane."""
-        off = np.concatenate([np.zeros((0, 3)), *(surface.corners for surface in surfaces)]) - self.centre
-        up = off @ self.axis
-        away = np.sqrt(np.maximum(np.sum(off * off, axis=1) - up * up, 0.0))
-        own = up[(away >= NEAR[0] * self.radius) & (away <= NEAR[1] * self.radius)]
-        return (float(own.min()), float(own.max())) if len(own) else (0.0,)
+    def find_face_heights(self, surfaces: tuple[Surface, ...]) -> tuple[float, ...]:
+        """Find the positions of its faces along the axis, from the surface corners near its rim; without any, its own
+        plane.
+        """
+        offsets = np.concatenate([np.zeros((0, 3)), *(surface.corners for surface in surfaces)]) - self.centre
+        heights = offsets @ self.axis
+        distances = np.sqrt(np.maximum(np.sum(offsets * offsets, axis=1) - heights * heights, 0.0))
+        rim_heights = heights[(distances >= RIM_RANGE[0] * self.radius) & (distances <= RIM_RANGE[1] * self.radius)]
+        return (float(rim_heights.min()), float(rim_heights.max())) if len(rim_heights) else (0.0,)
 
 
-def vec(x: Array) -> Vec:
-    """Three numbers."""
+def to_vec(x: Array) -> Vec:
+    """Convert an array of three numbers to a tuple."""
     a, b, c = x.tolist()
     return a, b, c
 
 
-def direction(axis: Vec) -> Array:
-    """An axis at length 1."""
+def to_unit_vector(axis: Vec) -> Array:
+    """Scale an axis to length 1."""
     v = np.array(axis)
     return np.asarray(v / np.sqrt(v @ v))

@@ -1,8 +1,9 @@
-"""A scene as something to look at: what its bodies look like in their own axes, and where its joints and loads stand.
+"""The geometry of a scene: shapes of its bodies in their own axes, and the positions of joints, springs, ropes,
+symbols.
 
-Everything is in body axes [m]; where it comes to stand at an instant follows from the body's pose. A body with shapes
-looks like them, with arms to points outside them; one without is drawn as the wheel that it is, as lines between its
-points, or, where these are one place, as the ellipsoid that has its inertia.
+Everything is in body axes [m]; positions in the world follow from the body's pose. A body with shapes is drawn as these
+shapes, with arms to points outside of them. A body without shapes is drawn as the wheel that it is, as lines between
+its points, or, if these coincide, as the ellipsoid that has its inertia.
 """
 
 from __future__ import annotations
@@ -13,28 +14,37 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.machine_geometry.acting import ActingLook, acting_of
+from heuncli.output.machine_geometry.acting import JointSymbol, iter_joint_symbols
 from heuncli.output.machine_geometry.discs import Disc
-from heuncli.output.machine_geometry.elements import ElementLooks, elements_of
-from heuncli.output.machine_geometry.marks import Mark, marks_of
-from heuncli.output.machine_geometry.pitch_lines import BeltLook
-from heuncli.output.machine_geometry.ropes import RopeLook, ropes_of
-from heuncli.output.machine_geometry.solids import ROUND, Surface, ellipsoid, reached, surfaces_of
-from heuncli.output.machine_geometry.wheels import balls_of
+from heuncli.output.machine_geometry.elements import ElementGeometry, collect_elements
+from heuncli.output.machine_geometry.marks import Mark, iter_marks
+from heuncli.output.machine_geometry.pitch_lines import BeltGeometry
+from heuncli.output.machine_geometry.ropes import RopeGeometry, collect_ropes
+from heuncli.output.machine_geometry.solids import (
+    ROUND_FACES,
+    Surface,
+    find_nearest_place,
+    make_ellipsoid,
+    make_surfaces,
+)
+from heuncli.output.machine_geometry.wheels import iter_balls
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Actuator, Bushing, Shape, Spec, Spring
 from heuncli.scene.file_format.names import GROUND
 
-SEVERAL = 2  # discs, between which a body without shapes is a line
-SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
-OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
+MIN_LINKED_DISCS = 2  # discs: from this number on, a body without shapes is drawn as a line between them
+MIN_EXTENT = 0.2  # of the radius of gyration: a body whose points span less is drawn as an ellipsoid
+OUTSIDE_TOLERANCE = 1e-9  # of the distance of a point from a shape's axis; less is rounding
 
 
-class BodyLook(NamedTuple):
-    """A body: its named points (3,), the surfaces of its shapes, lines on it: rims, spokes, threads, outlines of cams.
+class BodyGeometry(NamedTuple):
+    """The geometry of a body, in its axes.
 
-    spread: the surface is not its own, but of the ellipsoid that has its inertia. bars: lines between its points, or
-    from these to its shapes: what it is itself.
+    points: the named points, (3,) each
+    surfaces: those of its shapes
+    lines: drawn on it: rims, spokes, threads, outlines of cams
+    is_ellipsoid: whether the surface is not its own but the ellipsoid that has its inertia
+    bars: lines between its points, or from these to its shapes, which stand for the body itself
     """
 
     name: str
@@ -46,12 +56,12 @@ class BodyLook(NamedTuple):
 
     @property
     def strokes(self) -> tuple[Array, ...]:
-        """Its bars and lines."""
+        """Its bars and its lines."""
         return (*self.bars, *self.lines)
 
 
-class JointLook(NamedTuple):
-    """A joint: its kind in the spec, its ends (body, point in its axes), its axis in the axes of `from`."""
+class JointGeometry(NamedTuple):
+    """A joint: its kind in the spec, its ends (body, point in body axes), its axis in the axes of the `from` body."""
 
     name: str
     kind: str
@@ -62,8 +72,8 @@ class JointLook(NamedTuple):
     axis: Array
 
 
-class LineLook(NamedTuple):
-    """What acts or holds between two points: a spring, an actuator, a rod, a rope, a bushing."""
+class LineGeometry(NamedTuple):
+    """A load or link between two points: a spring, an actuator, a bushing."""
 
     name: str
     kind: str
@@ -74,106 +84,118 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: points of the ground; paths: lines on it, along which points run, and circles.
+    """The geometry of a whole scene.
 
-    belts, ropes: what moves otherwise than one body does; marks: symbols that stand somewhere; acting: in joints.
+    ground_points: named points of the ground
+    paths: lines on the ground, along which points run, and circles
+    belts, ropes: what does not move with one body
+    marks: symbols with a position of their own
+    joint_symbols: of drives and loads in joints
     """
 
     title: str
-    bodies: tuple[BodyLook, ...]
-    joints: tuple[JointLook, ...]
-    lines: tuple[LineLook, ...]
+    bodies: tuple[BodyGeometry, ...]
+    joints: tuple[JointGeometry, ...]
+    lines: tuple[LineGeometry, ...]
     grounded: Mapping[str, Array]
     paths: tuple[Array, ...] = ()
-    belts: tuple[BeltLook, ...] = ()
-    ropes: tuple[RopeLook, ...] = ()
+    belts: tuple[BeltGeometry, ...] = ()
+    ropes: tuple[RopeGeometry, ...] = ()
     marks: tuple[Mark, ...] = ()
-    acting: tuple[ActingLook, ...] = ()
+    acting: tuple[JointSymbol, ...] = ()
 
 
-def machine_of(spec: Spec, faces: int = ROUND, scene: PreparedScene | None = None) -> Machine:
-    """What there is to be seen of a loaded spec; faces: of what is round, about its axis.
+def make_machine(spec: Spec, faces: int = ROUND_FACES, scene: PreparedScene | None = None) -> Machine:
+    """Make the geometry of a loaded spec.
 
-    scene: the spec as it is assembled; without it there are no ropes over sheaves and no marks.
+    faces: number of faces of round shapes about their axis
+    scene: the spec as assembled; without it there are no ropes over sheaves and no marks
     """
     joints = tuple(
-        JointLook(name, j.kind, j.a, np.array(j.p), j.b, np.array(j.q), np.array(j.axis))
+        JointGeometry(name, j.kind, j.a, np.array(j.p), j.b, np.array(j.q), np.array(j.axis))
         for name, j in spec.joints.items()
     )
     lines = tuple(
-        LineLook(name, f.type, f.from_.body, np.array(f.from_.point), f.to.body, np.array(f.to.point))
+        LineGeometry(name, f.type, f.from_.body, np.array(f.from_.point), f.to.body, np.array(f.to.point))
         for name, f in spec.forces.items()
         if isinstance(f, Spring | Actuator | Bushing)
     )
-    elements = elements_of(spec, None if scene is None else scene.mechanism)
-    bodies = tuple(_body(name, spec, (joints, lines), elements, faces) for name in spec.bodies)
-    grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
+    elements = collect_elements(spec, None if scene is None else scene.mechanism)
+    bodies = tuple(_make_body(name, spec, (joints, lines), elements, faces) for name in spec.bodies)
+    ground_points = {name: np.array(point) for name, point in spec.ground.points.items()}
     paths = (*elements.lines.get(GROUND, ()), *(disc.rim for disc in elements.discs.get(GROUND, ())))
-    acting = tuple(acting_of(spec))
-    found = Machine(spec.title, bodies, joints, lines, grounded, paths, elements.belts, acting=acting)
+    joint_symbols = tuple(iter_joint_symbols(spec))
+    machine = Machine(
+        spec.title, bodies, joints, lines, ground_points, paths, elements.belts, joint_symbols=joint_symbols
+    )
     if scene is None:
-        return found
-    ropes = ropes_of(scene.mechanism)
-    return found._replace(ropes=ropes, marks=tuple(marks_of(spec, scene, ropes)))
+        return machine
+    ropes = collect_ropes(scene.mechanism)
+    return machine._replace(ropes=ropes, marks=tuple(iter_marks(spec, scene, ropes)))
 
 
-def shapes_of(spec: Spec, body: str, discs: Sequence[Disc]) -> Sequence[Shape]:
-    """What a body is drawn by: its shapes; without any, the wheels that it is."""
-    return spec.bodies[body].shapes or (*balls_of(spec, body), *(disc.shape for disc in discs if disc.solid))
+def find_drawn_shapes(spec: Spec, body: str, discs: Sequence[Disc]) -> Sequence[Shape]:
+    """Return the shapes that a body is drawn by: its own, or, if it has none, balls and discs of its wheels."""
+    return spec.bodies[body].shapes or (*iter_balls(spec, body), *(disc.shape for disc in discs if disc.is_solid))
 
 
-def _body(
+def _make_body(
     name: str,
     spec: Spec,
-    held: tuple[tuple[JointLook, ...], tuple[LineLook, ...]],
-    elements: ElementLooks,
+    connections: tuple[tuple[JointGeometry, ...], tuple[LineGeometry, ...]],
+    elements: ElementGeometry,
     faces: int,
-) -> BodyLook:
-    """What a body looks like; held: by which joints and lines."""
+) -> BodyGeometry:
+    """Make the geometry of a body.
+
+    connections: joints and lines of the scene, whose ends on the body are drawn
+    """
     body, discs = spec.bodies[name], elements.discs.get(name, ())
     points = {key: np.array(point, dtype=np.float64) for key, point in body.points.items()}
-    ends = [own.p for part in held for own in part if own.a == name]
-    ends += [own.q for part in held for own in part if own.b == name]
+    ends = [connection.p for part in connections for connection in part if connection.a == name]
+    ends += [connection.q for part in connections for connection in part if connection.b == name]
     ends += points.values()
-    shapes = shapes_of(spec, name, discs)
-    surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
-    rims = (disc.rim for disc in discs if body.shapes or not disc.solid)
-    spokes = (line for disc in discs if disc.spins for line in disc.spokes(surfaces))
-    drawn = (*elements.lines.get(name, ()), *rims, *spokes)
+    shapes = find_drawn_shapes(spec, name, discs)
+    surfaces = tuple(surface for shape in shapes for surface in make_surfaces(shape, faces))
+    rims = (disc.rim for disc in discs if body.shapes or not disc.is_solid)
+    spokes = (line for disc in discs if disc.has_spokes for line in disc.iter_spokes(surfaces))
+    drawn_lines = (*elements.lines.get(name, ()), *rims, *spokes)
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        if body.shapes or len(discs) < SEVERAL:
-            return BodyLook(name, points, surfaces, drawn, bars=tuple(_arms(shapes, ends)))
-        between = _through([*ends, np.array(body.center, dtype=np.float64)])
-        return BodyLook(name, points, surfaces, drawn, bars=(between,))
-    # of point masses alone neither centre nor inertia is known yet, nor needed
+        if body.shapes or len(discs) < MIN_LINKED_DISCS:
+            return BodyGeometry(name, points, surfaces, drawn_lines, bars=tuple(_iter_arms(shapes, ends)))
+        bar = _join_points([*ends, np.array(body.center, dtype=np.float64)])
+        return BodyGeometry(name, points, surfaces, drawn_lines, bars=(bar,))
+    # for bodies of point masses, centre and inertia are not known yet, and not needed
     centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
-    line = _through([*ends, *centre])
+    line = _join_points([*ends, *centre])
     moments = np.array(body.inertia, dtype=np.float64)
     gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
-    if not drawn and float(np.ptp(line, axis=0).max()) < SMALL * gyration:
-        return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
-    return BodyLook(name, points, (), drawn, bars=(line,))
+    if not drawn_lines and float(np.ptp(line, axis=0).max()) < MIN_EXTENT * gyration:
+        return BodyGeometry(name, points, (make_ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
+    return BodyGeometry(name, points, (), drawn_lines, bars=(line,))
 
 
-def _arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:
-    """Lines (2, 3) to the points that lie outside all shapes, from the nearest one that has an extent."""
+def _iter_arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:
+    """Yield lines (2, 3) to the points that lie outside all shapes, from the nearest shape that is not a point mass."""
     solid = [shape for shape in shapes if shape.type != "point"]
     for end in np.unique(np.array(ends).reshape(-1, 3), axis=0):
-        place, gap = min((reached(shape, end) for shape in solid), key=lambda found: found[1])
-        if gap > OUTSIDE * float(np.linalg.norm(end - place)):
-            yield np.array([place, end])
+        start, gap = min((find_nearest_place(shape, end) for shape in solid), key=lambda found: found[1])
+        if gap > OUTSIDE_TOLERANCE * float(np.linalg.norm(end - start)):
+            yield np.array([start, end])
 
 
-def _through(ends: list[Array]) -> Array:
-    """A line through points, (n, 3), from one end of the longest way on to the nearest each time."""
+def _join_points(ends: list[Array]) -> Array:
+    """Join points by a line (n, 3) that starts at an end of their longest distance and goes to the nearest remaining
+    point.
+    """
     points: Array = np.unique(np.round(np.array(ends, dtype=np.float64), 12), axis=0)
     if len(points) < 3:
         return points
-    apart = np.linalg.norm(points[:, None] - points[None], axis=2)
-    order = [int(np.unravel_index(np.argmax(apart), apart.shape)[0])]
-    left = set(range(len(points))) - set(order)
-    while left:
-        order.append(min(left, key=lambda k: (apart[order[-1], k], k)))
-        left.remove(order[-1])
+    distances = np.linalg.norm(points[:, None] - points[None], axis=2)
+    order = [int(np.unravel_index(np.argmax(distances), distances.shape)[0])]
+    remaining = set(range(len(points))) - set(order)
+    while remaining:
+        order.append(min(remaining, key=lambda k: (distances[order[-1], k], k)))
+        remaining.remove(order[-1])
     return np.asarray(points[order], dtype=np.float64)

@@ -1,7 +1,7 @@
-"""Marks in a machine, symbols with a place and a direction: stops, latches, the ground under wheels and ropes' ends.
+"""Marks in a machine, symbols with a position and a direction: stops, latches, the road under wheels, rope ends.
 
-The limit of an angle stands where the body would come to, as far out as its centre of mass; that of a travel where the
-joint's `to` point would come to, of a path on that; that of a length on the line of the rod.
+The limit of an angle is drawn where the body would be, on the side of its centre of mass; the limit of a travel where
+the joint's `to` point would be, for a path on the path; the limit of a length on the line of the rod.
 """
 
 from __future__ import annotations
@@ -15,24 +15,26 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.mechanism.model import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.multibody.tree.rope_ways import pose_of
+from heuncli.multibody.tree.rope_ways import body_pose
 from heuncli.multibody.tree.starts import joint_start
 from heuncli.output.machine_geometry.poses import Poses
-from heuncli.output.machine_geometry.ropes import RopeLook, run_of
-from heuncli.output.machine_geometry.wheels import touched
+from heuncli.output.machine_geometry.ropes import RopeGeometry, order_span_ends
+from heuncli.output.machine_geometry.wheels import find_contact_points
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import RollingWheel
 from heuncli.scene.file_format.models import Spec, Stop
 from heuncli.scene.file_format.names import GROUND
-from heuncli.scene.shapes.rotations import about, perpendicular
+from heuncli.scene.shapes.rotations import perpendicular_pair, rotation_matrix_about
 
-OUT = 0.6  # of the way to a body's centre of mass: where the stop of its turning stands
+STOP_RADIUS = 0.6  # of the distance to the body's centre of mass: radius at which the stop of an angle is drawn
 
 
 class FixedMark(NamedTuple):
-    """A symbol of output/drawing/symbols.py on a body: its place and where its x points, body axes.
+    """A symbol of output/drawing/symbols.py on a body: its position, and the direction of its x axis, both in body
+    axes.
 
-    told: what it is; name: what stands beside it.
+    description: what it is
+    name: the text next to it
     """
 
     symbol: str
@@ -42,13 +44,16 @@ class FixedMark(NamedTuple):
     along: Array
     name: str = ""
 
-    def stands(self, poses: Poses) -> tuple[Array, Array]:
-        """Place and direction at all instants, (n, 3) each."""
-        return poses.ways(self.body, self.place), poses.directions(self.body, self.along)
+    def locate(self, poses: Poses) -> tuple[Array, Array]:
+        """Compute position and direction at all instants, (n, 3) each."""
+        return poses.trace_point(self.body, self.place), poses.trace_direction(self.body, self.direction)
 
 
 class LengthMark(NamedTuple):
-    """The limit of a length [m] between two points; sign: 1 where it may not grow beyond."""
+    """The limit of a length [m] between two points.
+
+    sign: 1 for an upper limit, -1 for a lower one
+    """
 
     symbol: str
     told: str
@@ -57,113 +62,135 @@ class LengthMark(NamedTuple):
     sign: float
     name: str = ""
 
-    def stands(self, poses: Poses) -> tuple[Array, Array]:
-        """Place and direction at all instants, (n, 3) each."""
-        first, last = (poses.ways(*end) for end in self.ends)
+    def locate(self, poses: Poses) -> tuple[Array, Array]:
+        """Compute position and direction at all instants, (n, 3) each."""
+        first, last = (poses.trace_point(*end) for end in self.ends)
         size = np.linalg.norm(last - first, axis=1, keepdims=True)
-        way = (last - first) / np.where(size > 0.0, size, 1.0)
-        return first + self.length * way, self.sign * way
+        direction = (last - first) / np.where(size > 0.0, size, 1.0)
+        return first + self.length * direction, self.sign * direction
 
 
 class RoadMark(NamedTuple):
-    """The plane that a wheel touches, at the place of contact."""
+    """The plane that a wheel rolls on, drawn at the contact point."""
 
     symbol: str
     told: str
     wheel: RollingWheel
     name: str = ""
 
-    def stands(self, poses: Poses) -> tuple[Array, Array]:
-        """Place and direction at all instants, (n, 3) each."""
-        place, normal = touched(self.wheel, poses)
+    def locate(self, poses: Poses) -> tuple[Array, Array]:
+        """Compute position and direction at all instants, (n, 3) each."""
+        place, normal = find_contact_points(self.wheel, poses)
         return place, -normal
 
 
 Mark = FixedMark | LengthMark | RoadMark
 
 
-def marks_of(spec: Spec, scene: PreparedScene, ropes: tuple[RopeLook, ...]) -> Iterator[Mark]:
-    """All marks of an assembled scene."""
+def iter_marks(spec: Spec, scene: PreparedScene, ropes: tuple[RopeGeometry, ...]) -> Iterator[Mark]:
+    """Yield all marks of an assembled scene."""
     for rope in ropes:
-        for ends in rope.standing:
+        for ends in rope.ground_ends:
             yield LengthMark("foot", f"{rope.name}: on the ground", ends, 0.0, -1.0)
-        yield from _sheaves(rope, scene)
+        yield from _iter_sheave_marks(rope, scene)
     for name, wheel in spec.rolling.items():
         yield RoadMark("road", f"{name}: rolls on {wheel.on.body}", wheel)
     joints = {joint.name: joint for joint in scene.mechanism.joints}
     for stop in spec.stops.values():
-        for limit, sign in limits(stop):
-            yield mark(scene, joints[stop.joint], stop, "stop", limit, sign)
+        for limit, sign in iter_limits(stop):
+            yield make_mark(scene, joints[stop.joint], stop, "stop", limit, sign)
     for latch in spec.latches.values():
-        yield from _latch(spec, scene, joints[latch.joint], latch)
+        yield from _iter_latch_marks(spec, scene, joints[latch.joint], latch)
 
 
-def _sheaves(rope: RopeLook, scene: PreparedScene) -> Iterator[Mark]:
-    """What holds sheaves that are the ground's: it stands on the side to which the rope does not pull."""
+def _iter_sheave_marks(rope: RopeGeometry, scene: PreparedScene) -> Iterator[Mark]:
+    """Yield the supports of sheaves on the ground, each on the side opposite to the pull of the rope."""
     index = {body.name: i for i, body in enumerate(scene.mechanism.bodies)} | {GROUND: ON_GROUND}
     for arc in rope.arcs:
         if arc.body == GROUND:
-            ends = run_of(rope.strands[arc.before])[0], run_of(rope.strands[arc.before + 1])[1]
-            poses = [(pose_of(scene.start, index[body]), point) for body, point in ends]
-            ways = [x + R @ point - arc.centre for (x, R), point in poses]
-            pull = sum(way / (float(np.linalg.norm(way)) or 1.0) for way in ways)
+            ends = order_span_ends(rope.spans[arc.span])[0], order_span_ends(rope.spans[arc.span + 1])[1]
+            poses = [(body_pose(scene.start, index[body]), point) for body, point in ends]
+            span_vectors = [x + R @ point - arc.centre for (x, R), point in poses]
+            pull = sum(vector / (float(np.linalg.norm(vector)) or 1.0) for vector in span_vectors)
             yield FixedMark("foot", f"{rope.name}: a sheave on the ground", GROUND, arc.centre, -np.asarray(pull))
 
 
-def limits(stop: Stop[str]) -> Iterator[tuple[float, float]]:
-    """The limits of a coordinate, each with the sense that it stops."""
+def iter_limits(stop: Stop[str]) -> Iterator[tuple[float, float]]:
+    """Yield the limits of a stop, each with its sign: -1 for the lower, 1 for the upper."""
     for limit, sign in ((stop.low, -1.0), (stop.high, 1.0)):
         if limit is not None:
             yield limit, sign
 
 
-def _latch(spec: Spec, scene: PreparedScene, joint: Joint, given: Stop[str]) -> Iterator[Mark]:
-    """Where a latch holds: a value, the limits of its stop, or, of one that names a joint alone, where this is."""
-    own = given.latch
-    assert own is not None
-    if own.at is not None:
-        yield mark(scene, joint, given, "latch", own.at, 1.0)
-    elif own.stop is not None:
-        for limit, sign in limits(spec.stops[own.stop]):
-            if int(sign) in own.sides:
-                yield mark(scene, joint, given, "latch", limit, sign)
+def _iter_latch_marks(spec: Spec, scene: PreparedScene, joint: Joint, stop: Stop[str]) -> Iterator[Mark]:
+    """Yield the marks of a latch: at its value, at the limits of its stop, or, if it names only a joint, at the
+    joint.
+    """
+    latch = stop.latch
+    assert latch is not None
+    if latch.position is not None:
+        yield make_mark(scene, joint, stop, "latch", latch.position, 1.0)
+    elif latch.stop is not None:
+        for limit, sign in iter_limits(spec.stops[latch.stop]):
+            if int(sign) in latch.sides:
+                yield make_mark(scene, joint, stop, "latch", limit, sign)
     else:
         names = {i: body.name for i, body in enumerate(scene.mechanism.bodies)} | {ON_GROUND: GROUND}
         yield FixedMark(
-            "latch", f"{given.name}: latch of {joint.name}", names[joint.b], joint.q, joint.to_axis, given.name
+            "latch", f"{stop.name}: latch of {joint.name}", names[joint.b], joint.q, joint.to_axis, stop.name
         )
 
 
-def mark(scene: PreparedScene, joint: Joint, stop: Stop[str], symbol: str, limit: float, sign: float) -> Mark:
-    """The mark of a limit of a joint's coordinate, in the axes of `from`."""
+def make_mark(scene: PreparedScene, joint: Joint, stop: Stop[str], symbol: str, limit: float, sign: float) -> Mark:
+    """Make the mark of a limit of a joint coordinate, in the axes of the `from` body."""
     names = {i: body.name for i, body in enumerate(scene.mechanism.bodies)} | {ON_GROUND: GROUND}
-    told = f"{stop.name}: {symbol} of {joint.name}"
+    description = f"{stop.name}: {symbol} of {joint.name}"
     if stop.quantity == "length":
-        return LengthMark(symbol, told, ((names[joint.a], joint.p), (names[joint.b], joint.q)), limit, sign, stop.name)
+        return LengthMark(
+            symbol, description, ((names[joint.a], joint.p), (names[joint.b], joint.q)), limit, sign, stop.name
+        )
     if joint.path is not None:
-        r, slope, *_ = joint.path.track(limit)
-        return FixedMark(symbol, told, names[joint.a], joint.p + r, sign * slope, stop.name)
-    (xa, Ra), (xb, Rb) = (pose_of(scene.start, i) for i in (joint.a, joint.b))
-    own, n = joint_start(scene.mechanism, scene.start, joint), joint.axis
-    to = Ra.T @ (xb + Rb @ joint.q - xa)
+        r, slope, *_ = joint.path.evaluate_track(limit)
+        return FixedMark(symbol, description, names[joint.a], joint.p + r, sign * slope, stop.name)
+    (xa, Ra), (xb, Rb) = (body_pose(scene.start, i) for i in (joint.a, joint.b))
+    start_coordinates, n = joint_start(scene.mechanism, scene.start, joint), joint.axis
+    joint_offset = Ra.T @ (xb + Rb @ joint.q - xa)
     if stop.quantity == "travel":
-        return FixedMark(symbol, told, names[joint.a], to + (limit - own.travel) * n, sign * n, stop.name)
-    arm = about(n, limit - own.angle) @ Ra.T @ Rb @ _arm(scene.mechanism, joint, Rb.T @ Ra @ n)
-    return FixedMark(symbol, told, names[joint.a], to + arm, sign * np.cross(n, arm), stop.name)
+        return FixedMark(
+            symbol,
+            description,
+            names[joint.a],
+            joint_offset + (limit - start_coordinates.travel) * n,
+            sign * n,
+            stop.name,
+        )
+    arm = (
+        rotation_matrix_about(n, limit - start_coordinates.angle)
+        @ Ra.T
+        @ Rb
+        @ _find_stop_arm(scene.mechanism, joint, Rb.T @ Ra @ n)
+    )
+    return FixedMark(symbol, description, names[joint.a], joint_offset + arm, sign * np.cross(n, arm), stop.name)
 
 
-def _arm(mechanism: Mechanism, joint: Joint, n: Array) -> Array:
-    """From a joint to where its stop meets the body, body axes: towards its centre of mass, beside the axis n."""
+def _find_stop_arm(mechanism: Mechanism, joint: Joint, n: Array) -> Array:
+    """Find the vector from a joint to its stop on the body, body axes: towards the centre of mass, perpendicular to
+    axis n.
+    """
     if joint.b == ON_GROUND:
-        return np.asarray(perpendicular(n)[0])
+        return np.asarray(perpendicular_pair(n)[0])
     body = mechanism.bodies[joint.b]
     D = np.asarray(body.center) - joint.q
-    off = D - (D @ n) * n
-    size, spread = float(np.linalg.norm(off)), reach_of(body.mass, np.asarray(body.inertia))
-    return OUT * off if size > tolerances.ON_AXIS * spread else OUT * spread * np.asarray(perpendicular(n)[0])
+    offset = D - (D @ n) * n
+    size, gyration = float(np.linalg.norm(offset)), compute_gyration_radius(body.mass, np.asarray(body.inertia))
+    return (
+        STOP_RADIUS * offset
+        if size > tolerances.ON_AXIS * gyration
+        else STOP_RADIUS * gyration * np.asarray(perpendicular_pair(n)[0])
+    )
 
 
-def reach_of(mass: float, inertia: Array) -> float:
-    """How far a mass is spread: its radius of gyration about its centre [m]; 1 of what has none."""
+def compute_gyration_radius(mass: float, inertia: Array) -> float:
+    """Compute the radius of gyration of a mass about its centre [m]; 1 if mass or inertia is zero."""
     gyration = np.sqrt(max(0.0, float(np.trace(inertia)) / (2.0 * mass))) if mass > 0.0 else 0.0
     return float(gyration) or 1.0

@@ -1,4 +1,6 @@
-"""What gears and belts look like: pitch circles on wheels, pitch lines on racks, strands on what carries the wheels."""
+"""The geometry of gears and belts: pitch circles of wheels, pitch lines of racks, belt strands on the pulleys'
+carrier.
+"""
 
 from __future__ import annotations
 
@@ -12,20 +14,22 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.multibody.mechanism.build import joint
-from heuncli.multibody.mechanism.gearing import GearMember, line_on, members, mesh_of
-from heuncli.multibody.mechanism.strands import strands
+from heuncli.multibody.mechanism.build import build_joint
+from heuncli.multibody.mechanism.gearing import GearMember, find_gears, find_mesh, joint_line
+from heuncli.multibody.mechanism.strands import find_strands
 from heuncli.output.machine_geometry.discs import Disc
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.couplings import Belt, Gear
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.shapes.rotations import cross
+from heuncli.scene.shapes.rotations import cross_vectors
 
 
-class BeltLook(NamedTuple):
-    """A belt: its strands (2, 2, 3) as they run, in the axes of what carries the pulleys; the one that drives first.
+class BeltGeometry(NamedTuple):
+    """A belt: its strands (2, 2, 3) in running direction, in the axes of the pulleys' carrier; the driving strand
+    first.
 
-    pulled: the bodies of the pulleys, first and second. counted: joints, and by how much the belt runs per angle [m].
+    pulley_bodies: bodies of the first and the second pulley
+    travel_factors: joints, each with the travel of the belt per angle [m]
     """
 
     name: str
@@ -34,22 +38,26 @@ class BeltLook(NamedTuple):
     pulled: tuple[str, str]
     counted: tuple[tuple[str, float], ...]
 
-    def run(self, coordinates: Block) -> Array:
-        """How far the belt has run at the instants of some results, (n,) [m]."""
-        parts = [factor * np.asarray(coordinates[name]["angle"]) for name, factor in self.counted]
+    def compute_travel(self, coordinates: Block) -> Array:
+        """Compute the travel of the belt at the instants of the results, (n,) [m]."""
+        parts = [factor * np.asarray(coordinates[name]["angle"]) for name, factor in self.travel_factors]
         return np.asarray(np.sum(parts, axis=0))
 
 
-class PitchLooks(NamedTuple):
-    """Discs of bodies and of the ground, lines of racks in their axes, (2, 3), and belts."""
+class PitchGeometry(NamedTuple):
+    """Discs of bodies and of the ground, pitch lines of racks (2, 3) in body axes, and belts."""
 
     discs: dict[str, list[Disc]]
     racks: dict[str, list[Array]]
-    belts: list[BeltLook]
+    belts: list[BeltGeometry]
 
 
-class _Placed(NamedTuple):
-    """The joints and bodies of a spec as gearing reads them; names: of the bodies by their numbers."""
+class _GearingModel(NamedTuple):
+    """The joints and bodies of a spec in the form that the gearing functions read.
+
+    body_names: by the numbers of the bodies
+    joint_numbers: by the names of the joints
+    """
 
     joints: Sequence[Any]
     bodies: Sequence[Any]
@@ -57,80 +65,86 @@ class _Placed(NamedTuple):
     number: dict[str, int]
 
 
-def pitch_looks(spec: Spec) -> PitchLooks:
-    """All gears and belts of a spec, but for those that are refused where the scene is solved."""
+def make_pitch_geometry(spec: Spec) -> PitchGeometry:
+    """Make the geometry of all gears and belts of a spec, except those that are invalid and refused by the solver."""
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": -1}
-    joints = [joint(j, index[j.a], index[j.b], spec.space == "planar") for j in spec.joints.values()]
+    joints = [build_joint(j, index[j.a], index[j.b], spec.space == "planar") for j in spec.joints.values()]
     bodies: list[Any] = [
         SimpleNamespace(name=name, rotation=None if b.rotation is None else np.array(b.rotation).reshape(3, 3))
         for name, b in spec.bodies.items()
     ]
-    placed = _Placed(joints, bodies, {i: x for x, i in index.items()}, {x: k for k, x in enumerate(spec.joints)})
-    found = PitchLooks(defaultdict(list), defaultdict(list), [])
-    for name, own in spec.couplings.items():
-        if isinstance(own, Gear | Belt):
+    model = _GearingModel(joints, bodies, {i: x for x, i in index.items()}, {x: k for k, x in enumerate(spec.joints)})
+    geometry = PitchGeometry(defaultdict(list), defaultdict(list), [])
+    for name, coupling in spec.couplings.items():
+        if isinstance(coupling, Gear | Belt):
             try:
-                if isinstance(own, Gear):
-                    _gear(found, placed, own)
+                if isinstance(coupling, Gear):
+                    _add_gear(geometry, model, coupling)
                 else:
-                    _belt(found, placed, name, own)
+                    _add_belt(geometry, model, name, coupling)
             except Finding:
                 continue
-    return found
+    return geometry
 
 
-def _gear(found: PitchLooks, placed: _Placed, own: Gear) -> None:
-    """A pair of wheels, or a wheel and its rack. Raises Finding."""
-    of = placed.number[own.terms[0].joint], placed.number[own.terms[1].joint]
-    carrier, *pair = members(placed.joints, placed.bodies, of)
-    P = mesh_of(own, carrier, pair[0], pair[1], None if own.at is None else np.array(own.at.point)).P
+def _add_gear(geometry: PitchGeometry, model: _GearingModel, gear: Gear) -> None:
+    """Add a pair of wheels, or a wheel and its rack. Raises Finding."""
+    pair_joints = model.joint_numbers[gear.terms[0].joint], model.joint_numbers[gear.terms[1].joint]
+    carrier, *pair = find_gears(model.joints, model.bodies, pair_joints)
+    P = find_mesh(gear, carrier, pair[0], pair[1], None if gear.at is None else np.array(gear.at.point)).P
     radii = [float(np.sqrt(m.arm(P) @ m.arm(P))) if m.turns else 0.0 for m in pair]
-    for k, member, r in zip(of, pair, radii, strict=True):
-        body = placed.names[member.body]
+    for k, member, r in zip(pair_joints, pair, radii, strict=True):
+        body = model.body_names[member.body]
         if member.turns:
-            ring = r == max(radii) and lies_within(pair, P)
-            found.discs[body].append(disc(placed, k, member, r, float((P - member.point) @ member.axis), not ring))
+            ring = r == max(radii) and is_internal_pair(pair, P)
+            geometry.discs[body].append(
+                make_pitch_circle(model, k, member, r, float((P - member.point) @ member.axis), not ring)
+            )
         else:
-            found.racks[body].append(pitch_line(placed, k, member, P, max(radii)))
+            geometry.racks[body].append(make_rack_line(model, k, member, P, max(radii)))
 
 
-def lies_within(pair: Sequence[GearMember], P: Array) -> bool:
-    """Whether one of two wheels lies within the other: parallel axes on one side of the pitch point."""
-    one, other = pair
-    across = cross(one.axis, other.axis)
+def is_internal_pair(pair: Sequence[GearMember], P: Array) -> bool:
+    """Return whether one of two wheels lies inside the other: parallel axes on the same side of the pitch point."""
+    first, second = pair
+    across = cross_vectors(first.axis, second.axis)
     parallel = float(across @ across) <= tolerances.TYPED_AXES**2
-    return one.turns and other.turns and parallel and float(one.arm(P) @ other.arm(P)) > 0.0
+    return first.turns and second.turns and parallel and float(first.arm(P) @ second.arm(P)) > 0.0
 
 
-def _belt(found: PitchLooks, placed: _Placed, name: str, own: Belt) -> None:
-    """Two pulleys and the strands between them. Raises Finding."""
-    of = placed.number[own.terms[0].joint], placed.number[own.terms[1].joint]
-    carrier, first, second = members(placed.joints, placed.bodies, of)
-    tight, slack = strands(own, first, second)
-    off = float((first.point - second.point) @ second.axis)
-    for k, member, r, height in zip(of, (first, second), own.radii, (0.0, off), strict=True):
-        found.discs[placed.names[member.body]].append(disc(placed, k, member, r, height))
-    names = placed.names[first.body], placed.names[second.body]
-    ways = np.array(
+def _add_belt(geometry: PitchGeometry, model: _GearingModel, name: str, belt: Belt) -> None:
+    """Add two pulleys and the strands between them. Raises Finding."""
+    pulley_joints = model.joint_numbers[belt.terms[0].joint], model.joint_numbers[belt.terms[1].joint]
+    carrier, first, second = find_gears(model.joints, model.bodies, pulley_joints)
+    tight, slack = find_strands(belt, first, second)
+    offset = float((first.point - second.point) @ second.axis)
+    for k, member, r, height in zip(pulley_joints, (first, second), belt.radii, (0.0, offset), strict=True):
+        geometry.discs[model.body_names[member.body]].append(make_pitch_circle(model, k, member, r, height))
+    pulley_bodies = model.body_names[first.body], model.body_names[second.body]
+    strand_lines = np.array(
         [(tight.end, tight.begin), (slack.begin, slack.end)]
-    )  # the first pulley draws the one that it pulls
-    joints = list(placed.number)
-    counted = tuple((joints[x.joint], own.radii[0] * x.ratio / first.sign) for x in first.coordinates)
-    found.belts.append(BeltLook(name, placed.names[carrier], ways, names, counted))
+    )  # the first pulley pulls the tight strand
+    joints = list(model.joint_numbers)
+    travel_factors = tuple((joints[x.joint], belt.radii[0] * x.ratio / first.sign) for x in first.coordinates)
+    geometry.belts.append(BeltGeometry(name, model.body_names[carrier], strand_lines, pulley_bodies, travel_factors))
 
 
-def disc(placed: _Placed, k: int, member: GearMember, r: float, height: float, solid: bool = True) -> Disc:
-    """A circle about a member's axis, in its body's axes; k: its joint."""
-    point, axis = line_on(placed.joints[k], placed.bodies, member.body)
-    return Disc(point + height * axis, axis, r, solid, spins=solid)
+def make_pitch_circle(
+    model: _GearingModel, joint_number: int, member: GearMember, r: float, height: float, is_solid: bool = True
+) -> Disc:
+    """Make the pitch circle of a wheel, in its body's axes."""
+    point, axis = joint_line(model.joints[joint_number], model.bodies, member.body)
+    return Disc(point + height * axis, axis, r, is_solid, has_spokes=is_solid)
 
 
-def pitch_line(placed: _Placed, k: int, member: GearMember, P: Array, wheel: float) -> Array:
-    """A rack's line through the pitch point P, in its body's axes, as long as one turn of the wheel, (2, 3)."""
-    own_joint, bodies = placed.joints[k], placed.bodies
-    point, axis = line_on(own_joint, bodies, member.body)
+def make_rack_line(model: _GearingModel, joint_number: int, member: GearMember, P: Array, wheel_radius: float) -> Array:
+    """Make a rack's pitch line (2, 3) through the pitch point P, in its body's axes, as long as one turn of the
+    wheel.
+    """
+    own_joint, bodies = model.joints[joint_number], model.bodies
+    point, axis = joint_line(own_joint, bodies, member.body)
     base = own_joint.a if own_joint.b == member.body else own_joint.b
-    given = (None if i < 0 else bodies[i].rotation for i in (base, member.body))
-    carrier, own = (np.eye(3) if R is None else R for R in given)
-    at = point + own.T @ carrier @ (P - member.point)
-    return np.array([at - np.pi * wheel * axis, at + np.pi * wheel * axis])
+    rotations = (None if i < 0 else bodies[i].rotation for i in (base, member.body))
+    carrier_axes, body_axes = (np.eye(3) if R is None else R for R in rotations)
+    center = point + body_axes.T @ carrier_axes @ (P - member.point)
+    return np.array([center - np.pi * wheel_radius * axis, center + np.pi * wheel_radius * axis])

@@ -1,4 +1,4 @@
-"""Where the bodies of a run stand at some instants, and where their points come to be."""
+"""The poses of the bodies of a run at given instants, and the positions of their points in the world."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ Y, Z = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 
 class Poses(NamedTuple):
-    """Of each body the places of its origin (n, 3) and its attitudes (n, 3, 3), whose columns are its axes.
+    """The poses of all bodies, by name.
 
-    turns: the attitudes as unit quaternions w, x, y, z, (n, 4); none of what is only assembled.
+    positions: of the origins, (n, 3)
+    orientations: rotation matrices (n, 3, 3), whose columns are the body axes
+    quaternions: the same as unit quaternions w, x, y, z, (n, 4); empty for a scene that is only assembled
     """
 
     times: Array
@@ -28,51 +30,60 @@ class Poses(NamedTuple):
 
     @property
     def first(self) -> Poses:
-        """Those of the first instant alone."""
-        kept = ({name: own[:1] for name, own in part.items()} for part in (self.places, self.attitudes, self.turns))
-        return Poses(self.times[:1], *kept)
+        """The poses at the first instant only."""
+        parts = (
+            {name: values[:1] for name, values in part.items()}
+            for part in (self.positions, self.orientations, self.quaternions)
+        )
+        return Poses(self.times[:1], *parts)
 
-    def at(self, body: str, points: Array, k: int) -> Array:
-        """Where points (..., 3) of a body stand in the world at the instant of a number."""
+    def locate_points(self, body: str, points: Array, k: int) -> Array:
+        """Compute the positions of points (..., 3) of a body in the world at instant number k."""
         if body == GROUND:
             return np.asarray(points, dtype=np.float64)
-        return np.asarray(points @ self.attitudes[body][k].T + self.places[body][k])
+        return np.asarray(points @ self.orientations[body][k].T + self.positions[body][k])
 
-    def ways(self, body: str, point: Array) -> Array:
-        """Where a point (3,) of a body stands in the world at all instants, (n, 3)."""
+    def trace_point(self, body: str, point: Array) -> Array:
+        """Compute the positions of a point (3,) of a body in the world at all instants, (n, 3)."""
         if body == GROUND:
             return np.broadcast_to(np.asarray(point, dtype=np.float64), (len(self.times), 3))
-        return np.asarray(self.attitudes[body] @ point + self.places[body])
+        return np.asarray(self.orientations[body] @ point + self.positions[body])
 
-    def directions(self, body: str, axis: Array) -> Array:
-        """A direction (3,) in a body's axes in the world at all instants, (n, 3)."""
+    def trace_direction(self, body: str, axis: Array) -> Array:
+        """Turn a direction (3,) from body axes to world axes at all instants, (n, 3)."""
         if body == GROUND:
             return np.broadcast_to(np.asarray(axis, dtype=np.float64), (len(self.times), 3))
-        return np.asarray(self.attitudes[body] @ axis)
+        return np.asarray(self.orientations[body] @ axis)
 
 
-def poses_of(study: Study, times: Array) -> Poses:
-    """The poses at instants of the run, (n,) ascending."""
-    return poses_in(study.results if study.of_one_instant else study.reports_at(times, MOTION))
+def compute_poses(study: Study, times: Array) -> Poses:
+    """Compute the poses at instants of the run, (n,) ascending."""
+    return extract_poses(study.results if study.has_one_instant else study.compute_reports(times, MOTION))
 
 
-def poses_in(found: Results) -> Poses:
-    """The poses that results with motions have."""
-    places = {name: body["position"] for name, body in found.bodies.items()}
-    attitudes = {name: body["rotation"] for name, body in found.bodies.items()}
-    return Poses(found.time, places, attitudes, {name: body["quaternion"] for name, body in found.bodies.items()})
+def extract_poses(results: Results) -> Poses:
+    """Extract the poses from results that include the motion."""
+    positions = {name: body["position"] for name, body in results.bodies.items()}
+    orientations = {name: body["rotation"] for name, body in results.bodies.items()}
+    return Poses(
+        results.time, positions, orientations, {name: body["quaternion"] for name, body in results.bodies.items()}
+    )
 
 
-def up_of(spec: Spec, poses: Poses) -> Array:
-    """The unit direction (3,) that is up: against gravity; without it y of what turns about z alone, else z."""
+def find_up_direction(spec: Spec, poses: Poses) -> Array:
+    """Find the unit vector (3,) that points up: against gravity; without gravity, y if all bodies turn only about z,
+    else z.
+    """
     gravity = np.array(spec.gravity, dtype=np.float64)
     if gravity.any():
         return np.asarray(-gravity / np.linalg.norm(gravity))
-    return Y if all(np.allclose(axes[:, :, 2], Z) for axes in poses.attitudes.values()) else Z
+    return Y if all(np.allclose(axes[:, :, 2], Z) for axes in poses.orientations.values()) else Z
 
 
-def poses_at_start(mechanism: Mechanism, start: Assembly, t: float) -> Poses:
-    """The poses in which a scene is assembled."""
+def make_start_poses(mechanism: Mechanism, start: Assembly, t: float) -> Poses:
+    """Make the poses in which a scene is assembled."""
     names = [body.name for body in mechanism.bodies]
-    places, attitudes = (dict(zip(names, own[:, None], strict=True)) for own in (start.position, start.rotation))
-    return Poses(np.array([t]), places, attitudes, {})
+    positions, orientations = (
+        dict(zip(names, values[:, None], strict=True)) for values in (start.position, start.rotation)
+    )
+    return Poses(np.array([t]), positions, orientations, {})

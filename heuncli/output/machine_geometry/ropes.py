@@ -1,6 +1,6 @@
-"""Ropes as they run at the instants of some poses: strands from where they touch, arcs about sheaves, and the sheaves.
+"""The geometry of ropes in given poses: spans between points of contact, arcs on sheaves, and the sheaves themselves.
 
-w = ((l p + sigma n x p) / |p|^2) x n        where a strand touches: at_a w off the centre on a, at_b w on b
+w = ((l p + sigma n x p) / |p|^2) x n        contact points of a span: at_a w from the centre on a, at_b w on b
 p: from centre to centre across the axis n;  sigma = at_a - at_b;  l^2 = |p|^2 - sigma^2
 """
 
@@ -13,20 +13,22 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.rope_ways import Z, pins_at, unit
+from heuncli.multibody.tree.rope_ways import Z, find_pins, normalize
 from heuncli.output.machine_geometry.discs import Disc
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.scene.file_format.names import GROUND
 
-STEP = 0.1  # rad: of an arc as it is drawn
+ARC_STEP = 0.1  # rad, of a drawn arc
 
 
-class StrandLook(NamedTuple):
-    """A strand between two bodies' points: plain, axis None, or off the centres a and b by signed radii about the axis.
+class SpanGeometry(NamedTuple):
+    """A straight span of rope between two bodies.
 
-    way: 1 where it runs from a to b.
+    p, q: its end points on a and b if axis is None; else the centres of the sheaves there
+    at_a, at_b: signed radii of the sheaves about the axis [m]
+    direction: 1 if the rope runs from a to b, else -1
     """
 
     a: str
@@ -39,10 +41,11 @@ class StrandLook(NamedTuple):
     way: float = 1.0
 
 
-class ArcLook(NamedTuple):
-    """What lies on a sheave between a strand, by its number, and the next.
+class ArcGeometry(NamedTuple):
+    """The arc of a rope on a sheave, between the span of number `span` and the next one.
 
-    body, centre: the sheave's; axis: about which it runs counter-clockwise, in the axes of the body `along`.
+    body, centre: those of the sheave
+    axis: the arc runs counter-clockwise about it; in the axes of the body `axis_body`
     """
 
     before: int
@@ -52,105 +55,107 @@ class ArcLook(NamedTuple):
     axis: Array
 
 
-class RopeLook(NamedTuple):
-    """A rope: its strands from its first end to its last, and its arcs.
+class RopeGeometry(NamedTuple):
+    """A rope: its spans from its first end to its last, and its arcs.
 
-    standing: its ends on the ground, each a body and its point, with where the strand there comes from.
+    ground_ends: the ends on the ground, each with the other end of the span there, as (body, point)
     """
 
     name: str
-    strands: tuple[StrandLook, ...]
-    arcs: tuple[ArcLook, ...]
+    strands: tuple[SpanGeometry, ...]
+    arcs: tuple[ArcGeometry, ...]
     standing: tuple[tuple[tuple[str, Array], tuple[str, Array]], ...]
 
 
-def ropes_of(mechanism: Mechanism) -> tuple[RopeLook, ...]:
-    """The ropes of an assembled mechanism over sheaves and through points."""
+def collect_ropes(mechanism: Mechanism) -> tuple[RopeGeometry, ...]:
+    """Collect the ropes over sheaves and through points of an assembled mechanism."""
     names = [body.name for body in mechanism.bodies]
     bodies = dict(enumerate(names)) | {-1: GROUND}
-    return tuple(_rope(own, bodies) for own in mechanism.couplings if own.given.type == "rope")
+    return tuple(_make_rope(coupling, bodies) for coupling in mechanism.couplings if coupling.entry.type == "rope")
 
 
-def _rope(own: Coupling, bodies: Mapping[int, str]) -> RopeLook:
-    """One of them; between two sheaves that hold it each condition has strands of its own."""
-    ways: list[StrandLook] = []
-    arcs: list[ArcLook] = []
-    for row in own.carriers:
-        first = len(ways)
-        ways += [_strand(part, bodies) for part in row.parts if not part.lies]
+def _make_rope(coupling: Coupling, bodies: Mapping[int, str]) -> RopeGeometry:
+    """Make one rope; between two sheaves that grip the rope, each constraint row has its own spans."""
+    spans: list[SpanGeometry] = []
+    arcs: list[ArcGeometry] = []
+    for row in coupling.loading_rows:
+        first = len(spans)
+        spans += [_make_span(part, bodies) for part in row.parts if not part.lies_on_sheave]
         for part in row.parts:
-            sense, ends = float(np.sign(part.radius)), (bodies[part.a], np.asarray(part.p))
+            sign, ends = float(np.sign(part.radius)), (bodies[part.a], np.asarray(part.p))
             if part.kind == "arc":
-                arcs.append(ArcLook(first + part.strand, *ends, bodies[part.a], sense * np.asarray(part.e)))
-            elif part.kind == "wound" and part is row.parts[-1]:  # where it arrives, with the other sign
-                arcs.append(ArcLook(len(ways) - 1, *ends, bodies[part.c], -sense * np.asarray(part.g)))
-    assert isinstance(own.given, Rope)
-    through = own.given.through[0], own.given.through[-1]
-    runs = run_of(ways[0]), run_of(ways[-1])[::-1]
-    standing = tuple(run for run, x in zip(runs, through, strict=True) if x.end.body == GROUND and not x.radius)
-    return RopeLook(own.name, tuple(ways), tuple(arc for arc in arcs if arc.before + 1 < len(ways)), standing)
+                arcs.append(ArcGeometry(first + part.strand, *ends, bodies[part.a], sign * np.asarray(part.e)))
+            elif part.kind == "wound" and part is row.parts[-1]:  # an arriving end: opposite sign
+                arcs.append(ArcGeometry(len(spans) - 1, *ends, bodies[part.c], -sign * np.asarray(part.g)))
+    assert isinstance(coupling.entry, Rope)
+    end_guides = coupling.entry.through[0], coupling.entry.through[-1]
+    runs = order_span_ends(spans[0]), order_span_ends(spans[-1])[::-1]
+    ground_ends = tuple(run for run, x in zip(runs, end_guides, strict=True) if x.end.body == GROUND and not x.radius)
+    return RopeGeometry(
+        coupling.name, tuple(spans), tuple(arc for arc in arcs if arc.span + 1 < len(spans)), ground_ends
+    )
 
 
-def _strand(part: CouplingPart, bodies: Mapping[int, str]) -> StrandLook:
-    """A strand by its part (kernel/sheaves.py)."""
+def _make_span(part: CouplingPart, bodies: Mapping[int, str]) -> SpanGeometry:
+    """Make a span from its coupling part (kernel/sheaves.py)."""
     ends = bodies[part.a], np.asarray(part.p), bodies[part.b], np.asarray(part.q)
     if part.kind == "rod":
-        return StrandLook(*ends)
-    at_a, at_b, way = (float(x) for x in part.g)
-    return StrandLook(*ends, np.asarray(part.e), at_a, at_b, way)
+        return SpanGeometry(*ends)
+    at_a, at_b, direction = (float(x) for x in part.g)
+    return SpanGeometry(*ends, np.asarray(part.e), at_a, at_b, direction)
 
 
-def run_of(strand: StrandLook) -> tuple[tuple[str, Array], tuple[str, Array]]:
-    """The points about which a strand begins and ends, as the rope runs."""
-    ends = (strand.a, strand.p), (strand.b, strand.q)
-    return ends if strand.way > 0.0 else (ends[1], ends[0])
+def order_span_ends(span: SpanGeometry) -> tuple[tuple[str, Array], tuple[str, Array]]:
+    """Return the end points of a span, or the sheave centres there, in the running direction of the rope."""
+    ends = (span.a, span.p), (span.b, span.q)
+    return ends if span.direction > 0.0 else (ends[1], ends[0])
 
 
-def sheaves_of(mechanism: Mechanism) -> Iterator[tuple[str, Disc]]:
-    """All sheaves, each with its body or the ground; where the rope slides the sheave's turning plays no part."""
+def iter_sheaves(mechanism: Mechanism) -> Iterator[tuple[str, Disc]]:
+    """Yield all sheaves, each with its body or the ground; those on which the rope slides get no spokes."""
     index = {body.name: i for i, body in enumerate(mechanism.bodies)} | {GROUND: -1}
-    for own in mechanism.couplings:
-        for given in own.given.through if isinstance(own.given, Rope) else ():
-            if given.radius:
-                point = np.array(given.end.point)
-                axis = Z if given.axis is None else unit(np.array(given.axis))
-                if given.axis is None and not mechanism.planar:
-                    axis = pins_at(mechanism, index[given.end.body], point)[0][1]
-                yield given.end.body, Disc(point, axis, given.radius, spins=given.grips)
+    for coupling in mechanism.couplings:
+        for guide in coupling.entry.through if isinstance(coupling.entry, Rope) else ():
+            if guide.radius:
+                point = np.array(guide.end.point)
+                axis = Z if guide.axis is None else normalize(np.array(guide.axis))
+                if guide.axis is None and not mechanism.planar:
+                    axis = find_pins(mechanism, index[guide.end.body], point)[0][1]
+                yield guide.end.body, Disc(point, axis, guide.radius, has_spokes=guide.grips)
 
 
-def strand_ends(rope: RopeLook, poses: Poses) -> Array:
-    """Where the strands of a rope begin and end at all instants, (n, strands, 2, 3), as the rope runs."""
-    return np.stack([_ends(strand, poses) for strand in rope.strands], axis=1)
+def compute_span_ends(rope: RopeGeometry, poses: Poses) -> Array:
+    """Compute the ends of a rope's spans at all instants, (n, spans, 2, 3), in the running direction of the rope."""
+    return np.stack([_compute_ends(span, poses) for span in rope.spans], axis=1)
 
 
-def _ends(strand: StrandLook, poses: Poses) -> Array:
-    """A strand's two ends, (n, 2, 3)."""
-    P, Q = poses.ways(strand.a, strand.p), poses.ways(strand.b, strand.q)
-    if strand.axis is None:
+def _compute_ends(span: SpanGeometry, poses: Poses) -> Array:
+    """Compute the two ends of a span, (n, 2, 3)."""
+    P, Q = poses.trace_point(span.a, span.p), poses.trace_point(span.b, span.q)
+    if span.axis is None:
         return np.stack([P, Q], axis=1)
-    n = poses.directions(strand.a, strand.axis)
+    n = poses.trace_direction(span.a, span.axis)
     D = Q - P
     p = D - np.sum(n * D, axis=1, keepdims=True) * n
-    sigma, square = strand.at_a - strand.at_b, np.sum(p * p, axis=1, keepdims=True)
+    sigma, square = span.at_a - span.at_b, np.sum(p * p, axis=1, keepdims=True)
     l = np.sqrt(np.maximum(square - sigma**2, 0.0))
     w = np.cross((l * p + sigma * np.cross(n, p)) / np.where(square > 0.0, square, 1.0), n)
-    ends = np.stack([P + strand.at_a * w, Q + strand.at_b * w], axis=1)
-    return ends if strand.way > 0.0 else ends[:, ::-1]
+    ends = np.stack([P + span.at_a * w, Q + span.at_b * w], axis=1)
+    return ends if span.direction > 0.0 else ends[:, ::-1]
 
 
-def lines_of(rope: RopeLook, poses: Poses, k: int) -> Iterator[Array]:
-    """A rope's strands and what lies on its sheaves at an instant, (n, 3) each."""
-    ends = strand_ends(rope, poses)[k]
+def iter_rope_lines(rope: RopeGeometry, poses: Poses, k: int) -> Iterator[Array]:
+    """Yield the spans of a rope and its arcs on sheaves at an instant, (n, 3) each."""
+    ends = compute_span_ends(rope, poses)[k]
     yield from ends
     for arc in rope.arcs:
-        centre, axis = poses.at(arc.body, arc.centre, k), poses.directions(arc.along, arc.axis)[k]
-        yield _bent(centre, axis, ends[arc.before, 1], ends[arc.before + 1, 0])
+        centre, axis = poses.locate_points(arc.body, arc.centre, k), poses.trace_direction(arc.axis_body, arc.axis)[k]
+        yield _make_arc_line(centre, axis, ends[arc.span, 1], ends[arc.span + 1, 0])
 
 
-def _bent(C: Array, n: Array, start: Array, end: Array) -> Array:
-    """A line round an axis n through C from one place to another, counter-clockwise about it, (n, 3)."""
-    r, to = start - C, end - C
-    angle = np.arctan2(float(n @ np.cross(r, to)), float(r @ to)) % (2.0 * np.pi)
-    steps = np.linspace(0.0, angle, max(2, int(np.ceil(angle / STEP)) + 1))[:, None]
+def _make_arc_line(C: Array, n: Array, start: Array, end: Array) -> Array:
+    """Make an arc (n, 3) about an axis n through C from one point to another, counter-clockwise about n."""
+    r, end_arm = start - C, end - C
+    angle = np.arctan2(float(n @ np.cross(r, end_arm)), float(r @ end_arm)) % (2.0 * np.pi)
+    steps = np.linspace(0.0, angle, max(2, int(np.ceil(angle / ARC_STEP)) + 1))[:, None]
     return np.asarray(C + np.cos(steps) * r + np.sin(steps) * np.cross(n, r))

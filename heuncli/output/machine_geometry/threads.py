@@ -1,4 +1,4 @@
-"""What screws look like: the thread as a helix on what turns, from its bearing to the nut where that is drawn."""
+"""The geometry of screws: the thread as a helix on the spindle, from its bearing to the nut if that is drawn."""
 
 from __future__ import annotations
 
@@ -8,39 +8,39 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Screw
 from heuncli.scene.file_format.models import Joint, Spec, Vec
-from heuncli.scene.shapes.rotations import perpendicular
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
-SHORT = 2.0  # leads: a nut nearer to the bearing than that stands beside it, or is not drawn apart from it
-TURNS = 3.0  # to both sides of the bearing, where the nut does not tell how long the spindle is
-MOST = 24.0  # turns that an eye tells apart: a finer thread is drawn as coarse
-SLENDER = 0.025  # radius over length
-CORNERS = 16  # of a turn
+MIN_NUT_DISTANCE = 2.0  # leads: a nut nearer to the bearing does not determine the length of the thread
+DEFAULT_TURNS = 3.0  # turns on both sides of the bearing if the nut does not determine the length
+MAX_TURNS = 24.0  # turns; a finer thread is drawn coarser
+RADIUS_RATIO = 0.025  # radius over length
+TURN_CORNERS = 16  # of a turn
 
 
 class ScrewMember(NamedTuple):
-    """What turns, or slides, on the carrier: the body, its joint, and the joint's sign for its motion."""
+    """The spindle or the nut of a screw: its body, its joint to the carrier, and the joint's sign for its motion."""
 
     body: str
     joint: Joint[str, Vec]
     sign: float
 
 
-def threads_of(spec: Spec) -> dict[str, tuple[Array, ...]]:
-    """The threads (n, 3) on each body that turns in one, in its axes."""
-    found: dict[str, tuple[Array, ...]] = {}
-    for own in spec.couplings.values():
-        if isinstance(own, Screw):
-            spindle, nut = members(spec, own)
+def make_threads(spec: Spec) -> dict[str, tuple[Array, ...]]:
+    """Make the threads (n, 3) of all screws, in body axes, by the spindle's body."""
+    threads: dict[str, tuple[Array, ...]] = {}
+    for coupling in spec.couplings.values():
+        if isinstance(coupling, Screw):
+            spindle, nut = find_members(spec, coupling)
             if spindle.body in spec.bodies:
-                line = thread(spec, own.lead, spindle, nut)
-                found[spindle.body] = (*found.get(spindle.body, ()), line)
-    return found
+                line = make_thread(spec, coupling.lead, spindle, nut)
+                threads[spindle.body] = (*threads.get(spindle.body, ()), line)
+    return threads
 
 
-def members(spec: Spec, own: Screw) -> tuple[ScrewMember, ScrewMember]:
-    """The spindle and its nut; of a cylinder `to` is the spindle, and `from` the nut."""
-    of = {term.quantity: spec.joints[term.joint] for term in own.terms}
-    turns, slides = of["angle"], of["travel"]
+def find_members(spec: Spec, screw: Screw) -> tuple[ScrewMember, ScrewMember]:
+    """Find the spindle and the nut of a screw; in a cylinder joint the `to` body is the spindle and `from` the nut."""
+    joints = {term.quantity: spec.joints[term.joint] for term in screw.terms}
+    turns, slides = joints["angle"], joints["travel"]
     if turns is slides:
         return ScrewMember(turns.b, turns, 1.0), ScrewMember(turns.a, turns, -1.0)
     carrier = {turns.a, turns.b} & {slides.a, slides.b}
@@ -48,44 +48,53 @@ def members(spec: Spec, own: Screw) -> tuple[ScrewMember, ScrewMember]:
     return spindle, nut
 
 
-def thread(spec: Spec, lead: float, spindle: ScrewMember, nut: ScrewMember) -> Array:
-    """A helix about the spindle's axis, from its bearing, in the spindle's axes, (n, 3).
+def make_thread(spec: Spec, lead: float, spindle: ScrewMember, nut: ScrewMember) -> Array:
+    """Make a helix (n, 3) about the spindle's axis, from its bearing, in the spindle's axes.
 
-    Its hand is that which moves the nut as the lead says: along a spindle that turns in its bearing a thread of the
-    right hand draws the nut back.
+    Its hand is the one that moves the nut as the lead states: a right-hand thread on a spindle that turns in its
+    bearing draws the nut back.
     """
-    R, _ = pose(spec, spindle.body)
-    start, axis = R.T @ (place(spec, spindle) - pose(spec, spindle.body)[1]), R.T @ along(spec, spindle)
-    height = float((place(spec, nut) - place(spec, spindle)) @ along(spec, spindle))
-    alike = spindle.sign * nut.sign * float(np.sign(along(spec, spindle) @ along(spec, nut)))
-    pitch = -lead * (alike or 1.0)
-    low, high = (0.0, height) if abs(height) > SHORT * abs(lead) else (-TURNS * abs(lead), TURNS * abs(lead))
-    count = float(np.clip((high - low) / pitch, -MOST, MOST))
-    angle = np.linspace(0.0, 2.0 * np.pi * count, int(CORNERS * abs(count)) + 2)[:, None]
-    e, f = perpendicular(axis)
-    up = np.linspace(low, high, len(angle))[:, None] * axis
-    line: Array = start + up + SLENDER * abs(high - low) * (np.cos(angle) * e + np.sin(angle) * f)
+    R, _ = find_drawn_pose(spec, spindle.body)
+    start, axis = (
+        R.T @ (find_joint_point(spec, spindle) - find_drawn_pose(spec, spindle.body)[1]),
+        R.T @ find_axis(spec, spindle),
+    )
+    height = float((find_joint_point(spec, nut) - find_joint_point(spec, spindle)) @ find_axis(spec, spindle))
+    relative_sign = spindle.sign * nut.sign * float(np.sign(find_axis(spec, spindle) @ find_axis(spec, nut)))
+    pitch = -lead * (relative_sign or 1.0)
+    begin, end = (
+        (0.0, height)
+        if abs(height) > MIN_NUT_DISTANCE * abs(lead)
+        else (-DEFAULT_TURNS * abs(lead), DEFAULT_TURNS * abs(lead))
+    )
+    count = float(np.clip((end - begin) / pitch, -MAX_TURNS, MAX_TURNS))
+    angle = np.linspace(0.0, 2.0 * np.pi * count, int(TURN_CORNERS * abs(count)) + 2)[:, None]
+    e, f = perpendicular_pair(axis)
+    rise = np.linspace(begin, end, len(angle))[:, None] * axis
+    line: Array = start + rise + RADIUS_RATIO * abs(end - begin) * (np.cos(angle) * e + np.sin(angle) * f)
     return line
 
 
-def along(spec: Spec, member: ScrewMember) -> Array:
-    """A joint's axis as it is drawn, world axes."""
-    axis = pose(spec, member.joint.a)[0] @ np.array(member.joint.axis)
+def find_axis(spec: Spec, member: ScrewMember) -> Array:
+    """Find a joint's axis in the pose that is drawn, world axes."""
+    axis = find_drawn_pose(spec, member.joint.a)[0] @ np.array(member.joint.axis)
     return np.asarray(axis / np.sqrt(axis @ axis))
 
 
-def place(spec: Spec, member: ScrewMember) -> Array:
-    """A joint's point on a body as it is drawn, world axes."""
+def find_joint_point(spec: Spec, member: ScrewMember) -> Array:
+    """Find a joint's point on a body in the pose that is drawn, world axes."""
     joint = member.joint
-    R, r = pose(spec, member.body)
+    R, r = find_drawn_pose(spec, member.body)
     return np.asarray(r + R @ np.array(joint.p if member.body == joint.a else joint.q))
 
 
-def pose(spec: Spec, body: str) -> tuple[Array, Array]:
-    """How a body is drawn: its axes (3, 3) and origin (3,); as the ground where that is left out."""
+def find_drawn_pose(spec: Spec, body: str) -> tuple[Array, Array]:
+    """Find the pose in which a body is drawn: axes (3, 3) and origin (3,); those of the ground if the spec gives
+    none.
+    """
     if body not in spec.bodies:
         return np.eye(3), np.zeros(3)
-    own = spec.bodies[body]
-    R = own.near_rotation if own.rotation is None else own.rotation
-    r = own.near_position if own.position is None else own.position
+    spec_body = spec.bodies[body]
+    R = spec_body.near_rotation if spec_body.rotation is None else spec_body.rotation
+    r = spec_body.near_position if spec_body.position is None else spec_body.position
     return np.eye(3) if R is None else np.array(R).reshape(3, 3), np.zeros(3) if r is None else np.array(r)

@@ -1,4 +1,4 @@
-"""Units that are asked for: of tables, in which JSON and CSV have no part."""
+"""Read the units in which tables and diagrams show values. JSON and CSV always use SI."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from heuncli.study.quantities import table_units
 from heuncli.study.quantities.table_units import Units
 
 
-def asked_units(option: str, words: str | None) -> Units:
-    """The units in which tables and diagrams show SI units, such as `kN,mm`. Raises UsageError."""
+def read_display_units(option: str, words: str | None) -> Units:
+    """Return the display units that replace SI units, from words such as `kN,mm`. Raises UsageError."""
     if words is None:
         return Units()
     try:
-        return table_units.asked(words)
+        return table_units.parse_units(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"{option} {words}: {finding.message}", hint=finding.hint)) from None

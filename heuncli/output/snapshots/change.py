@@ -7,9 +7,12 @@ from heuncli.output.snapshots.kept import Value
 
 
 class Change(NamedTuple):
-    """One difference: of what, where in its course, before and after; allowed: by how much they may differ.
+    """One difference between two runs: its path, which value of it, before and after.
 
-    why: in words, where the two are not numbers that differ; alike: how many more values of the same quantity changed.
+    tolerance: by how much the two may differ
+    reason: in words, if the two are not numbers that differ
+    n_similar: number of further changed values of the same quantity
+    time: the instant of the value, if it has one
     """
 
     path: str
@@ -24,21 +27,23 @@ class Change(NamedTuple):
 
     @property
     def difference(self) -> float | None:
-        """New less old; None where the two are not numbers."""
+        """New minus old; None if the two are not numbers."""
         if isinstance(self.old, str) or isinstance(self.new, str) or self.old is None or self.new is None:
             return None
         return self.new - self.old
 
     @property
     def relative(self) -> float:
-        """The difference over the larger of the two; without numbers infinite: such changes come first."""
+        """The difference over the larger of the two. Infinite without numbers, so that such changes are sorted
+        first.
+        """
         if self.difference is None or isinstance(self.old, str) or isinstance(self.new, str):
             return float("inf")
         return abs(self.difference) / max(abs(self.old or 0.0), abs(self.new or 0.0))
 
     @property
     def excess(self) -> float:
-        """The difference over what is allowed."""
-        if self.difference is None or not self.allowed:
+        """The difference over the tolerance; infinite without one."""
+        if self.difference is None or not self.tolerance:
             return float("inf")
-        return abs(self.difference) / self.allowed
+        return abs(self.difference) / self.tolerance

@@ -1,4 +1,4 @@
-"""A change in words and numbers."""
+"""Format a change in words and numbers."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.kept import Value
 
 
-def number_text(value: Value | str | None, unit: str) -> str:
-    """A value to nine digits with its unit, or the word that stands for it."""
+def format_value(value: Value | str | None, unit: str) -> str:
+    """Format a value to nine digits with its unit; a word stays as it is."""
     if value is None:
         return ""
     if isinstance(value, str):
@@ -17,26 +17,26 @@ def number_text(value: Value | str | None, unit: str) -> str:
     return f"{value:.9g} {unit}".rstrip() if unit != "1" else f"{value:.9g}"
 
 
-def difference_text(change: Change) -> str:
-    """By how much it changed, and of the larger of the two."""
+def format_difference(change: Change) -> str:
+    """Format the difference, and its percentage of the old value."""
     difference = change.difference
     if difference is None or not difference:
         return ""
-    return f"{difference:+.3g} {change.unit if change.unit != '1' else ''}".rstrip() + f" ({percent(change)})"
+    return f"{difference:+.3g} {change.unit if change.unit != '1' else ''}".rstrip() + f" ({format_percent(change)})"
 
 
-def percent(change: Change) -> str:
-    """The change relative to what it was, in percent; of nothing, or where the sign turned, in words."""
+def format_percent(change: Change) -> str:
+    """Format the change relative to the old value in percent; a change from zero in words."""
     old, difference = change.old, change.difference
     if difference is None or isinstance(old, str) or not old or not math.isfinite(difference / old):
         return "from 0" if difference is not None else ""
-    share = 100.0 * difference / abs(old)
-    return f"{share:+.3g} %"
+    percent = 100.0 * difference / abs(old)
+    return f"{percent:+.3g} %"
 
 
-def why(change: Change) -> str:
-    """The sentence that says what is wrong."""
-    if change.why:
-        return change.why
-    more = f"; {change.alike} more of its values" if change.alike else ""
-    return f"changed by {difference_text(change)}, allowed {change.allowed or 0.0:.3g}{more}"
+def describe_failure(change: Change) -> str:
+    """Return the sentence that says what is wrong."""
+    if change.reason:
+        return change.reason
+    more = f"; {change.n_similar} more of its values" if change.n_similar else ""
+    return f"changed by {format_difference(change)}, allowed {change.tolerance or 0.0:.3g}{more}"

@@ -1,6 +1,6 @@
-"""The load collectives of a solved scene: numbers of its motion, counted.
+"""Load collectives of a solved scene: the histories of its numbers, counted by rainflow.
 
-collective(study, "joints.main.force.y", slopes=(3.0, 5.0)).equivalents[0].range
+count_collective(study, "joints.main.force.y", slopes=(3.0, 5.0)).equivalents[0].range
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ import math
 from collections.abc import Sequence
 
 from heuncli.base.errors import Problem, SolveError, UsageError
-from heuncli.study.ask.histories import CODE, histories
+from heuncli.study.ask.histories import CODE, make_histories
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
-from heuncli.study.load_cycles.counted import Collective, Counting, LoadHistory, UnfitCounting, counted
-from heuncli.study.quantities.stated import error_of, unit_of
+from heuncli.study.load_cycles.counted import Collective, Counting, LoadHistory, UnfitCounting, make_collective
+from heuncli.study.quantities.stated import find_measure_error, find_unit
 
-NOWHERE = Peak(math.nan, None)
+NO_PEAK = Peak(math.nan, None)
 
 
-def collective(
+def count_collective(
     study: Study,
     path: str,
     *,
@@ -26,44 +26,53 @@ def collective(
     cycles: float | None = None,
     bins: int = Counting().bins,
     repeat: int = 1,
-    closed: bool = False,
+    is_closed: bool = False,
 ) -> Collective:
-    """The load collective of the number at a path over the motion; of a vector of its magnitude.
+    """Count the load collective of the number at a path over the motion; for a vector that of its magnitude.
 
-    slopes: of Wöhler lines, a damage-equivalent range each, of so many cycles (None: of one each time the motion is run
-    through); bins: classes of ranges and means; repeat: how often the motion is run through; closed: it is repeated for
-    ever, and one time counted. Raises NotOneNumber, SpecError [unknown-path], SolveError [no-collective], LimitError.
+    slopes: of Wöhler lines; each gives a damage-equivalent range
+    cycles: number of cycles of these ranges; None for one per repetition of the motion
+    bins: number of classes of ranges and means
+    repeat: how often the motion is repeated
+    is_closed: the motion is repeated endlessly, and one repetition is counted
+
+    Raises NotOneNumber, SpecError [unknown-path], SolveError [no-collective], LimitError.
     """
-    return collectives(study, [path], Counting(tuple(slopes), cycles, bins, repeat, closed))[0]
+    return count_collectives(study, [path], Counting(tuple(slopes), cycles, bins, repeat, is_closed))[0]
 
 
-def collectives(study: Study, paths: Sequence[str], asked: Counting) -> list[Collective]:
-    """Those of several paths, searched together. Raises as collective() does, and UsageError for no way to count."""
-    if unfit := asked.unfit():
-        raise UsageError(*(said(one, one.name, getattr(asked, one.name)) for one in unfit))
-    whole = MeasureRequest("abs", "")
-    errors = {path: error_of(whole._replace(path=path), NOWHERE, study) or 0.0 for path in paths}
-    found = histories(study, errors, {path: unit_of(path, study.spec) for path in paths})
-    if asked.closed or asked.repeat > 1:
+def count_collectives(study: Study, paths: Sequence[str], options: Counting) -> list[Collective]:
+    """Count the collectives of several paths in one search.
+
+    Raises as count_collective() does, and UsageError for options that do not fit together.
+    """
+    if unfit := options.find_unfit():
+        raise UsageError(
+            *(make_option_problem(problem, problem.name, getattr(options, problem.name)) for problem in unfit)
+        )
+    request = MeasureRequest("abs", "")
+    errors = {path: find_measure_error(request._replace(path=path), NO_PEAK, study) or 0.0 for path in paths}
+    found = make_histories(study, errors, {path: find_unit(path, study.spec) for path in paths})
+    if options.is_endless or options.repeat > 1:
         require_closed(found)
-    return [counted(history, asked) for history in found]
+    return [make_collective(history, options) for history in found]
 
 
-def said(unfit: UnfitCounting, option: str, value: object) -> Problem:
-    """What is wrong with an option."""
-    message = f"{option} {value}: expected {unfit.expected}"
+def make_option_problem(unfit: UnfitCounting, option: str, value: object) -> Problem:
+    """Return the problem with an option."""
+    message = f"{option} {value}: expected {unfit.requirement}"
     return Problem("bad-option", message, hint=f"such as {option} {unfit.example}")
 
 
-def require_closed(several: Sequence[LoadHistory]) -> None:
-    """Raise SolveError for each history that does not end where it began, within its errors: it is no cycle."""
+def require_closed(histories: Sequence[LoadHistory]) -> None:
+    """Raise SolveError if a history does not end where it began, within its errors: then it is no cycle."""
     problems = []
-    for one in several:
-        off, first, last = one.values[-1] - one.values[0], one.values[0], one.values[-1]
-        if abs(off) > 2.0 * one.error:
-            apart = f"it begins with {first:.6g} {one.unit} and ends with {last:.6g}, off by {abs(off):.2g}"
-            message = f"{one.path}: --repeat is of a motion that comes back: {apart}; the error is {one.error:.1g}"
+    for history in histories:
+        gap, first, last = history.values[-1] - history.values[0], history.values[0], history.values[-1]
+        if abs(gap) > 2.0 * history.error:
+            ends_text = f"it begins with {first:.6g} {history.unit} and ends with {last:.6g}, off by {abs(gap):.2g}"
+            message = f"{history.path}: --repeat is of a motion that comes back: {ends_text}; the error is {history.error:.1g}"
             hint = "make the duration one period: --set analysis.duration=...; or begin where the motion has settled"
-            problems.append(Problem(CODE, message, hint=hint, about="analysis"))
+            problems.append(Problem(CODE, message, hint=hint, entry_path="analysis"))
     if problems:
         raise SolveError(*problems)

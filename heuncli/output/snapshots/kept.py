@@ -1,10 +1,10 @@
-"""The numbers of a run as they are kept to be compared with later ones: a golden file, one number a line, keys sorted.
+"""The golden file: the numbers of a run, stored to be compared with later ones, one number a line, keys sorted.
 
-A file of format 1 holds of each quantity its ends, its extremes and eleven even instants; since format 2 also sums over
-its whole course and how well the instants of its extremes are known. What one of two does not hold is not compared.
+A file of format 1 holds for each quantity its ends, its extremes and eleven even instants; format 2 also holds sums
+over its whole course and the errors of the instants of its extremes. What one of two files lacks is not compared.
 
-A value is a number, or a word in its place: `open` (the laws of rigid bodies leave it open), `unknown` (beside a
-singular pose), `beyond` (the horizon, past which nothing is claimed).
+A value is a number, or a word in its place: `open` (indeterminate by the laws of rigid bodies), `unknown` (near a
+singular position), `beyond` (the horizon, after which nothing is claimed).
 """
 
 from __future__ import annotations
@@ -17,33 +17,37 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from heuncli.base.errors import Finding
 
-FORMAT: Final = 2  # of the file that is written
-READABLE = (1, 2)  # a reader of another says so
-MOST_BYTES = 64_000_000
+FORMAT: Final = 2  # of the files that are written
+READABLE = (1, 2)  # other formats are refused
+MAX_BYTES = 64_000_000
 OPEN: Final = "open"
 UNKNOWN: Final = "unknown"
 BEYOND: Final = "beyond"
 WORDS = (OPEN, UNKNOWN, BEYOND)
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Value = Number | Literal["open", "unknown", "beyond"]
-EVEN = 11  # instants at which every quantity is kept, evenly over the run
-ANOTHER = "remove it, and let --update write it anew"
+N_EVEN = 11  # number of evenly spaced instants at which every quantity is stored
+REWRITE_HINT = "remove it, and let --update write it anew"
 
 
-class KeptPart(BaseModel):
-    """A part of what is kept; no other keys than its own."""
+class SnapshotPart(BaseModel):
+    """A part of a golden file, which has no other keys than its own."""
 
     model_config = ConfigDict(extra="forbid")
 
 
-class KeptNumber(KeptPart):
+class NumberSnapshot(SnapshotPart):
     """One quantity over a run: its values at the ends, the extremes with their instants, and at the even instants.
 
-    error: what its run states of it, absolute, rounding included. What is the same throughout is `constant`. A place
-    stands where the extreme is one along a run of cuts. drift: its rate at the last instant, where that is an event's.
-    least_at_error, greatest_at_error [s]: how far the instant may lie elsewhere. tenths: the means over uneven instants
-    of each tenth of the run; mean_square: over all of these. mean, moment: integrals over the run, of the quantity and
-    of it times the place in the run from -1 to 1; mean_error: what both may err by beside `error`.
+    error: as stated by its run, absolute, rounding included
+    constant: the value, if it is the same throughout
+    least_place, greatest_place: of an extreme along a run of cuts
+    least_at_error, greatest_at_error: how far the instant may lie elsewhere [s]
+    drift: its rate at the last instant, if an event ends the run
+    tenths: the means over uneven instants of each tenth of the run
+    mean_square: over all of these
+    mean, moment: integrals over the run, of the quantity and of it times the place in the run from -1 to 1
+    mean_error: error of both in addition to `error`
     """
 
     unit: str
@@ -69,9 +73,9 @@ class KeptNumber(KeptPart):
 
     @property
     def values(self) -> dict[str | int, Value]:
-        """The values that decide, by their words; those at even instants by their number."""
+        """The values that are compared, by their words; those at even instants by their number."""
         if self.constant is not None:
-            return dict.fromkeys((*ENDS, *BOUNDS, *range(EVEN)), self.constant)
+            return dict.fromkeys((*ENDS, *BOUNDS, *range(N_EVEN)), self.constant)
         named: dict[str | int, Value | None] = {word: getattr(self, word) for word in (*ENDS, *BOUNDS)}
         named |= dict(enumerate(self.even))
         return {word: value for word, value in named.items() if value is not None}
@@ -80,15 +84,15 @@ class KeptNumber(KeptPart):
 ENDS, BOUNDS = ("first", "last"), ("least", "greatest")
 
 
-class KeptSum(KeptPart):
-    """A certain sum: its factors at the first instant with their error, and its value in the samples."""
+class SumSnapshot(SnapshotPart):
+    """A determinate sum: its factors at the first instant with their error, and its value in the samples."""
 
     factors: Mapping[str, Value]
     error: Number
-    value: KeptNumber
+    value: NumberSnapshot
 
 
-class KeptEvent(KeptPart):
+class EventSnapshot(SnapshotPart):
     """The instants of an event with their errors, and what its condition becomes there."""
 
     condition: str
@@ -98,17 +102,20 @@ class KeptEvent(KeptPart):
     to: list[bool]
 
 
-class KeptBlow(KeptPart):
-    """A blow: its instant with its error, what struck, and its numbers."""
+class ImpactSnapshot(SnapshotPart):
+    """An impact: its instant with its error, the names of what met, and its numbers."""
 
     time: Number
     time_error: Number
     names: list[str]
-    numbers: dict[str, KeptNumber]
+    numbers: dict[str, NumberSnapshot]
 
 
-class KeptRun(KeptPart):
-    """The numbers of one run. time: its first and last instant, the error of the last where an event ends it."""
+class RunSnapshot(SnapshotPart):
+    """The numbers of one run.
+
+    time: its first and last instant, and the error of the last if an event ends the run
+    """
 
     status: str
     model: dict[str, int]
@@ -116,75 +123,79 @@ class KeptRun(KeptPart):
     even_at: list[Number]
     horizon: Number | None = None
     open: list[str]
-    numbers: dict[str, KeptNumber]
-    certain_sums: dict[str, KeptSum] = {}
-    events: dict[str, KeptEvent] = {}
+    numbers: dict[str, NumberSnapshot]
+    certain_sums: dict[str, SumSnapshot] = {}
+    events: dict[str, EventSnapshot] = {}
     blows: int = 0
-    impulses: list[KeptBlow] = []
+    impulses: list[ImpactSnapshot] = []
 
 
-class KeptSpec(KeptPart):
-    """The spec that the numbers are of: as it was named, and its digest."""
+class SpecDigest(SnapshotPart):
+    """The spec of the numbers: its path as given, and its digest."""
 
     path: str
     sha256: str
 
 
-class KeptFile(KeptPart):
-    """A golden file: the numbers of a spec as it stands and of its cases; the version; digests of what was read."""
+class GoldenFile(SnapshotPart):
+    """A golden file: the numbers of a spec and of its load cases, heun's version, and digests of the files that were
+    read.
+    """
 
     format: Literal[1, 2]
     heun: str
-    spec: KeptSpec
+    spec: SpecDigest
     tables: dict[str, str] = {}
-    base: KeptRun
-    cases: dict[str, KeptRun] = {}
+    base: RunSnapshot
+    cases: dict[str, RunSnapshot] = {}
 
     @property
-    def holds_courses(self) -> bool:
-        """Whether it holds what tells of whole courses; files of format 1 do not."""
+    def has_courses(self) -> bool:
+        """Whether it holds sums over whole courses; files of format 1 do not."""
         return self.format > 1
 
 
-def text_of(kept: KeptFile) -> str:
-    """The file's text: keys sorted, one number a line; what is not given is left out."""
-    data = kept.model_dump(exclude_defaults=True)
+def format_golden_file(golden: GoldenFile) -> str:
+    """Format the file: keys sorted, one number a line, without default values."""
+    data = golden.model_dump(exclude_defaults=True)
     return json.dumps(data, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def read_kept(text: str) -> KeptFile:
-    """The file of a text. Raises Finding [not-golden] with what is wrong with it."""
+def read_golden_file(text: str) -> GoldenFile:
+    """Read a golden file from its text. Raises Finding [not-golden] with what is wrong with it."""
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
-        where = f"line {error.lineno}: " if isinstance(error, json.JSONDecodeError) else ""
-        whole = "it ends before it is complete; " * text_ends_early(text, error)
-        raise Finding("not-golden", f"this is not JSON: {whole}{where}{_said(error)}", ANOTHER) from None
-    return of_data(data)
+        line_note = f"line {error.lineno}: " if isinstance(error, json.JSONDecodeError) else ""
+        cut_off_note = "it ends before it is complete; " * is_text_cut_off(text, error)
+        raise Finding(
+            "not-golden", f"this is not JSON: {cut_off_note}{line_note}{_describe_error(error)}", REWRITE_HINT
+        ) from None
+    return validate_golden_data(data)
 
 
-def of_data(data: Any) -> KeptFile:
-    """The file that stands in decoded JSON. Raises Finding [not-golden]."""
+def validate_golden_data(data: Any) -> GoldenFile:
+    """Return the golden file of decoded JSON. Raises Finding [not-golden]."""
     if not isinstance(data, dict) or "format" not in data:
-        raise Finding("not-golden", "this is no golden file: it has no 'format'", ANOTHER)
+        raise Finding("not-golden", "this is no golden file: it has no 'format'", REWRITE_HINT)
     if data["format"] not in READABLE:
         readable = " and ".join(map(str, READABLE))
         message = f"kept in format {data['format']!r:.40}; this version reads {readable}"
-        raise Finding("not-golden", message, ANOTHER)
+        raise Finding("not-golden", message, REWRITE_HINT)
     try:
-        return KeptFile.model_validate(data)
+        return GoldenFile.model_validate(data)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         place = ".".join(map(str, first["loc"]))
-        raise Finding("not-golden", f"{place}: {first['msg']}", ANOTHER) from None
+        raise Finding("not-golden", f"{place}: {first['msg']}", REWRITE_HINT) from None
 
 
-def text_ends_early(text: str, error: Exception) -> bool:
-    """Whether a text was cut off: its error stands at its end, or in a string that does not end."""
+def is_text_cut_off(text: str, error: Exception) -> bool:
+    """Return whether a text was cut off: its error is at its end, or in an unterminated string."""
     if not isinstance(error, json.JSONDecodeError):
         return False
     return error.pos >= len(text.rstrip()) - 1 or error.msg.startswith("Unterminated string")
 
 
-def _said(error: Exception) -> str:
+def _describe_error(error: Exception) -> str:
     return error.msg if isinstance(error, json.JSONDecodeError) else "nested too deeply"

@@ -1,6 +1,6 @@
 """`--measure`: single numbers of a run, such as `max abs sections.middle.M1` or `at 0.5 energy.kinetic`.
 
-asked_by: what asked for them, as it is called in messages.
+option: the option or key that requested them, as messages name it
 """
 
 from __future__ import annotations
@@ -13,33 +13,40 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from heuncli.base.errors import Finding, Problem, SpecError, UsageError
-from heuncli.output.tables.export import dump
-from heuncli.results.results_paths import find
-from heuncli.results.run_places import marked, words_of
+from heuncli.output.tables.export import dump_json
+from heuncli.results.results_paths import find_values
+from heuncli.results.run_places import find_position_word, split_path
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.names import names_in
-from heuncli.scene.file_format.rules.outcome import wrong_path
-from heuncli.study.ask.asked_values import all_or_errors
-from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, NotOneNumber, Peak, lost_from, value
-from heuncli.study.ask.smoothed_friction import friction_warning
+from heuncli.scene.file_format.names import collect_scene_names
+from heuncli.scene.file_format.rules.outcome import find_path_error
+from heuncli.study.ask.asked_values import collect_results
+from heuncli.study.ask.measure import (
+    NOT_CLAIMED,
+    MeasureRequest,
+    NotOneNumber,
+    Peak,
+    find_exceeded_horizon,
+    measure_value,
+)
+from heuncli.study.ask.smoothed_friction import make_friction_warning
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction
 from heuncli.study.quantities.digits import OPEN, UNKNOWN
 
 T = TypeVar("T")
 PATH = re.compile(r"[\w.]+(?:[@:][\w.:+-]*)*\Z")
-OTHER_WORDS = {
+SYNONYMS = {
     "last": "final", "end": "final", "start": "first", "initial": "first", "maximum": "max", "largest": "max",
     "highest": "max", "minimum": "min", "least": "min", "lowest": "min", "maxabs": "max abs", "peak": "max abs",
     "amplitude": "max abs", "t": "at",
 }  # fmt: skip
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
-SUCH = "such as {} 'max abs sections.middle.M1'"
+EXAMPLE_HINT = "such as {} 'max abs sections.middle.M1'"
 
 
-def parse(text: str, asked_by: str = "--measure") -> MeasureRequest:
-    """The MeasureRequest that the words mean. Raises UsageError."""
+def parse_measure(text: str, option: str = "--measure") -> MeasureRequest:
+    """Parse the words of a measure. Raises UsageError."""
     words = text.split()
     match words if words and PATH.match(words[-1]) else []:
         case [path] if path not in ("max", "min", "abs", "first", "final", "at"):
@@ -50,137 +57,146 @@ def parse(text: str, asked_by: str = "--measure") -> MeasureRequest:
             return MeasureRequest("abs", path)
         case ["at", t, path] if _is_number(t):
             return MeasureRequest("at", path, float(t))
-    raise UsageError(Problem("bad-option", f"{asked_by} '{text}': {FORMS}", hint=meant(text, asked_by)))
+    raise UsageError(Problem("bad-option", f"{option} '{text}': {FORMS}", hint=make_hint(text, option)))
 
 
-def meant(text: str, asked_by: str = "--measure") -> str:
-    """A hint: the words in the order and spelling in which they are read, where that makes them a form."""
+def make_hint(text: str, option: str = "--measure") -> str:
+    """Return a hint: the words in the correct order and spelling, if that makes them a measure."""
     if "," in text:
-        return f"one number each: {asked_by} may be repeated"
+        return f"one number each: {option} may be repeated"
     plain = re.sub(r"\[(\d+)\]", r".\1", text)
-    words = [OTHER_WORDS.get(word.lower(), word) for word in re.split(r"[\s()|]+", plain) if word]
+    words = [SYNONYMS.get(word.lower(), word) for word in re.split(r"[\s()|]+", plain) if word]
     words.sort(key=lambda word: "." in word and not _is_number(word))
     proposed = " ".join(words)
     if proposed == text or "," in proposed:
-        return SUCH.format(asked_by)
+        return EXAMPLE_HINT.format(option)
     try:
-        parse(proposed)
+        parse_measure(proposed)
     except UsageError:
-        return SUCH.format(asked_by)
+        return EXAMPLE_HINT.format(option)
     return f"did you mean '{proposed}'?"
 
 
-def parse_all(texts: Sequence[str]) -> list[MeasureRequest]:
-    """The Measures that several mean. Raises UsageError with all that mean none."""
-    return all_or_errors([partial(parse, text) for text in texts])
+def parse_measures(texts: Sequence[str]) -> list[MeasureRequest]:
+    """Parse several measures. Raises UsageError with all that cannot be parsed."""
+    return collect_results([partial(parse_measure, text) for text in texts])
 
 
-def check(several: Sequence[MeasureRequest], spec: Spec, asked_by: str = "--measure") -> None:
-    """Whether their paths lead anywhere, as far as that is seen before the run. Raises SpecError [unknown-path]."""
-    names = names_in(spec)
+def require_known_paths(requests: Sequence[MeasureRequest], spec: Spec, option: str = "--measure") -> None:
+    """Check the paths of measures, as far as that is possible before the run. Raises SpecError [unknown-path]."""
+    names = collect_scene_names(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
-    wrong = [found for asked in several if (found := wrong_path(asked.path, names, runs)) is not None]
-    wrong += [found for asked in several if (found := wrong_place(asked.path, spec)) is not None]
-    if wrong:
-        raise SpecError(*(Problem("unknown-path", f"{asked_by}: {what}", hint=hint) for what, hint in wrong))
+    problems = [found for request in requests if (found := find_path_error(request.path, names, runs)) is not None]
+    problems += [found for request in requests if (found := find_place_problem(request.path, spec)) is not None]
+    if problems:
+        raise SpecError(*(Problem("unknown-path", f"{option}: {what}", hint=hint) for what, hint in problems))
 
 
-def known(
-    several: Sequence[MeasureRequest], spec: Spec, others: Iterable[Callable[[], T]], asked_by: str = "--measure"
+def check_with_others(
+    requests: Sequence[MeasureRequest], spec: Spec, others: Iterable[Callable[[], T]], option: str = "--measure"
 ) -> list[T]:
-    """What the others give, beside measures that are checked. Raises with all that is wrong with any of them."""
-    calls: tuple[Callable[[], Any], ...] = (partial(check, several, spec, asked_by), *others)
-    _, *given = all_or_errors(calls)
-    return given
+    """Check the paths of measures and call the other functions; return their results. Raises one error with all
+    problems.
+    """
+    calls: tuple[Callable[[], Any], ...] = (partial(require_known_paths, requests, spec, option), *others)
+    _, *results = collect_results(calls)
+    return results
 
 
-def wrong_place(path: str, spec: Spec) -> tuple[str, str] | None:
-    """What is wrong with the place along a run of cuts that a path names by its distance, and a hint."""
-    words = words_of(path)
-    place = marked(words)
+def find_place_problem(path: str, spec: Spec) -> tuple[str, str] | None:
+    """Return what is wrong with the place that a path names by its distance along a run of cuts, and a hint; None if
+    nothing is.
+    """
+    words = split_path(path)
+    place = find_position_word(words)
     name = next((after for word, after in pairwise(words) if word == "sections"), "")
     section = spec.sections.get(name)
     if place is None or section is None or section.from_ is None or section.to is None:
         return None
-    from heuncli.results.cut_rows import asked_distances, rows_at
+    from heuncli.results.cut_rows import cut_distances, find_cut_rows
 
     try:
-        rows_at(place, asked_distances(section.from_, section.to, section.count), None)
+        find_cut_rows(place, cut_distances(section.from_, section.to, section.count), None)
     except Finding as finding:
         return f"'{path}': {finding.message}", finding.hint
     return None
 
 
-def write(several: Sequence[MeasureRequest], study: Study, form: str) -> str:
-    """Each number as text, all its digits, on a line; as JSON with its instant, several in a list.
+def format_measures(requests: Sequence[MeasureRequest], study: Study, form: str) -> str:
+    """Format each number on a line with all its digits; for "json" with its instant, several as a list.
 
-    What is not known beyond the horizon is `?`.
+    A number beyond the horizon is `?`.
     """
     if form == "json":
-        blocks = all_or_errors([partial(block, asked, study) for asked in several])
-        return dump(blocks[0] if len(blocks) == 1 else blocks)
-    return "".join(all_or_errors([partial(line, asked, study) for asked in several]))
+        blocks = collect_results([partial(to_json_block, request, study) for request in requests])
+        return dump_json(blocks[0] if len(blocks) == 1 else blocks)
+    return "".join(collect_results([partial(format_line, request, study) for request in requests]))
 
 
-def line(asked: MeasureRequest, study: Study) -> str:
-    """One number as text."""
-    peak, horizon = measured(asked, study)
+def format_line(request: MeasureRequest, study: Study) -> str:
+    """Format one number as text."""
+    peak, horizon = measure_number(request, study)
     if horizon is not None:
         return f"{UNKNOWN}\n"
     if math.isnan(peak.value):
-        return f"{UNKNOWN if peak.at in study.unknown else OPEN}\n"
+        return f"{UNKNOWN if peak.time in study.unknown else OPEN}\n"
     return f"{peak.value!r}\n"
 
 
-def block(asked: MeasureRequest, study: Study) -> dict[str, Any]:
-    """One number for JSON."""
-    return described(asked, study, *measured(asked, study))
+def to_json_block(request: MeasureRequest, study: Study) -> dict[str, Any]:
+    """Return one number for JSON."""
+    return describe_measure(request, study, *measure_number(request, study))
 
 
-def described(asked: MeasureRequest, study: Study, peak: Peak, horizon: float | None) -> dict[str, Any]:
-    """A number as it was `measured`, for JSON: with its instant, and along a run of cuts its place."""
-    found: dict[str, Any] = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
-    if horizon is None and (note := friction_warning(study, asked.path, peak.at)) is not None:
+def describe_measure(request: MeasureRequest, study: Study, peak: Peak, horizon: float | None) -> dict[str, Any]:
+    """Return a measured number for JSON, with its instant, and along a run of cuts its place."""
+    found: dict[str, Any] = {"measure": f"{request.how} {request.path}".strip(), "value": peak.value, "at": peak.time}
+    if horizon is None and (note := make_friction_warning(study, request.path, peak.time)) is not None:
         found["notes"] = [note]
-    if "axes" in study.results.model and "joints." in asked.path:
+    if "axes" in study.results.model and "joints." in request.path:
         found["axes"] = study.results.model["axes"]
     if horizon is not None:
         return found | {"value": None, "at": None, "horizon": horizon}
     if peak.place is not None and not math.isnan(peak.value):
         found |= peak.place._asdict()
         if peak.place.cut is not None:
-            found["cut"] = number_of_cut(asked, study, peak.place.cut)
+            found["cut"] = find_cut_number(request, study, peak.place.cut)
     return found
 
 
-def number_of_cut(asked: MeasureRequest, study: Study, row: int) -> int:
-    """The number of an asked cut, by which paths name it; row: in the results, which may have two of one cut."""
-    from heuncli.results.cut_rows import cut_numbers  # where there are runs of cuts
+def find_cut_number(request: MeasureRequest, study: Study, row: int) -> int:
+    """Return the number of a requested cut, by which paths name it.
 
-    keys = find(study.results, asked.path).keys
+    row: in the results, which may have two rows for one cut
+    """
+    from heuncli.results.cut_rows import cut_indices  # where there are runs of cuts
+
+    keys = find_values(study.results, request.path).keys
     s = next(cuts.s for cuts in study.setup.cuts if cuts.name == keys[keys.index("sections") + 1])
     assert s is not None
-    return int(cut_numbers(s)[row])
+    return int(cut_indices(s)[row])
 
 
-def measured(asked: MeasureRequest, study: Study, asked_by: str = "--measure") -> tuple[Peak, float | None]:
-    """The number, and the horizon where it lies beyond. Raises UsageError."""
+def measure_number(request: MeasureRequest, study: Study, option: str = "--measure") -> tuple[Peak, float | None]:
+    """Return the number, and the horizon if it lies beyond. Raises UsageError."""
     try:
-        return value(asked, study), lost_from(asked, study)
+        return measure_value(request, study), find_exceeded_horizon(request, study)
     except NotOneNumber as error:
         (problem,) = error.problems
-        raise UsageError(problem._replace(message=f"{asked_by}: {problem.message}")) from None
+        raise UsageError(problem._replace(message=f"{option}: {problem.message}")) from None
 
 
-def warnings(several: Sequence[MeasureRequest], study: Study) -> list[str]:
-    """Why there is `?` in place of some numbers, and which stand where friction is not at its value."""
-    lost = [(asked.path, lost_from(asked, study)) for asked in several]
-    told = [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
+def find_warnings(requests: Sequence[MeasureRequest], study: Study) -> list[str]:
+    """Return why some numbers are `?`, and which stand at instants at which friction is not at its full value."""
+    lost = [(request.path, find_exceeded_horizon(request, study)) for request in requests]
+    sentences = [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
     if has_smoothed_friction(study.setup.scene.mechanism):
-        known = [asked for asked, (_, horizon) in zip(several, lost, strict=True) if horizon is None]
-        found = (friction_warning(study, asked.path, value(asked, study).at) for asked in known)
-        told += [text for text in found if text is not None]
-    return told
+        known_requests = [request for request, (_, horizon) in zip(requests, lost, strict=True) if horizon is None]
+        found = (
+            make_friction_warning(study, request.path, measure_value(request, study).time) for request in known_requests
+        )
+        sentences += [text for text in found if text is not None]
+    return sentences
 
 
 def _is_number(word: str) -> bool:

@@ -1,4 +1,4 @@
-"""A comparison with what a spec expects, or with what was kept of it, as plain values that are told."""
+"""Outcomes of comparisons with the expectations of a spec or with its golden file, as plain values."""
 
 from __future__ import annotations
 
@@ -12,15 +12,22 @@ from heuncli.results.results import Array
 from heuncli.study.ask.expectations import Case
 from heuncli.study.quantities.digits import OPEN
 
-NONE: Mapping[str, Any] = {}  # a dict, which one process can hand to another
-EXPECTED, KEPT = "expect", "golden"
+EMPTY_BLOCK: Mapping[str, Any] = {}  # a dict, which can be sent to another process
+EXPECTED, GOLDEN = "expect", "golden"
 
 
 class Outcome(NamedTuple):
-    """One comparison: of what and when, expected, found and allowed in words, and if it fails why.
+    """One comparison.
 
-    kind: with what the spec expects, or with what was kept; case: the load case; block: the same for JSON; warned: a
-    thing that is told and does not fail; skipped: nothing was compared; note: what is said of one that holds.
+    kind: with what the spec expects, or with the golden file
+    subject: what is compared
+    failure: why it fails, or None
+    case: the load case
+    expected_text, found_text, tolerance_text: the numbers in words
+    block: the same for JSON
+    is_warning: whether it is reported but does not fail
+    is_skipped: whether nothing was compared
+    note: a remark if it passes
     """
 
     kind: str
@@ -33,71 +40,74 @@ class Outcome(NamedTuple):
     expected: str = ""
     found: str = ""
     allowed: str = ""
-    block: Mapping[str, Any] = NONE
+    block: Mapping[str, Any] = EMPTY_BLOCK
     warned: bool = False
     skipped: bool = False
     note: str = ""
 
     @property
-    def passed(self) -> bool:
-        """Whether it holds."""
-        return self.failure is None or self.warned
+    def has_passed(self) -> bool:
+        """Whether the comparison holds, or only warns."""
+        return self.failure is None or self.is_warning
 
     @property
     def name(self) -> str:
-        """The case, what it is of, and when, in one line."""
+        """Case, subject and time in one line."""
         case = f"{self.case}: " if self.case else ""
-        return f"{case}{self.of} {self.when}".strip()
+        return f"{case}{self.subject} {self.when}".strip()
 
 
-def outcome_of(case: Case, path: str, of: str = "") -> Outcome:
-    """An expectation's comparison as plain values; of: the load case."""
+def make_outcome(case: Case, path: str, case_name: str = "") -> Outcome:
+    """Convert the comparison of an expectation to plain values.
+
+    case_name: of the load case
+    """
     block = {
-        **({"case": of} if of else {}),
+        **({"case": case_name} if case_name else {}),
         "file": path,
         "line": case.location.line,
-        "of": case.of,
+        "of": case.path,
         "when": case.when,
-        **_wanted(case),
+        **_make_block(case),
     }
-    block |= {"passed": case.passed, "message": case.failure or ""}
-    bounded = case.below is not None or case.above is not None
+    block |= {"passed": case.is_met, "message": case.failure or ""}
+    has_bounds = case.upper_bound is not None or case.lower_bound is not None
     return Outcome(
-        EXPECTED, case.of, case.failure, case.location.line, case.location.column, case=of, when=case.when,
-        expected=_expected(case), found=_text(case.found), allowed="" if bounded else f"{case.tolerance:.3g}",
-        block=_plain(block),
+        EXPECTED, case.path, case.failure, case.location.line, case.location.column, case=case_name, when=case.when,
+        expected_text=_format_expected(case), found_text=_format_numbers(case.found_values), tolerance_text="" if has_bounds else f"{case.tolerance:.3g}",
+        block=_to_lists(block),
     )  # fmt: skip
 
 
-def _plain(value: Any) -> Any:
-    """Without arrays, which are more to send."""
+def _to_lists(value: Any) -> Any:
+    """Replace arrays by lists, which are smaller to send to another process."""
     if isinstance(value, dict):
-        return {key: _plain(member) for key, member in value.items()}
+        return {key: _to_lists(member) for key, member in value.items()}
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return _to_lists(value.tolist())
     if isinstance(value, (list, tuple)):
-        return [_plain(member) for member in value]
+        return [_to_lists(member) for member in value]
     return value
 
 
-def _wanted(case: Case) -> dict[str, Any]:
-    """What was expected and found; of bounds the extreme that decides, with its instant and place."""
-    if case.below is None and case.above is None:
-        told = {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
-        return told | (case.worst_point if case.curve is not None else {})
-    bounds = {"below": case.below, "above": case.above}
+def _make_block(case: Case) -> dict[str, Any]:
+    """Return what was expected and found; for bounds the decisive extreme with its instant and place."""
+    if case.upper_bound is None and case.lower_bound is None:
+        block_of_value = {"expected": case.expected_values, "found": case.found_values, "tolerance": case.tolerance}
+        return block_of_value | (case.worst_point if case.curve is not None else {})
+    bounds = {"below": case.upper_bound, "above": case.lower_bound}
     block: dict[str, Any] = {key: bound for key, bound in bounds.items() if bound is not None}
-    block |= {"found": case.found, "at": case.extreme.at if case.extreme is not None else None}
+    block |= {"found": case.found_values, "at": case.extreme.time if case.extreme is not None else None}
     return block | (case.extreme.place._asdict() if case.extreme is not None and case.extreme.place is not None else {})
 
 
-def _expected(case: Case) -> str:
-    bounds = [f"{word} {bound:.9g}" for word, bound in (("above", case.above), ("below", case.below))
+def _format_expected(case: Case) -> str:
+    bounds = [f"{word} {bound:.9g}" for word, bound in (("above", case.lower_bound), ("below", case.upper_bound))
               if bound is not None]  # fmt: skip
-    return ", ".join(bounds) or _text(case.expected)
+    return ", ".join(bounds) or _format_numbers(case.expected_values)
 
 
-def _text(values: Array | None) -> str:
+def _format_numbers(values: Array | None) -> str:
     if values is None:
         return ""
     texts = [OPEN if np.isnan(value) else f"{value:.9g}" for value in np.ravel(values)[:6]]

@@ -1,6 +1,7 @@
-"""Which reports are told of a spec: those that somebody asks for, by name or by single entries, else by default.
+"""Select the reports of a spec: those requested by name or by single entries, or the default ones.
 
-option: what asked, as it is called in messages; measures: what gives single numbers there.
+option: the option that requested them, as messages name it
+measures: the option that prints single numbers
 """
 
 from __future__ import annotations
@@ -10,16 +11,16 @@ from typing import Any
 
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean, nearest
+from heuncli.base.nearest import find_similar, suggest
 from heuncli.output.tables.page import TABLE_DEFAULT
-from heuncli.results.results_schema import BLOWS, REPORT_OF, REPORTS, ROWS, SHARES, quantity, with_shared
+from heuncli.results.results_schema import IMPULSES, REPORT_OF, REPORTS, ROWS, SHARES, add_shared_reports, find_quantity
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.asked_values import choice
-from heuncli.study.model.selection import EntryKeys, Selection, entries_of, entry_at
+from heuncli.study.ask.asked_values import require_choice
+from heuncli.study.model.selection import EntryKeys, Selection, list_entries, split_entry
 
 
-class Only(NamedTuple):
-    """What alone is asked for: whole reports, and the paths of single entries."""
+class ReportChoice(NamedTuple):
+    """What is requested: whole reports, and the paths of single entries."""
 
     reports: frozenset[str]
     paths: tuple[str, ...]
@@ -27,71 +28,78 @@ class Only(NamedTuple):
     measures: str = "--measure"
 
 
-def told_by_default(spec: Spec) -> frozenset[str]:
-    """Those of the spec's `report`; else all but motion and points, and of blows at time 0 alone the blows."""
+def find_default_reports(spec: Spec) -> frozenset[str]:
+    """Return the spec's `report`, or by default all but motion and points; of impacts at time 0 only the impacts."""
     if spec.report is not None:
         return frozenset(spec.report)
-    return frozenset({BLOWS}) if spec.analysis.type == "impulse" else TABLE_DEFAULT
+    return frozenset({IMPULSES}) if spec.analysis.type == "impulse" else TABLE_DEFAULT
 
 
-def only(words: Iterable[str], option: str = "--only", measures: str = "--measure") -> Only:
-    """The reports, and the paths of single entries, that some words name; what is no report may be such an entry.
-
-    Raises UsageError for what can be neither.
-    """
+def parse_choice(words: Iterable[str], option: str = "--only", measures: str = "--measure") -> ReportChoice:
+    """Parse the names of reports and the paths of single entries. Raises UsageError for a word that can be neither."""
     names = [REPORT_OF.get(word.strip(), word.strip()) for word in words]
     paths = tuple(name for name in names if name not in (*REPORTS, SHARES))
     for name in paths:
         if not all(part.isidentifier() or part.isdecimal() for part in name.split(".")):
-            choice(option, name, (*REPORTS, SHARES))
-    return Only(frozenset(names) - frozenset(paths), paths, option, measures)
+            require_choice(option, name, (*REPORTS, SHARES))
+    return ReportChoice(frozenset(names) - frozenset(paths), paths, option, measures)
 
 
-def selected(asked: Only | None, spec: Spec, default: frozenset[str], *, by_cause: bool = False) -> Selection:
-    """What is asked for; default: the reports where nothing is. Raises UsageError for what the scene does not have."""
-    wanted, entries = default, frozenset[EntryKeys]()
-    if asked is not None:
-        wanted = asked.reports
-        single = [_entry(path, spec, asked) for path in asked.paths]
-        entries = frozenset(entry for entry in single if REPORT_OF[entry[0]] not in wanted)
-        wanted = wanted | {REPORT_OF[entry[0]] for entry in single}
-    return Selection(with_shared(wanted | {SHARES} if by_cause else wanted), entries)
+def select_reports(
+    request: ReportChoice | None, spec: Spec, default: frozenset[str], *, by_cause: bool = False
+) -> Selection:
+    """Select what is requested; default: the reports without a request.
+
+    Raises UsageError for entries that the scene does not have.
+    """
+    reports, entries = default, frozenset[EntryKeys]()
+    if request is not None:
+        reports = request.reports
+        requested_entries = [_find_entry(path, spec, request) for path in request.paths]
+        entries = frozenset(entry for entry in requested_entries if REPORT_OF[entry[0]] not in reports)
+        reports = reports | {REPORT_OF[entry[0]] for entry in requested_entries}
+    return Selection(add_shared_reports(reports | {SHARES} if by_cause else reports), entries)
 
 
-def _entry(path: str, spec: Spec, asked: Only) -> EntryKeys:
-    """The entry that a path names."""
+def _find_entry(path: str, spec: Spec, request: ReportChoice) -> EntryKeys:
+    """Return the entry that a path names."""
     words = path.split(".")
-    known = entries_of(spec)
-    entry, rest = entry_at(words, known)
+    entries = list_entries(spec)
+    entry, rest = split_entry(words, entries)
     if entry is not None and not rest:
         return entry
-    names = [".".join((*block, name)) for block, own in known.items() if block[0] == words[0] for name in own]
-    message = f"{asked.option} {path}: not an entry of the results"
+    names = [
+        ".".join((*block, name))
+        for block, entry_names in entries.items()
+        if block[0] == words[0]
+        for name in entry_names
+    ]
+    message = f"{request.option} {path}: not an entry of the results"
     if entry is not None:
-        hint = f"say {'.'.join(entry)}; {asked.measures} prints single numbers"
-    elif quantity(words) is not None and REPORT_OF.get(words[0]):
-        hint = f"say {words[0]}; {asked.measures} prints single numbers"
+        hint = f"say {'.'.join(entry)}; {request.measures} prints single numbers"
+    elif find_quantity(words) is not None and REPORT_OF.get(words[0]):
+        hint = f"say {words[0]}; {request.measures} prints single numbers"
     elif words[0] not in REPORT_OF:
-        message = f"{asked.option} {path}: known: {', '.join((*REPORTS, SHARES))}, or entries of them, as joints.NAME"
-        hint = _meant(path, known, asked.option)
+        message = f"{request.option} {path}: known: {', '.join((*REPORTS, SHARES))}, or entries of them, as joints.NAME"
+        hint = _make_hint(path, entries, request.option)
     else:
-        hint = did_you_mean(path, names, "entries") if names else f"the scene has no {words[0]}"
+        hint = suggest(path, names, "entries") if names else f"the scene has no {words[0]}"
     raise UsageError(Problem("bad-option", message, hint=hint))
 
 
-def _meant(path: str, known: Mapping[EntryKeys, Mapping[str, Any]], option: str) -> str:
-    """What may be meant by a path that begins with no block."""
-    from heuncli.results.path_hints import meant  # only on the way to an error
+def _make_hint(path: str, entries: Mapping[EntryKeys, Mapping[str, Any]], option: str) -> str:
+    """Return a hint on a path that begins with no block of results."""
+    from heuncli.results.path_hints import find_similar_path  # only for an error message
 
-    near = nearest(path, (*REPORTS, SHARES))
-    if "." not in path and not near:
+    similar = find_similar(path, (*REPORTS, SHARES))
+    if "." not in path and not similar:
         rows = (row.path.split(".") for row in ROWS)
-        told = next((REPORT_OF[words[0]] for words in rows if path in words[2:] and words[0] in REPORT_OF), None)
-        if told is not None:
-            return f"{path} is told in {told}: {option} {told}"
+        report = next((REPORT_OF[words[0]] for words in rows if path in words[2:] and words[0] in REPORT_OF), None)
+        if report is not None:
+            return f"{path} is told in {report}: {option} {report}"
     elif "." not in path:
-        return f"did you mean {near}?"
-    entry = meant(path, lambda words: entry_at(words, known)[0] is not None)
+        return f"did you mean {similar}?"
+    entry = find_similar_path(path, lambda words: split_entry(words, entries)[0] is not None)
     if entry is not None:
-        return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
-    return f"did you mean {near}?" if near else f"such as {option} foundation,joints.NAME"
+        return f"did you mean {'.'.join(split_entry(entry.split('.'), entries)[0] or ())}?"
+    return f"did you mean {similar}?" if similar else f"such as {option} foundation,joints.NAME"

@@ -1,4 +1,4 @@
-"""What a run is warned of, by reading and by solving: sentences, once each."""
+"""Collect the warnings of a run, from reading and from solving, each once."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Spec
 
 
-def warnings_of(spec: Spec, results: Results | None, later: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Those of reading, with their places, and those of solving and of what came later that are not among them."""
-    known = {problem.message for problem in spec.warnings}
-    solved = [text for text in results.warnings if text not in known] if results else []
-    return [str(problem) for problem in spec.warnings], solved + list(later)
+def collect_warnings(spec: Spec, results: Results | None, later: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Return the warnings of reading, with their places, and those of solving and later ones that are not among
+    them.
+    """
+    reading_messages = {problem.message for problem in spec.warnings}
+    solving_warnings = [text for text in results.warnings if text not in reading_messages] if results else []
+    return [str(problem) for problem in spec.warnings], solving_warnings + list(later)

@@ -1,84 +1,96 @@
-"""What a blow does as one table: a line a vector with its size or a line a number, under the name of what it is of."""
+"""The table of one impact: a row for each vector with its magnitude, and for each other number, under the object's
+name.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
-from heuncli.output.tables.instants_tables import group_texts
+from heuncli.output.tables.instants_tables import format_group
 from heuncli.output.tables.table_blocks import NumberRow, RowGroup, TableBlock
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.digits import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Certainty
 
-LEAD = 3  # columns of words: of what, which number, its unit
-HEADS = (*XYZ, "value")  # of a vector its size
-NOTHING = ("", "0")
+LEADING_COLUMNS = 3  # name, label and unit
+NUMBER_HEADS = (*XYZ, "value")  # the value of a vector is its magnitude
+EMPTY_CELLS = ("", "0")
 
 
-def blow_table(
+def make_impact_table(
     heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: Certainty
 ) -> TextTable:
-    """The blocks of a blow, (1,) `times`, below each other; what is 0 takes no line and no column."""
+    """Combine the blocks of one impact in a single table, without rows and columns that are zero.
+
+    times: the instant of the impact, (1,)
+    """
     rows: list[tuple[str, ...] | str] = []
-    notes, whole = list[str](), True
+    notes, complete = list[str](), True
     for block in blocks:
-        lines = [line for group in block.groups for line in _lines(block, group, times, horizon, certain)]
-        shown = [line for line in lines if set(line[LEAD:-1]) - set(NOTHING)]
-        whole &= len(shown) == len(lines)
-        if shown:
-            rows += [block.heading, *_named_once(shown)]
+        row_cells = [line for group in block.groups for line in _iter_rows(block, group, times, horizon, certain)]
+        nonzero = [line for line in row_cells if set(line[LEADING_COLUMNS:-1]) - set(EMPTY_CELLS)]
+        complete &= len(nonzero) == len(row_cells)
+        if nonzero:
+            rows += [block.heading, *_blank_repeated_names(nonzero)]
             notes += block.notes
-        cells = {text for line in shown for text in line}
+        cells = {text for line in nonzero for text in line}
         notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in cells]
     if not rows:
         return TextTable(heading, notes=("0 throughout",))
-    table = _without_empty(TextTable(heading, _columns(), tuple(rows)))
-    numbers = {column.head for column in table.columns} & set(HEADS)
-    notes += [ZERO_NOTE] if not whole or len(numbers) < len(HEADS) else []
+    table = _drop_empty_columns(TextTable(heading, _make_columns(), tuple(rows)))
+    numbers = {column.head for column in table.columns} & set(NUMBER_HEADS)
+    notes += [ZERO_NOTE] if not complete or len(numbers) < len(NUMBER_HEADS) else []
     return table._replace(notes=tuple(dict.fromkeys(notes)))
 
 
-def _columns() -> tuple[TextColumn, ...]:
-    words = [TextColumn("", "left")] * LEAD
-    return (*words, *(TextColumn(head, vector="numbers") for head in HEADS), TextColumn("", "left", spare=True))
+def _make_columns() -> tuple[TextColumn, ...]:
+    leading = [TextColumn("", "left")] * LEADING_COLUMNS
+    return (
+        *leading,
+        *(TextColumn(head, vector="numbers") for head in NUMBER_HEADS),
+        TextColumn("", "left", is_optional=True),
+    )
 
 
-def _lines(
+def _iter_rows(
     block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
 ) -> Iterator[tuple[str, ...]]:
-    """Name, label, unit, components, value, and what it is of: of each vector, and of each other number."""
-    texts = {label: own[0] for label, own in group_texts(block, group, times, horizon, certain).items()}
-    sizes = {row.family: texts[row.label] for row in group.rows if row.even and row.vector}
-    for _, same in groupby(group.rows, key=lambda row: row.vector or row.label):
-        rows = list(same)
-        if not _told_by_size(rows[0], texts, sizes):
+    """Yield for each vector, and each other number: name, label, unit, components, value, and the group's note."""
+    texts = {
+        label: cells_of_label[0]
+        for label, cells_of_label in format_group(block, group, times, horizon, certain).items()
+    }
+    magnitudes = {row.family: texts[row.label] for row in group.rows if row.is_magnitude and row.vector}
+    for _, vector_rows in groupby(group.rows, key=lambda row: row.vector or row.label):
+        rows = list(vector_rows)
+        if not _repeats_magnitude(rows[0], texts, magnitudes):
             cells = [texts[row.label] for row in rows]
-            before = [""] * (len(HEADS) - len(cells))
+            before = [""] * (len(NUMBER_HEADS) - len(cells))
             label = rows[0].vector or rows[0].label.removeprefix(
                 f"{block.key} "
-            )  # under its heading, energy after: after
+            )  # the heading holds the key: "energy after" becomes "after"
             yield (group.name, label, rows[0].unit, *before, *cells, group.note)
 
 
-def _told_by_size(row: NumberRow, texts: Mapping[str, str], sizes: Mapping[str, str]) -> bool:
-    """Whether a number is that part of a vector which is all of it: the radial force where none is axial."""
+def _repeats_magnitude(row: NumberRow, texts: Mapping[str, str], magnitudes: Mapping[str, str]) -> bool:
+    """Return whether the row only repeats the vector's magnitude, as a radial force without an axial one."""
     known = texts[row.label] not in (OPEN, UNKNOWN)
-    return known and not row.vector and row.even and texts[row.label] == sizes.get(row.family)
+    return known and not row.vector and row.is_magnitude and texts[row.label] == magnitudes.get(row.family)
 
 
-def _named_once(lines: Sequence[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
-    """The lines, of which only the first of several of one name tells it and what it is of."""
+def _blank_repeated_names(lines: Sequence[tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
+    """Show the name and note of consecutive rows of one object only in the first of them."""
     before = None
     for line in lines:
         yield line if line[0] != before or not before else ("", *line[1:-1], "")
         before = line[0]
 
 
-def _without_empty(table: TextTable) -> TextTable:
-    """The table without the columns in which nothing stands, or nothing but 0."""
+def _drop_empty_columns(table: TextTable) -> TextTable:
+    """Drop the columns that are empty or zero in every row."""
     cells = [row for row in table.rows if not isinstance(row, str)]
-    kept = [i for i in range(len(table.columns)) if any(row[i] not in NOTHING for row in cells)]
-    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in kept) for row in table.rows)
-    return TextTable(table.heading, tuple(table.columns[i] for i in kept), rows, table.notes)
+    shown_columns = [i for i in range(len(table.columns)) if any(row[i] not in EMPTY_CELLS for row in cells)]
+    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
+    return TextTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, table.notes)

@@ -1,4 +1,6 @@
-"""Certain sums in plain words: `joints.top Fz + joints.bottom Fz = 49.05 N; the split is open`."""
+"""Format determinate sums of indeterminate components: `joints.top Fz + joints.bottom Fz = 49.05 N; the split is
+open`.
+"""
 
 from __future__ import annotations
 
@@ -6,84 +8,100 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from heuncli.output.tables.table_blocks import short
+from heuncli.output.tables.table_blocks import format_component
 from heuncli.output.tables.text_table import TextTable
-from heuncli.results.results import Array, CertainSum, Results
+from heuncli.results.results import Array, DeterminateSum, Results
 from heuncli.results.results_schema import AXIAL_FORCES, SECTION_FORCES, XYZ
-from heuncli.study.quantities.digits import Certainty, beyond_horizon, largest, write
-from heuncli.study.quantities.table_units import Shown
+from heuncli.study.quantities.digits import Certainty, format_unclaimed, largest_magnitude, write_numbers
+from heuncli.study.quantities.table_units import DisplayUnit
 
-MOST_TERMS = 6  # tables show short sums of forces, JSON all
-TURNS = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"
+MAX_TERMS = 6  # tables show short sums of forces, JSON shows all
+TURNING_FACTOR_NOTE = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"
 FORCES = frozenset({"force", *AXIAL_FORCES, *SECTION_FORCES})
 
 
-def sums_table(
-    results: Results, certain: Certainty, beyond: Results | None = None, unit: Shown = ("N", 1.0)
+def make_sums_table(
+    results: Results, certain: Certainty, last_instant: Results | None = None, shown_unit: DisplayUnit = ("N", 1.0)
 ) -> TextTable | None:
-    """The sums that are certain although their terms are open; None where there are none.
+    """Make the table of sums that are determinate although their terms are not; None if there are none.
 
-    beyond: the last instant, where the run ends beyond its horizon; unit: that is shown, for N·s of impulses.
+    last_instant: results at the last instant, if the run ends beyond its horizon
+    shown_unit: unit of forces, N·s for impulses
     """
     if not results.certain_sums:
         return None
-    ends = [None] * len(results.certain_sums) if beyond is None else beyond.certain_sums
-    told = [_line(block, certain, end, unit) for block, end in zip(results.certain_sums, ends, strict=True)]
-    lines = [line for line in told if line is not None]
-    left = len(results.certain_sums) - len(lines)
-    rest = f"{left} more in --format json (moments, or more than {MOST_TERMS} terms)" if left else ""
-    notes = [*lines, *([TURNS] if any("(t)·" in line for line in lines) else []), *([rest] if rest else [])]
-    axes = ", world axes" if "axes" in results.model else ""  # elsewhere others are told
+    ends = [None] * len(results.certain_sums) if last_instant is None else last_instant.certain_sums
+    all_lines = [
+        _format_sum(block, certain, end, shown_unit) for block, end in zip(results.certain_sums, ends, strict=True)
+    ]
+    lines = [line for line in all_lines if line is not None]
+    n_hidden = len(results.certain_sums) - len(lines)
+    hidden_note = f"{n_hidden} more in --format json (moments, or more than {MAX_TERMS} terms)" if n_hidden else ""
+    notes = [
+        *lines,
+        *([TURNING_FACTOR_NOTE] if any("(t)·" in line for line in lines) else []),
+        *([hidden_note] if hidden_note else []),
+    ]
+    axes = ", world axes" if "axes" in results.model else ""  # other axes are given elsewhere
     return TextTable(f"CERTAIN SUMS  of components that redundancy leaves open{axes}", notes=tuple(notes))
 
 
-def _line(block: CertainSum, certain: Certainty, beyond: CertainSum | None, of: Shown) -> str | None:
+def _format_sum(
+    block: DeterminateSum, certain: Certainty, last_instant: DeterminateSum | None, shown_unit: DisplayUnit
+) -> str | None:
+    """Format one sum with its value, or its first, last, smallest and largest value; None if it is too long or has
+    moments.
+    """
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
-    if len(terms) > MOST_TERMS or not all(_is_force(path) for path in terms):
+    if len(terms) > MAX_TERMS or not all(_is_force(path) for path in terms):
         return None
-    unit, size = of
+    unit, size = shown_unit
     values = size * np.asarray(block["value"], dtype=np.float64)
-    scale = largest(values)
+    scale = largest_magnitude(values)
     numbers = [values[0], values[-1], np.nanmin(values), np.nanmax(values)]
-    texts = write(numbers, certain.style("reactions", unit, scale))
-    if beyond is not None:
-        texts[1] = beyond_horizon(size * beyond["value"][-1], unit, certain, texts[1])
-    if texts == ["0"] * 4 and _opposite(terms):
-        return " = ".join(map(label, terms)) + "; the size is open"
-    left = _sum(terms)
+    texts = write_numbers(numbers, certain.choose_style("reactions", unit, scale))
+    if last_instant is not None:
+        texts[1] = format_unclaimed(size * last_instant["value"][-1], unit, certain, texts[1])
+    if texts == ["0"] * 4 and _states_equality(terms):
+        return " = ".join(map(format_path, terms)) + "; the size is open"
+    sum_text = _format_terms(terms)
     if len(set(texts)) == 1:
         value = "0" if texts[0] == "0" else f"{texts[0]} {unit}"
-        return f"{left} = {value}; the split is open"
+        return f"{sum_text} = {value}; the split is open"
     first, last, low, high = texts
-    course = f"{first} {unit} first, {last} {unit} last, {low} to {high} {unit} in the samples"
-    return f"{left} = {course}; the split is open"
+    range_text = f"{first} {unit} first, {last} {unit} last, {low} to {high} {unit} in the samples"
+    return f"{sum_text} = {range_text}; the split is open"
 
 
-def label(path: str) -> str:
-    """A path as the tables call it: `joints.top.force.z` is `joints.top Fz`."""
+def format_path(path: str) -> str:
+    """Format a path as the tables name it: `joints.top.force.z` becomes `joints.top Fz`."""
     name, _, component = path.rpartition(".")
     if component in XYZ:
         name, _, quantity = name.rpartition(".")
         component = f"{quantity}.{component}"
-    return f"{name} {short(component)}"
+    return f"{name} {format_component(component)}"
 
 
 def _is_force(path: str) -> bool:
     return bool(FORCES.intersection(path.split(".")[-2:]))
 
 
-def _opposite(terms: Mapping[str, Array]) -> bool:
-    """Whether the sum states that two components are equal."""
+def _states_equality(terms: Mapping[str, Array]) -> bool:
+    """Return whether the sum states that two components are equal."""
     factors = list(terms.values())
     return len(factors) == 2 and bool(np.all(factors[0] + factors[1] == 0.0))
 
 
-def _sum(terms: Mapping[str, Array]) -> str:
+def _format_terms(terms: Mapping[str, Array]) -> str:
     text = ""
     for path, factors in terms.items():
-        steady = bool(np.all(factors == factors[0]))
+        is_constant = bool(np.all(factors == factors[0]))
         size = abs(float(factors[0]))
-        number = "" if steady and size == 1.0 else f"{size:.4g}·" if steady else f"{size:.4g}(t)·"
+        number = "" if is_constant and size == 1.0 else f"{size:.4g}·" if is_constant else f"{size:.4g}(t)·"
         sign = "−" if factors[0] < 0.0 else "+"
-        text += f" {sign} {number}{label(path)}" if text else f"{'−' if sign == '−' else ''}{number}{label(path)}"
+        text += (
+            f" {sign} {number}{format_path(path)}"
+            if text
+            else f"{'−' if sign == '−' else ''}{number}{format_path(path)}"
+        )
     return text

@@ -1,4 +1,4 @@
-"""Load collectives as tables, as plain data for JSON, and as CSV in long form (manual/collectives.md)."""
+"""Write load collectives as tables, as plain data for JSON, and as CSV in long form (manual/collectives.md)."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.tables.text_table import TextColumn, TextTable, head
+from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
 from heuncli.results.results import Array
 from heuncli.study.load_cycles.counted import REFERENCE, Collective
-from heuncli.study.quantities.digits import Style, rough, style, write, write_times
-from heuncli.study.quantities.error_digits import with_digits
+from heuncli.study.quantities.digits import Style, choose_style, format_error, write_numbers, write_times
+from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
 
-CLOSED = "closed"  # of a repeated history, where each time counts alike
+CLOSED = "closed"  # a history repeated endlessly
 CSV_COLUMNS = ("path", "quantity", "unit", "slope", "above", "up_to", "mean_above", "mean_up_to", "value")
 NO_SIGN = (
     "a magnitude has no sign: where the load reverses it counts twice, with half the range; components (.x, .y, .z) "
@@ -22,188 +22,237 @@ NO_SIGN = (
 )
 NEVER_NEGATIVE = "a magnitude has no sign: where the load reverses it counts twice, with half the range"
 NO_CYCLES = "no cycles: it does not vary by more than its error"
-BLOWS = "blows: the loads on both sides of their jumps count; their impulses (N·s) are in no collective"
+IMPACT_NOTE = "blows: the loads on both sides of their jumps count; their impulses (N·s) are in no collective"
 
 
-def tables(one: Collective, units: Units, *, struck: bool) -> list[TextTable]:
-    """What is told of a collective; struck: whether there were blows."""
-    found = [ranges_table(one, units, struck=struck)]
-    if one.total:
-        found += [equivalents_table(one, units)] if one.equivalents else []
-        found += [crossings_table(one, units), matrix_table(one, units)]
-    return found
+def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> list[TextTable]:
+    """Make all tables of a collective; has_impacts: whether there were impacts during the run."""
+    tables = [make_ranges_table(collective, units, has_impacts=has_impacts)]
+    if collective.total_cycles:
+        tables += [make_equivalents_table(collective, units)] if collective.equivalents else []
+        tables += [make_crossings_table(collective, units), make_matrix_table(collective, units)]
+    return tables
 
 
-def ranges_table(one: Collective, units: Units, *, struck: bool) -> TextTable:
-    """Cycles by class of ranges, with their share of the damage, and what was counted below."""
-    unit, size = units.of(one.history.unit)
-    limits = limit_texts(one, one.matrix.ranges * size, size)
-    beyond = one.counts[::-1].cumsum()[::-1]
-    columns = [TextColumn(head("range above", unit)), TextColumn(head("up to", unit)), TextColumn("cycles")]
-    columns += [TextColumn("with larger ones"), *(TextColumn(f"damage, m = {s:g}") for s in one.asked.slopes)]
+def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool) -> TextTable:
+    """Make the table of cycles by class of range, with their shares of the damage."""
+    unit, size = units.find(collective.history.unit)
+    limits = format_limits(collective, collective.matrix.ranges * size, size)
+    larger_counts = collective.counts[::-1].cumsum()[::-1]
+    columns = [
+        TextColumn(format_head("range above", unit)),
+        TextColumn(format_head("up to", unit)),
+        TextColumn("cycles"),
+    ]
+    columns += [TextColumn("with larger ones"), *(TextColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
     rows = tuple(
-        (limits[k], limits[k + 1], number(one.counts[k]), number(beyond[k]), *map(percent, one.shares[:, k]))
-        for k in range(len(one.counts))
+        (
+            limits[k],
+            limits[k + 1],
+            format_count(collective.counts[k]),
+            format_count(larger_counts[k]),
+            *map(format_share, collective.shares[:, k]),
+        )
+        for k in range(len(collective.counts))
     )
-    heading = f"COLLECTIVE {one.history.path}  rainflow cycles (ASTM E1049-85) by range, {told_times(one)}"
-    return TextTable(heading, tuple(columns), rows if one.total else (), tuple(notes(one, units, struck=struck)))
+    heading = (
+        f"COLLECTIVE {collective.history.path}  rainflow cycles (ASTM E1049-85) by range, {format_times(collective)}"
+    )
+    return TextTable(
+        heading,
+        tuple(columns),
+        rows if collective.total_cycles else (),
+        tuple(iter_notes(collective, units, has_impacts=has_impacts)),
+    )
 
 
-def told_times(one: Collective) -> str:
-    """Over which time, and how often it was told."""
-    times = one.history.times
+def format_times(collective: Collective) -> str:
+    """Format the time span of a collective and how often it is repeated."""
+    times = collective.history.times
     begin, end = write_times((float(times[0]), float(times[-1])), float(np.ptp(times)))
     span = f"t = {begin} to {end} s"
-    if one.asked.closed:
+    if collective.counting.is_endless:
         return f"{span}, repeated for ever: of each time"
-    return f"{span}, {one.asked.repeat} times in a row" if one.asked.repeat > 1 else span
+    return f"{span}, {collective.counting.repeat} times in a row" if collective.counting.repeat > 1 else span
 
 
-def notes(one: Collective, units: Units, *, struck: bool) -> Iterator[str]:
-    """What stands below the classes."""
-    unit, size = units.of(one.history.unit)
-    low, high = texts(np.array([one.history.values.min(), one.history.values.max()]) * size, one.history.error * size)
-    behind = f" {unit}" if unit != "1" else ""
-    yield f"{of_cycles(one.total)} of {one.points} turning points between {low} and {high}{behind}"
-    if not one.total:
-        yield NO_CYCLES
-    if one.below.cycles:
-        small = rough(one.below.range * size)
-        yield f"below the error: {of_cycles(one.below.cycles)}, no larger than {small}{behind}; in no class, no sum"
-    if one.history.is_magnitude:
-        yield NO_SIGN if one.history.of_vector else NEVER_NEGATIVE
-    if struck:
-        yield BLOWS
-
-
-def equivalents_table(one: Collective, units: Units) -> TextTable:
-    """The damage-equivalent ranges, and their errors."""
-    unit, size = units.of(one.history.unit)
-    columns = tuple(map(TextColumn, ("slope m", "of cycles", head("range", unit), head("error", unit))))
-    rows = tuple(
-        (f"{own.slope:g}", number(own.cycles), with_digits(own.range * size, own.error * size), rough(own.error * size))
-        for own in one.equivalents
+def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> Iterator[str]:
+    """Yield the notes below the table of ranges."""
+    unit, size = units.find(collective.history.unit)
+    low, high = format_values(
+        np.array([collective.history.values.min(), collective.history.values.max()]) * size,
+        collective.history.error * size,
     )
-    heading = f"EQUIVALENT RANGE {one.history.path}  of equal cycles that do the damage of all: (Σ n R^m / N)^(1/m)"
+    unit_suffix = f" {unit}" if unit != "1" else ""
+    yield f"{format_cycles(collective.total_cycles)} of {collective.points} turning points between {low} and {high}{unit_suffix}"
+    if not collective.total_cycles:
+        yield NO_CYCLES
+    if collective.below_error.cycles:
+        small = format_error(collective.below_error.range * size)
+        yield f"below the error: {format_cycles(collective.below_error.cycles)}, no larger than {small}{unit_suffix}; in no class, no sum"
+    if collective.history.is_magnitude:
+        yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE
+    if has_impacts:
+        yield IMPACT_NOTE
+
+
+def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
+    """Make the table of damage-equivalent ranges and their errors."""
+    unit, size = units.find(collective.history.unit)
+    columns = tuple(map(TextColumn, ("slope m", "of cycles", format_head("range", unit), format_head("error", unit))))
+    rows = tuple(
+        (
+            f"{equivalent.slope:g}",
+            format_count(equivalent.cycles),
+            format_with_error(equivalent.range * size, equivalent.error * size),
+            format_error(equivalent.error * size),
+        )
+        for equivalent in collective.equivalents
+    )
+    heading = (
+        f"EQUIVALENT RANGE {collective.history.path}  of equal cycles that do the damage of all: (Σ n R^m / N)^(1/m)"
+    )
     return TextTable(heading, columns, rows)
 
 
-def crossings_table(one: Collective, units: Units) -> TextTable:
-    """How often levels are passed."""
-    unit, size = units.of(one.history.unit)
-    own = one.crossings
+def make_crossings_table(collective: Collective, units: Units) -> TextTable:
+    """Make the table of how often each level is crossed."""
+    unit, size = units.find(collective.history.unit)
+    crossings = collective.crossings
     rows = zip(
-        limit_texts(one, own.levels * size, size),
-        *(map(number, counts) for counts in (own.counted(REFERENCE), own.up, own.down)),
+        format_limits(collective, crossings.levels * size, size),
+        *(
+            map(format_count, counts)
+            for counts in (crossings.count_by_reference(REFERENCE), crossings.upward, crossings.downward)
+        ),
         strict=True,
     )
-    columns = (TextColumn(head("level", unit)), TextColumn("crossings"), TextColumn("upwards"), TextColumn("downwards"))
-    heading = f"LEVEL CROSSINGS {one.history.path}  (E1049, 5.1) upwards from 0 on, downwards below"
+    columns = (
+        TextColumn(format_head("level", unit)),
+        TextColumn("crossings"),
+        TextColumn("upwards"),
+        TextColumn("downwards"),
+    )
+    heading = f"LEVEL CROSSINGS {collective.history.path}  (E1049, 5.1) upwards from 0 on, downwards below"
     return TextTable(heading, columns, tuple(rows))
 
 
-def matrix_table(one: Collective, units: Units) -> TextTable:
-    """Cycles by range and mean; classes without any are left out."""
-    unit, size = units.of(one.history.unit)
-    limits, means = (limit_texts(one, limits * size, size) for limits in (one.matrix.ranges, one.matrix.means))
-    shown = np.flatnonzero(one.matrix.counts.any(axis=0)).tolist()
-    columns = TextColumn(head("range", unit), "left"), *(TextColumn(f"{means[j]} ... {means[j + 1]}") for j in shown)
-    rows = tuple(
-        (f"{limits[i]} ... {limits[i + 1]}", *(number(n) if n else "" for n in one.matrix.counts[i, shown].tolist()))
-        for i in np.flatnonzero(one.matrix.counts.any(axis=1)).tolist()
+def make_matrix_table(collective: Collective, units: Units) -> TextTable:
+    """Make the table of cycles by range and mean, without empty classes."""
+    unit, size = units.find(collective.history.unit)
+    limits, means = (
+        format_limits(collective, limits * size, size) for limits in (collective.matrix.ranges, collective.matrix.means)
     )
-    heading = f"RANGE AND MEAN {one.history.path}  cycles by range (rows) and mean (columns)"
+    shown = np.flatnonzero(collective.matrix.counts.any(axis=0)).tolist()
+    columns = (
+        TextColumn(format_head("range", unit), "left"),
+        *(TextColumn(f"{means[j]} ... {means[j + 1]}") for j in shown),
+    )
+    rows = tuple(
+        (
+            f"{limits[i]} ... {limits[i + 1]}",
+            *(format_count(n) if n else "" for n in collective.matrix.counts[i, shown].tolist()),
+        )
+        for i in np.flatnonzero(collective.matrix.counts.any(axis=1)).tolist()
+    )
+    heading = f"RANGE AND MEAN {collective.history.path}  cycles by range (rows) and mean (columns)"
     return TextTable(heading, columns, rows)
 
 
-def limit_texts(one: Collective, values: Array, size: float) -> list[str]:
-    """Limits of classes, and levels: at a thousandth of what they are apart, but no decimals are enough."""
-    apart = float(np.abs(np.diff(values)).min(initial=np.inf))
-    return texts(values, max(one.history.error * size, min(1e-3 * apart, 1.0) if np.isfinite(apart) else 0.0))
+def format_limits(collective: Collective, values: Array, size: float) -> list[str]:
+    """Format class limits or levels to a thousandth of their distance, without decimals where those suffice."""
+    distance = float(np.abs(np.diff(values)).min(initial=np.inf))
+    return format_values(
+        values, max(collective.history.error * size, min(1e-3 * distance, 1.0) if np.isfinite(distance) else 0.0)
+    )
 
 
-def texts(values: Array, error: float) -> list[str]:
-    """Numbers that err by so much, at the digits that this leaves."""
+def format_values(values: Array, error: float) -> list[str]:
+    """Format numbers with the digits that their error leaves."""
     largest = float(np.abs(values).max(initial=0.0))
-    how = style(largest, error)
-    return write(values.tolist(), how if how.known else Style(0, exponent=True))
+    number_style = choose_style(largest, error)
+    return write_numbers(values.tolist(), number_style if number_style.is_known else Style(0, has_exponent=True))
 
 
-def number(n: float) -> str:
-    """How many: whole, or with a half."""
+def format_count(n: float) -> str:
+    """Format a count of cycles, which may end with a half."""
     return f"{n:.12g}"
 
 
-def of_cycles(n: float) -> str:
-    """So many cycles, in words."""
-    return f"{number(n)} cycle{'s' * (n != 1.0)}"
+def format_cycles(n: float) -> str:
+    """Format a count with its noun, such as `1 cycle`."""
+    return f"{format_count(n)} cycle{'s' * (n != 1.0)}"
 
 
-def percent(share: float) -> str:
-    """A share of the damage."""
+def format_share(share: float) -> str:
+    """Format a share of the damage in percent."""
     return "0" if not share else f"{100.0 * share:.1f} %" if share >= 0.0005 else "< 0.1 %"
 
 
-def block(one: Collective) -> dict[str, Any]:
-    """A collective as plain data for JSON; SI."""
-    times, asked = one.history.times, one.asked
+def to_json_block(collective: Collective) -> dict[str, Any]:
+    """Return a collective as plain data for JSON, SI units."""
+    times, options = collective.history.times, collective.counting
     return {
-        "unit": one.history.unit,
-        "magnitude": one.history.is_magnitude,
+        "unit": collective.history.unit,
+        "magnitude": collective.history.is_magnitude,
         "time": [float(times[0]), float(times[-1])],
-        "repeat": CLOSED if asked.closed else asked.repeat,
-        "error": one.history.error,
-        "lowest": float(one.history.values.min()),
-        "highest": float(one.history.values.max()),
-        "turning_points": one.points,
-        "cycles": one.total,
-        "below_error": one.below._asdict(),
-        "equivalent": [own._asdict() for own in one.equivalents],
+        "repeat": CLOSED if options.is_endless else options.repeat,
+        "error": collective.history.error,
+        "lowest": float(collective.history.values.min()),
+        "highest": float(collective.history.values.max()),
+        "turning_points": collective.points,
+        "cycles": collective.total_cycles,
+        "below_error": collective.below_error._asdict(),
+        "equivalent": [shares._asdict() for shares in collective.equivalents],
         "ranges": {
-            "limits": one.matrix.ranges, "cycles": one.counts,
-            "damage": [{"slope": s, "shares": own} for s, own in zip(asked.slopes, one.shares, strict=True)],
+            "limits": collective.matrix.ranges, "cycles": collective.counts,
+            "damage": [{"slope": s, "shares": shares} for s, shares in zip(options.slopes, collective.shares, strict=True)],
         },
-        "matrix": {"ranges": one.matrix.ranges, "means": one.matrix.means, "cycles": one.matrix.counts},
+        "matrix": {"ranges": collective.matrix.ranges, "means": collective.matrix.means, "cycles": collective.matrix.counts},
         "crossings": {
-            "reference": REFERENCE, "levels": one.crossings.levels, "counted": one.crossings.counted(REFERENCE),
-            "up": one.crossings.up, "down": one.crossings.down,
+            "reference": REFERENCE, "levels": collective.crossings.levels, "counted": collective.crossings.count_by_reference(REFERENCE),
+            "up": collective.crossings.upward, "down": collective.crossings.downward,
         },
-        "rainflow": {"from": one.cycles.begin, "to": one.cycles.end, "count": one.cycles.counts},
+        "rainflow": {"from": collective.cycles.begin, "to": collective.cycles.end, "count": collective.cycles.counts},
     }  # fmt: skip
 
 
-def csv_lines(several: Sequence[Collective]) -> Iterator[str]:
-    """Collectives in long form, a line a number; what is empty does not apply. SI."""
+def iter_csv_lines(collectives: Sequence[Collective]) -> Iterator[str]:
+    """Yield collectives as CSV in long form, a line for each number, SI units. Fields that do not apply are empty."""
     yield ",".join(CSV_COLUMNS) + "\n"
-    for one in several:
-        path, unit = one.history.path, one.history.unit
-        for quantity, of, where, value in csv_rows(one):
-            yield ",".join([path, quantity, unit if of else "1", *where, repr(value + 0.0)]) + "\n"
+    for collective in collectives:
+        path, unit = collective.history.path, collective.history.unit
+        for quantity, has_unit, columns, value in iter_csv_rows(collective):
+            yield ",".join([path, quantity, unit if has_unit else "1", *columns, repr(value + 0.0)]) + "\n"
 
 
-def csv_rows(one: Collective) -> Iterator[tuple[str, bool, Sequence[str], float]]:
-    """What is told, whether it has the unit of the path, its slope and limits as text, the number."""
-    limits, means = one.matrix.ranges.tolist(), one.matrix.means.tolist()
+def iter_csv_rows(collective: Collective) -> Iterator[tuple[str, bool, Sequence[str], float]]:
+    """Yield quantity, whether it has the unit of the path, slope and limits as text, and the number."""
+    limits, means = collective.matrix.ranges.tolist(), collective.matrix.means.tolist()
     nowhere = ("",) * 5
-    yield "lowest", True, nowhere, float(one.history.values.min())
-    yield "highest", True, nowhere, float(one.history.values.max())
-    yield "error", True, nowhere, one.history.error
-    yield "cycles", False, nowhere, one.total
-    yield "cycles_below_error", False, nowhere, one.below.cycles
-    for own in one.equivalents:
-        slope = (repr(own.slope), "", "", "", "")
-        yield "equivalent_range", True, slope, own.range
-        yield "equivalent_range_error", True, slope, own.error
-        yield "equivalent_cycles", False, slope, own.cycles
-    for k, n in enumerate(one.counts.tolist()):
+    yield "lowest", True, nowhere, float(collective.history.values.min())
+    yield "highest", True, nowhere, float(collective.history.values.max())
+    yield "error", True, nowhere, collective.history.error
+    yield "cycles", False, nowhere, collective.total_cycles
+    yield "cycles_below_error", False, nowhere, collective.below_error.cycles
+    for equivalent in collective.equivalents:
+        slope = (repr(equivalent.slope), "", "", "", "")
+        yield "equivalent_range", True, slope, equivalent.range
+        yield "equivalent_range_error", True, slope, equivalent.error
+        yield "equivalent_cycles", False, slope, equivalent.cycles
+    for k, n in enumerate(collective.counts.tolist()):
         yield "range_cycles", False, ("", repr(limits[k]), repr(limits[k + 1]), "", ""), n
-    for s, own_shares in zip(one.asked.slopes, one.shares.tolist(), strict=True):
-        for k, share in enumerate(own_shares):
+    for s, shares_of_slope in zip(collective.counting.slopes, collective.shares.tolist(), strict=True):
+        for k, share in enumerate(shares_of_slope):
             yield "range_damage", False, (repr(s), repr(limits[k]), repr(limits[k + 1]), "", ""), share
-    for i, j in np.argwhere(one.matrix.counts).tolist():
+    for i, j in np.argwhere(collective.matrix.counts).tolist():
         ends = (limits[i], limits[i + 1], means[j], means[j + 1])
-        yield "range_mean_cycles", False, ("", *map(repr, ends)), float(one.matrix.counts[i, j])
-    crossed = one.crossings
-    for name, counts in (("counted", crossed.counted(REFERENCE)), ("up", crossed.up), ("down", crossed.down)):
-        for level, n in zip(crossed.levels.tolist(), counts.tolist(), strict=True):
+        yield "range_mean_cycles", False, ("", *map(repr, ends)), float(collective.matrix.counts[i, j])
+    crossings = collective.crossings
+    for name, counts in (
+        ("counted", crossings.count_by_reference(REFERENCE)),
+        ("up", crossings.upward),
+        ("down", crossings.downward),
+    ):
+        for level, n in zip(crossings.levels.tolist(), counts.tolist(), strict=True):
             yield f"crossings_{name}", False, ("", repr(level), "", "", ""), n

@@ -1,7 +1,8 @@
-"""Results as JSON (manual/results.md) and as CSV in long form; all digits, nothing rounded.
+"""Write results as JSON (manual/results.md) and as CSV in long form, with all digits.
 
-Both are made piece by piece, so that memory holds some of the numbers at a time, and of arrays that stand in a file
-(stored_arrays.py) never all. Numbers go through `repr` or the C encoder of json in parts of arrays: below 1 µs each.
+Both are written piece by piece, so that memory holds only part of the numbers at a time, and never a whole array that
+is stored in a file (stored_arrays.py). Parts of arrays are formatted by `repr` or by the C encoder of json, which takes
+less than 1 µs for each number.
 """
 
 from __future__ import annotations
@@ -15,59 +16,59 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import LimitError, Problem
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.results.cut_rows import cut_numbers
+from heuncli.results.cut_rows import cut_indices
 from heuncli.results.results import Array, Block, Results
-from heuncli.results.results_schema import AT_A_BLOW, BLOWS, row_of
-from heuncli.results.stored_arrays import AnyArray, StoredArray, in_parts
+from heuncli.results.results_schema import IMPULSE_UNITS, IMPULSES, find_row
+from heuncli.results.stored_arrays import AnyArray, StoredArray, iter_chunks
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, walk, walk_impulse
+from heuncli.study.quantities.series import Series, iter_impulse_series, iter_series
 
 FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
-AT_ONCE = 50_000  # numbers that become text together: some megabytes as Python's own
-READ = 500_000  # numbers of a series that are read together: columns stand apart where they are stored
-ALWAYS = frozenset({"title", "spec", "version", "model", "status", "time"})
-CERTAIN_SUM = row_of("certain_sums.NUMBER.value")
-CSV_COLUMNS = ("time", "kind", "name", "quantity", "component", "unit", "value")  # and cause, where shares are told
-CUT_COLUMNS = ("section", "cut", "s", "side")  # behind these, where there are sections
+AT_ONCE = 50_000  # numbers formatted together: some megabytes as Python objects
+READ = 500_000  # numbers of a series read together, as stored columns are not contiguous
+REQUIRED_KEYS = frozenset({"title", "spec", "version", "model", "status", "time"})
+CERTAIN_SUM = find_row("certain_sums.NUMBER.value")
+CSV_COLUMNS = ("time", "kind", "name", "quantity", "component", "unit", "value")  # then cause, if there are shares
+CUT_COLUMNS = ("section", "cut", "s", "side")  # after these, if there are sections
 
 
 def to_json(results: Results) -> str:
-    """The results as one JSON object, as a whole."""
-    return "".join(json_pieces(results))
+    """Return the results as one JSON object."""
+    return "".join(iter_json_pieces(results))
 
 
 def to_csv(results: Results, labels: Labels) -> str:
-    """The results in long form, as a whole."""
-    return "".join(csv_pieces(results, labels))
+    """Return the results as CSV in long form."""
+    return "".join(iter_csv_pieces(results, labels))
 
 
-def json_pieces(results: Results) -> Iterator[str]:
-    """The results as one JSON object: a line for each array, `null` for what is open.
+def iter_json_pieces(results: Results) -> Iterator[str]:
+    """Yield the results as one JSON object in pieces: a line for each array, `null` for what is indeterminate.
 
-    Raises LimitError where they are too many to be written: at once, before there is a piece.
+    Raises LimitError before the first piece if there are too many numbers.
     """
-    _limit(results)
-    return dumped({"heun": FORMAT, **present(results)})
+    _require_writable_size(results)
+    return iter_json({"heun": FORMAT, **collect_blocks(results)})
 
 
 class InstantTexts:
-    """The instants that lines of CSV tell, as text; of many, in texts of so many each, for a text is smaller."""
+    """The instants of CSV lines as text; many instants are joined in blocks, which take less memory."""
 
     def __init__(self, times: Array | None) -> None:
-        """times (n,) [s]; None: what holds at all instants, with an empty time."""
+        """times (n,) [s]; None for a quantity that holds at all instants, whose time is empty."""
         parts = () if times is None else (times[i : i + AT_ONCE] for i in range(0, len(times), AT_ONCE))
         self._blocks = ["\n".join(map(repr, part.tolist())) for part in parts] or [""]
 
     def __iter__(self) -> Iterator[tuple[int, list[str]]]:
-        """So many at a time, and the number of the first."""
+        """Yield the index of the first instant of each block, and the texts of the block."""
         return ((k * AT_ONCE, block.split("\n")) for k, block in enumerate(self._blocks))
 
 
 class CsvSeries(NamedTuple):
-    """The lines of one series in CSV: kind and name, the instants it holds at, and the sections that it may be of."""
+    """The CSV lines of one series: its kind and name, its instants, and the sections to which it may belong."""
 
     series: Series
     kind: str
@@ -76,113 +77,120 @@ class CsvSeries(NamedTuple):
     sections: Block
 
 
-def csv_pieces(results: Results, labels: Labels) -> Iterator[str]:
-    """The results in long form, a line a number; an empty value is open, an empty time holds for all instants.
+def iter_csv_pieces(results: Results, labels: Labels) -> Iterator[str]:
+    """Yield the results in long form in pieces, a line for each number.
 
-    Raises LimitError where they are too many to be written: at once, before there is a piece.
+    An empty value is indeterminate, an empty time holds for all instants. Raises LimitError before the first piece if
+    there are too many numbers.
     """
-    _limit(results)
-    return _csv(results, labels)
+    _require_writable_size(results)
+    return _iter_csv(results, labels)
 
 
-def _csv(results: Results, labels: Labels) -> Iterator[str]:
-    instants, always = InstantTexts(results.time), InstantTexts(None)
+def _iter_csv(results: Results, labels: Labels) -> Iterator[str]:
+    instants, no_instants = InstantTexts(results.time), InstantTexts(None)
     rows = [
-        CsvSeries(series, series.kind, series.name, always if series.static else instants, results.sections)
-        for series in walk(results, labels)
+        CsvSeries(series, series.kind, series.name, no_instants if series.is_static else instants, results.sections)
+        for series in iter_series(results, labels)
     ]
     for number, block in enumerate(results.impulses):
-        rows += _of_blow(number, block, labels)
-    rows += [CsvSeries(series, series.kind, name, instants, {}) for name, series in _sums(results.certain_sums)]
+        rows += _iter_impact_series(number, block, labels)
+    rows += [
+        CsvSeries(series, series.kind, name, instants, {}) for name, series in _iter_sum_series(results.certain_sums)
+    ]
     by_cause = any(row.series.cause for row in rows)
-    cut = any(row.series.kind == "sections" for row in rows)
-    yield ",".join([*CSV_COLUMNS, *["cause"] * by_cause, *CUT_COLUMNS * cut]) + "\n"
+    has_sections = any(row.series.kind == "sections" for row in rows)
+    yield ",".join([*CSV_COLUMNS, *["cause"] * by_cause, *CUT_COLUMNS * has_sections]) + "\n"
     for row in rows:
-        ends = _cuts(row) if cut else [""] * len(row.series.components)
-        yield from _lines(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])
+        ends = _format_cut_columns(row) if has_sections else [""] * len(row.series.components)
+        yield from _iter_csv_text(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])
     if results.events:
-        from heuncli.output.tables.event_table import csv_lines  # where there are conditions
+        from heuncli.output.tables.event_table import iter_csv_lines  # where there are conditions
 
-        yield from csv_lines(results, "," * (by_cause + len(CUT_COLUMNS) * cut))
+        yield from iter_csv_lines(results, "," * (by_cause + len(CUT_COLUMNS) * has_sections))
 
 
-def _of_blow(number: int, block: Block, labels: Labels) -> Iterator[CsvSeries]:
-    """The rows of one blow."""
-    at, sections = InstantTexts(np.array([float(block["time"])])), block.get("sections", {})
-    for series in walk_impulse(block, labels):
+def _iter_impact_series(number: int, block: Block, labels: Labels) -> Iterator[CsvSeries]:
+    """Yield the series of one impact."""
+    instant, sections = InstantTexts(np.array([float(block["time"])])), block.get("sections", {})
+    for series in iter_impulse_series(block, labels):
         name = ".".join(part for part in (str(number), series.kind, series.name) if part)
-        yield CsvSeries(series, BLOWS, name, at, sections)
-    for name, series in _sums(block.get("certain_sums", ())):
-        yield CsvSeries(series._replace(unit=AT_A_BLOW[series.unit]), BLOWS, f"{number}.certain_sums.{name}", at, {})
+        yield CsvSeries(series, IMPULSES, name, instant, sections)
+    for name, series in _iter_sum_series(block.get("certain_sums", ())):
+        yield CsvSeries(
+            series._replace(unit=IMPULSE_UNITS[series.unit]), IMPULSES, f"{number}.certain_sums.{name}", instant, {}
+        )
 
 
-def _sums(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
-    """The certain sums by their numbers."""
-    for number, certain in enumerate(sums):
-        of_moments = not any(".force." in term for term in certain["terms"])
-        values = np.atleast_1d(np.asarray(certain["value"], dtype=np.float64))[:, None]
-        unit = CERTAIN_SUM.unit(turning=of_moments)
+def _iter_sum_series(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
+    """Yield the determinate sums with their numbers as names."""
+    for number, certain_sum in enumerate(sums):
+        of_moments = not any(".force." in term for term in certain_sum["terms"])
+        values = np.atleast_1d(np.asarray(certain_sum["value"], dtype=np.float64))[:, None]
+        unit = CERTAIN_SUM.select_unit(turning=of_moments)
         yield str(number), Series("certain_sums", str(number), "value", unit, ("",), values)
 
 
-def present(results: Results) -> dict[str, Any]:
-    """The blocks that apply, in the order of manual/results.md, "Paths", by their names in the JSON."""
+def collect_blocks(results: Results) -> dict[str, Any]:
+    """Return the blocks that are not empty by their JSON keys, in the order of manual/results.md, "Paths"."""
     blocks = {f.name: getattr(results, f.name) for f in fields(results)}
-    return {name: block for name, block in blocks.items() if name in ALWAYS or len(block)}
+    return {name: block for name, block in blocks.items() if name in REQUIRED_KEYS or len(block)}
 
 
-def dump(value: Any) -> str:
-    """Any small nest of plain data as JSON, laid out like the results."""
-    return "".join(dumped(value))
+def dump_json(value: Any) -> str:
+    """Format small plain data as JSON, laid out like the results."""
+    return "".join(iter_json(value))
 
 
-def dumped(value: Any) -> Iterator[str]:
-    """Plain data and arrays as JSON, piece by piece."""
-    yield from _nested(value, "")
+def iter_json(value: Any) -> Iterator[str]:
+    """Yield plain data and arrays as JSON in pieces."""
+    yield from _iter_nested(value, "")
     yield "\n"
 
 
-def _nested(value: Any, indent: str) -> Iterator[str]:
-    """Nested mappings a key a line, lists of mappings too; everything else on one line."""
+def _iter_nested(value: Any, indent: str) -> Iterator[str]:
+    """Yield a value as JSON: mappings with a line for each key, lists of mappings likewise, everything else on one
+    line.
+    """
     if isinstance(value, dict) and value:
-        yield from _members(((f"{_text(key)}: ", member) for key, member in value.items()), "{}", indent)
+        yield from _iter_members(((f"{_format_json(key)}: ", member) for key, member in value.items()), "{}", indent)
     elif isinstance(value, (list, tuple)) and any(isinstance(member, dict) for member in value):
-        yield from _members((("", member) for member in value), "[]", indent)
+        yield from _iter_members((("", member) for member in value), "[]", indent)
     elif isinstance(value, StoredArray) or (isinstance(value, np.ndarray) and value.size > AT_ONCE):
-        yield from _in_parts(value)
+        yield from _iter_array(value)
     else:
-        yield _text(value)
+        yield _format_json(value)
 
 
-def _members(members: Iterable[tuple[str, Any]], brackets: str, indent: str) -> Iterator[str]:
+def _iter_members(members: Iterable[tuple[str, Any]], brackets: str, indent: str) -> Iterator[str]:
     inner = indent + " "
     yield brackets[0]
     for number, (label, member) in enumerate(members):
         yield f"{',' if number else ''}\n{inner}{label}"
-        yield from _nested(member, inner)
+        yield from _iter_nested(member, inner)
     yield f"\n{indent}{brackets[1]}"
 
 
-def _in_parts(values: AnyArray) -> Iterator[str]:
-    """A long array, some of its rows at a time."""
+def _iter_array(values: AnyArray) -> Iterator[str]:
+    """Yield a long array as JSON, some of its rows at a time."""
     yield "["
-    for number, part in enumerate(in_parts(values, AT_ONCE)):
-        yield ", " * (number > 0) + _text(part)[1:-1]
+    for number, part in enumerate(iter_chunks(values, AT_ONCE)):
+        yield ", " * (number > 0) + _format_json(part)[1:-1]
     yield "]"
 
 
-def _text(value: Any) -> str:
+def _format_json(value: Any) -> str:
     if isinstance(value, np.ndarray):
-        value = _plain(value)
+        value = _to_lists(value)
     elif isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not np.isfinite(value):
         value = None
-    return shown(json.dumps(value, ensure_ascii=False, allow_nan=False, default=_plain))
+    return escape(json.dumps(value, ensure_ascii=False, allow_nan=False, default=_to_lists))
 
 
-def _plain(values: Any) -> Any:
-    """Nested lists of the array's numbers, None where they are not finite, and no minus before a zero."""
+def _to_lists(values: Any) -> Any:
+    """Convert an array to nested lists, with None for numbers that are not finite and without a minus before zero."""
     finite = np.isfinite(values)
     return (
         (values + 0.0).tolist()
@@ -191,59 +199,68 @@ def _plain(values: Any) -> Any:
     )
 
 
-def _lines(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
-    """A line an instant and component, in texts of many; ends: what stands behind its number."""
-    texts = _columns(row, ends)
-    many = max(1, AT_ONCE // max(len(row.series.values), 1))
-    while text := "".join(islice(texts, many)):  # of a short column a line, Python's own share would be half of it
+def _iter_csv_text(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
+    """Yield the lines of a series, a line for each instant and component, joined in long texts.
+
+    ends: of each component, the text after its number
+    """
+    texts = _iter_column_text(row, ends)
+    lines_per_text = max(1, AT_ONCE // max(len(row.series.values), 1))
+    while text := "".join(
+        islice(texts, lines_per_text)
+    ):  # of a short column a line, Python's own share would be half of it
         yield text
 
 
-def _columns(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
-    """The lines of each component, in texts of at most AT_ONCE."""
+def _iter_column_text(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
+    """Yield the lines of each component in texts of at most AT_ONCE lines."""
     series, values = row.series, row.series.values
-    many = max(1, READ // max(len(values), 1))
-    for c in range(0, len(ends), many):
-        columns = values[:, c : c + many].T
-        for component, column, end in zip(series.components[c : c + many], columns, ends[c : c + many], strict=True):
+    columns_per_read = max(1, READ // max(len(values), 1))
+    for c in range(0, len(ends), columns_per_read):
+        columns = values[:, c : c + columns_per_read].T
+        for component, column, end in zip(
+            series.components[c : c + columns_per_read], columns, ends[c : c + columns_per_read], strict=True
+        ):
             middle = f",{row.kind},{row.name},{series.quantity},{component},{series.unit},"
             for first, times in row.instants:
-                yield "".join(_column(times, middle, column[first : first + len(times)], end))
+                yield "".join(_format_column(times, middle, column[first : first + len(times)], end))
 
 
-def _column(times: Sequence[str], middle: str, column: Array, end: str) -> list[str]:
-    """The lines of one component at some instants."""
+def _format_column(times: Sequence[str], middle: str, column: Array, end: str) -> list[str]:
+    """Format the lines of one component at some instants."""
     numbers, tail = list(map(repr, (column + 0.0).tolist())), f"{end}\n"
     for i in np.flatnonzero(~np.isfinite(column)).tolist():
         numbers[i] = ""
     return [f"{t}{middle}{number}{tail}" for t, number in zip(times, numbers, strict=True)]
 
 
-def _cuts(row: CsvSeries) -> list[str]:
-    """The last four columns of the lines of each component: section, cut of a run, distance, side; empty elsewhere."""
+def _format_cut_columns(row: CsvSeries) -> list[str]:
+    """Format the last four columns of each component: section, cut of a run, distance, side; empty if it is of no
+    section.
+    """
     series = row.series
     if series.kind != "sections":
         return [",,,,"] * len(series.components)
     name = series.name.split(".")[0]
-    if not series.of_cuts or "s" not in row.sections[name]:
+    if not series.has_cuts or "s" not in row.sections[name]:
         return [f",{name},,,"] * len(series.components)
-    s = [repr(float(at)) for at in row.sections[name]["s"]]
+    s = [repr(float(position)) for position in row.sections[name]["s"]]
     side = [word or "" for word in row.sections[name].get("side") or [None] * len(s)]
     rows = [int(component.partition(".")[0]) for component in series.components]
-    cuts = cut_numbers(np.asarray(row.sections[name]["s"])).tolist()
+    cuts = cut_indices(np.asarray(row.sections[name]["s"])).tolist()
     return [f",{name},{cuts[k]},{s[k]},{side[k]}" for k in rows]
 
 
-def _limit(results: Results) -> None:
-    count = sum(_count(block) for block in present(results).values())
+def _require_writable_size(results: Results) -> None:
+    count = sum(_count_numbers(block) for block in collect_blocks(results).values())
     if count > MOST_NUMBERS:
         message = f"the results hold {count:,} numbers; at most {MOST_NUMBERS:,} are written"
         raise LimitError(Problem("output-size", message, hint="fewer samples, or --only with what is needed"))
 
 
-def _count(block: Any) -> int:
+def _count_numbers(block: Any) -> int:
     if isinstance(block, np.ndarray | StoredArray):
         return block.size
     if isinstance(block, dict):
-        return sum(_count(member) for member in block.values())
-    return sum(_count(member) for member in block) if isinstance(block, (list, tuple)) else 1
+        return sum(_count_numbers(member) for member in block.values())
+    return sum(_count_numbers(member) for member in block) if isinstance(block, (list, tuple)) else 1

@@ -1,4 +1,4 @@
-"""Blocks as tables of extremes: first and last value of each row, lowest and highest with their instants."""
+"""Tables of extremes: first and last value of each row, lowest and highest with their instants."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.table_blocks import RowGroup, TableBlock, family_styles, texts_of
+from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, format_numbers
 from heuncli.output.tables.text_table import INDENT, TextColumn, TextTable
 from heuncli.results.results import Array, Extremes
 from heuncli.study.quantities.digits import (
@@ -19,183 +19,203 @@ from heuncli.study.quantities.digits import (
     UNKNOWN_NOTE,
     ZERO_NOTE,
     Certainty,
-    beyond_horizon,
+    format_unclaimed,
     write_times,
 )
 
-MANY = 40  # groups beyond which each gets one line
+MAX_FULL_GROUPS = 40  # with more groups, each has one line
 PARTLY_OPEN_NOTE = "* open at some instants; the extremes are those of the others"
 NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 
 
-OF_AN_INSTANT = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # kinds that hang on friction
+FRICTION_KINDS = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # depend on friction
 
 
-class DoubtedInstants(NamedTuple):
-    """Instants at which loads and accelerations are not those of the machine, and the note that says why."""
+class DoubtfulInstants(NamedTuple):
+    """Instants at which computed loads and accelerations are not those of the real machine, and the note that says
+    why.
+    """
 
     instants: frozenset[float] = frozenset()
     note: str = ""
 
     @classmethod
-    def of(cls, instants: Iterable[float], why: str) -> DoubtedInstants:
-        """Those instants, with what the mark means."""
-        return cls(frozenset(instants), f"{MARK} {why}")
+    def with_reason(cls, instants: Iterable[float], reason: str) -> DoubtfulInstants:
+        """Make the set of instants with the note that explains their mark."""
+        return cls(frozenset(instants), f"{MARK} {reason}")
 
-    def mark(self, text: str, at: float, kind: str, unit: str) -> str:
-        """The text of a number with a mark, where its instant is one of these and it hangs on it."""
-        hangs = kind in OF_AN_INSTANT or unit.endswith("/s²")
-        return text + MARK if at in self.instants and hangs and text not in ("0", OPEN, UNKNOWN) else text
+    def add_mark(self, text: str, time: float, kind: str, unit: str) -> str:
+        """Append the mark to the text of a number if its instant is doubtful and the number depends on it."""
+        depends = kind in FRICTION_KINDS or unit.endswith("/s²")
+        return text + MARK if time in self.instants and depends and text not in ("0", OPEN, UNKNOWN) else text
 
 
-NO_DOUBT = DoubtedInstants()
+NO_DOUBT = DoubtfulInstants()
 MARK = "†"
 
 
 class GroupExtremes(NamedTuple):
-    """A group with the extremes of its rows, and where the run ends beyond its horizon their last values."""
+    """A group with the extremes of its rows.
+
+    last_values: of each row, if the run ends beyond its horizon
+    """
 
     group: RowGroup
     extremes: Extremes
     beyond: Array | None = None
 
 
-def abridged(block: TableBlock) -> TableBlock:
-    """The block without the components of vectors in its groups, where these are so many that each gets one line."""
-    if len(block.groups) <= MANY:
+def drop_components(block: TableBlock) -> TableBlock:
+    """Drop the components of vectors, except in groups of the whole scene, if there are too many groups for a full
+    table.
+    """
+    if len(block.groups) <= MAX_FULL_GROUPS:
         return block
     groups = [
-        group if group.whole else group._replace(rows=tuple(row for row in group.rows if row.even or not row.vector))
+        group
+        if group.is_whole_scene
+        else group._replace(rows=tuple(row for row in group.rows if row.is_magnitude or not row.vector))
         for group in block.groups
     ]
     return block._replace(groups=tuple(groups))
 
 
-def extremes_table(
-    block: TableBlock, times: Array, extremes: Extremes, certain: Certainty, beyond: Array | None = None,
-    doubted: DoubtedInstants = NO_DOUBT,
+def make_extremes_tables(
+    block: TableBlock, times: Array, extremes: Extremes, certain: Certainty, last_values: Array | None = None,
+    doubtful: DoubtfulInstants = NO_DOUBT,
 ) -> list[TextTable]:  # fmt: skip
-    """First and last value, lowest and highest with their instants; one line a group where there are many.
+    """Make the tables of first, last, lowest and highest values with their instants; one row a group if there are many.
 
-    beyond: the last value of each row, where the run ends beyond its horizon; doubted: instants whose extremes are
-    marked.
+    last_values: the last value of each row, if the run ends beyond its horizon
+    doubtful: instants whose extremes are marked
     """
     counts = np.cumsum([0, *(len(group.rows) for group in block.groups)])
-    own = [slice(a, b) for a, b in pairwise(counts)]
-    last = [None if beyond is None else beyond[rows] for rows in own]
+    row_slices = [slice(a, b) for a, b in pairwise(counts)]
+    last_parts = [None if last_values is None else last_values[rows] for rows in row_slices]
     parts = [
-        GroupExtremes(group, extremes.part(rows), x) for group, rows, x in zip(block.groups, own, last, strict=True)
+        GroupExtremes(group, extremes.select(rows), last_part)
+        for group, rows, last_part in zip(block.groups, row_slices, last_parts, strict=True)
     ]
-    if len(parts) <= MANY:
-        return [_full(block, parts, times, certain, doubted)]
-    whole = [part for part in parts if part.group.whole]
-    tables = [_full(block, whole, times, certain, doubted)] if whole else []
-    single = [part for part in parts if not part.group.whole]
-    heading = "" if whole else block.heading
-    return [*tables, _one_line_each(block, single, times, certain, heading, doubted)]
+    if len(parts) <= MAX_FULL_GROUPS:
+        return [_make_full_table(block, parts, times, certain, doubtful)]
+    scene_parts = [part for part in parts if part.group.is_whole_scene]
+    tables = [_make_full_table(block, scene_parts, times, certain, doubtful)] if scene_parts else []
+    other_parts = [part for part in parts if not part.group.is_whole_scene]
+    heading = "" if scene_parts else block.heading
+    return [*tables, _make_short_table(block, other_parts, times, certain, heading, doubtful)]
 
 
-def _full(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, doubted: DoubtedInstants
+def _make_full_table(
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, doubtful: DoubtfulInstants
 ) -> TextTable:
-    """A line a row, under a title a group."""
+    """Make the table with a row for each number, under a title for each group."""
     rows: list[tuple[str, ...] | str] = []
     notes: set[str] = set()
     span = float(np.ptp(times))
     for part in parts:
-        lines, needed = _lines(part, span, certain, block.kind, doubted)
+        lines, notes_of_group = _make_rows(part, span, certain, block.kind, doubtful)
         rows += [part.group.title, *lines] if part.group.name else lines
-        notes |= needed
+        notes |= notes_of_group
     heads = ("first", "last", "min", "at [s]", "max", "at [s]")
     columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
     if all(isinstance(row, str) for row in rows):
-        columns = (TextColumn("", "left"),)  # a title and what is open of each: no numbers to head
-    below = [note for note in (*NOTES, doubted.note) if note in notes]
-    return TextTable(block.heading, columns, tuple(rows), (*block.notes, *below))
+        columns = (TextColumn("", "left"),)  # only titles and open components: there are no numbers
+    shown_notes = [note for note in (*NOTES, doubtful.note) if note in notes]
+    return TextTable(block.heading, columns, tuple(rows), (*block.notes, *shown_notes))
 
 
-def _lines(
-    part: GroupExtremes, span: float, certain: Certainty, kind: str, doubted: DoubtedInstants
+def _make_rows(
+    part: GroupExtremes, span: float, certain: Certainty, kind: str, doubtful: DoubtfulInstants
 ) -> tuple[list[tuple[str, ...] | str], set[str]]:
-    """The lines of a group, and the notes they need: rows that are 0 or open throughout take no line."""
+    """Make the rows of a group, and the set of notes they need. Numbers that are zero or open throughout get no row."""
     group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
     notes: set[str] = set()
-    texts = _texts(part, certain)
+    texts = _format_extremes(part, certain)
     lines: list[tuple[str, ...] | str] = []
-    is_open = [row.label for row, own in zip(group.rows, texts, strict=True) if set(own) == {OPEN}]
-    seen = Counter(row.vector for row, own in zip(group.rows, texts, strict=True) if set(own) != {"0"} and not row.even)
+    open_labels = [
+        row.label for row, texts_of_row in zip(group.rows, texts, strict=True) if set(texts_of_row) == {OPEN}
+    ]
+    nonzero_counts = Counter(
+        row.vector
+        for row, texts_of_row in zip(group.rows, texts, strict=True)
+        if set(texts_of_row) != {"0"} and not row.is_magnitude
+    )
     for i, (row, (first, last, low, high)) in enumerate(zip(group.rows, texts, strict=True)):
-        if row.label in is_open:
+        if row.label in open_labels:
             continue
         if {first, last, low, high} == {"0"}:
             notes.add(ZERO_NOTE)
             continue
-        if row.even and row.vector and seen[row.vector] == 1:
-            continue  # the magnitude of a vector along one axis says nothing new
-        partly = bool(np.isnan(row.values).any())
-        notes |= {PARTLY_OPEN_NOTE} if partly else set()
+        if row.is_magnitude and row.vector and nonzero_counts[row.vector] == 1:
+            continue  # for a vector along one axis the magnitude adds nothing
+        partly_open = bool(np.isnan(row.values).any())
+        notes |= {PARTLY_OPEN_NOTE} if partly_open else set()
         notes |= {UNKNOWN_NOTE} if UNKNOWN in (first, last, low, high) else set()
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
         unit = row.unit if row.unit != "1" else ""
         ends = low, high
-        if low != high:  # else it is the same throughout
-            low, high = (doubted.mark(end, float(at), kind, unit) for end, at in zip(ends, instants[:, i], strict=True))
-        notes |= {doubted.note} if (low, high) != ends else set()
-        lines.append((row.label + "*" * partly, unit, first, last, low, low_at, high, high_at))
-    if is_open:
+        if low != high:  # else it is constant
+            low, high = (
+                doubtful.add_mark(end, float(at), kind, unit) for end, at in zip(ends, instants[:, i], strict=True)
+            )
+        notes |= {doubtful.note} if (low, high) != ends else set()
+        lines.append((row.label + "*" * partly_open, unit, first, last, low, low_at, high, high_at))
+    if open_labels:
         notes.add(OPEN_NOTE)
-        lines.append(f"{INDENT}{OPEN}: {', '.join(is_open)}")
+        lines.append(f"{INDENT}{OPEN}: {', '.join(open_labels)}")
     return lines or [f"{INDENT}0 throughout"], notes
 
 
-def _texts(part: GroupExtremes, certain: Certainty) -> list[list[str]]:
-    """First, last, lowest and highest value of each row."""
-    rows, beyond = part.group.rows, part.beyond
+def _format_extremes(part: GroupExtremes, certain: Certainty) -> list[list[str]]:
+    """Format the first, last, lowest and highest value of each row."""
+    rows, last_values = part.group.rows, part.last_values
     first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
-    texts = texts_of(part.group, np.stack([first, last, part.extremes.low, part.extremes.high]), certain)
-    if beyond is not None:
-        for row, value, own in zip(rows, beyond, texts, strict=True):
-            own[1] = beyond_horizon(value, row.unit, certain, own[1])
+    texts = format_numbers(part.group, np.stack([first, last, part.extremes.low, part.extremes.high]), certain)
+    if last_values is not None:
+        for row, value, texts_of_row in zip(rows, last_values, texts, strict=True):
+            texts_of_row[1] = format_unclaimed(value, row.unit, certain, texts_of_row[1])
     return texts
 
 
-def _one_line_each(
+def _make_short_table(
     block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, heading: str,
-    doubted: DoubtedInstants,
+    doubtful: DoubtfulInstants,
 ) -> TextTable:  # fmt: skip
-    """A line a group: of each row but the components of vectors the value farthest from zero, and when."""
+    """Make the table with a row for each group: of each number the value farthest from zero, and when. No vector
+    components.
+    """
     span = float(np.ptp(times))
     heads: dict[str, None] = {}
     cells: list[dict[str, tuple[str, str]]] = []
     for group, extremes, _ in parts:
         lower = np.abs(extremes.low) > np.abs(extremes.high)
         farthest = np.where(lower, extremes.low, extremes.high)
-        styles = family_styles(group.rows, farthest[None, :], certain)
-        texts = [how.write(value) for how, value in zip(styles, farthest, strict=True)]
+        styles = choose_styles(group.rows, farthest[None, :], certain)
+        texts = [number_style.write(value) for number_style, value in zip(styles, farthest, strict=True)]
         instants = np.where(lower, extremes.low_at, extremes.high_at).tolist()
         clock = write_times(instants, span)
         texts = [
-            doubted.mark(text, at, block.kind, row.unit)
-            for text, at, row in zip(texts, instants, group.rows, strict=True)
+            doubtful.add_mark(text, time, block.kind, row.unit)
+            for text, time, row in zip(texts, instants, group.rows, strict=True)
         ]
-        own = {
-            f"{row.label} [{row.unit}]": (text, "" if text in ("0", OPEN, UNKNOWN) else at)
-            for row, text, at in zip(group.rows, texts, clock, strict=True)
+        cells_of_group = {
+            f"{row.label} [{row.unit}]": (text, "" if text in ("0", OPEN, UNKNOWN) else time)
+            for row, text, time in zip(group.rows, texts, clock, strict=True)
         }
-        heads |= dict.fromkeys(head for head, (text, _) in own.items() if text != "0")
-        cells.append(own)
+        heads |= dict.fromkeys(head for head, (text, _) in cells_of_group.items() if text != "0")
+        cells.append(cells_of_group)
     columns = [TextColumn(block.what, "left")]
     for head in heads:
         columns += [TextColumn(head), TextColumn("at [s]")]
     rows = tuple(
-        (part.group.name, *(text for head in heads for text in own.get(head, ("", ""))))
-        for part, own in zip(parts, cells, strict=True)
+        (part.group.name, *(text for head in heads for text in cells_of_group.get(head, ("", ""))))
+        for part, cells_of_group in zip(parts, cells, strict=True)
     )
     what = f"{len(parts)} {block.what or 'group'}s, a line each: the value farthest from zero"
     notes = (*block.notes, f"{what}; components: --at, or --format csv")
     shown = {text for row in rows for text in row}
     notes += tuple(note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
-    notes += (doubted.note,) if any(text.endswith(MARK) for text in shown) else ()
+    notes += (doubtful.note,) if any(text.endswith(MARK) for text in shown) else ()
     return TextTable(heading, tuple(columns), rows, notes)

@@ -1,4 +1,4 @@
-"""What was solved, and its estimated errors: the lines above every table."""
+"""The lines above every table: what was solved, and its estimated errors."""
 
 from __future__ import annotations
 
@@ -9,33 +9,33 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.output.tables.markdown_text import escape_line
-from heuncli.output.tables.plurals import count
-from heuncli.output.tables.text_table import labelled
-from heuncli.results.results import Estimate, Results
-from heuncli.study.quantities.digits import LOADS, rough
+from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.text_table import format_labelled_lines
+from heuncli.results.results import ErrorEstimate, Results
+from heuncli.study.quantities.digits import LOADS, format_error
 
-MOST_TOLD = 5
-MOST_MOVED = 3
-PLANAR = "; what points out of the xy plane does not exist and reads 0"
-STIFF = "stiff: "  # how the reason begins for which a run was begun anew by an implicit method
+MAX_SENTENCES = 5
+MAX_MOVED_BODIES = 3
+PLANAR_NOTE = "; what points out of the xy plane does not exist and reads 0"
+STIFF_PREFIX = "stiff: "  # beginning of the reason for a restart with an implicit method
 
 
-def heading(results: Results, every: bool = False) -> list[tuple[str, str]]:
-    """Label and text of each line; every: what was made smaller, too, which `heun model` tells."""
+def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[str, str]]:
+    """Return the label and text of each line; show_reductions: also list the simplifications, as `heun model` does."""
     lines = [
         ("heun", f"{results.version}  {results.title}"),
-        ("model", _model(results)),
-        *(_labelled("reduced", results.model.get("reduced", ())) if every else ()),
+        ("model", _describe_model(results)),
+        *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
-        *_moved(results.model.get("moved", ())),
-        *_started(results.model.get("started", ())),
-        ("run", _run(results)),
-        *_anew(results.model.get("reasons", ())),
-        *_labelled("rest", results.model.get("rest", ())),
+        *_describe_moved_bodies(results.model.get("moved", ())),
+        *_describe_start(results.model.get("started", ())),
+        ("run", _describe_run(results)),
+        *_describe_stiff_restart(results.model.get("reasons", ())),
+        *_label_sentences("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
-        ("accuracy", _errors(results)),
-        ("", _residuals(results)),
-        *_contacts(results.model.get("contacts", ())),
+        ("accuracy", _describe_errors(results)),
+        ("", _describe_residuals(results)),
+        *_describe_contacts(results.model.get("contacts", ())),
         *(("moves", sentence) for sentence in results.model.get("moves", ())),
     ]
     if results.model.get("split"):
@@ -46,76 +46,81 @@ def heading(results: Results, every: bool = False) -> list[tuple[str, str]]:
         )
     if results.status.get("code", "completed") != "completed":
         lines.append(("status", f"{results.status['code']}: {results.status.get('message', '')}"))
-    said = results.status.get("message", "")
-    lines += [("warning", warning) for warning in results.warnings if not said or said not in warning]
+    status_message = results.status.get("message", "")
+    lines += [
+        ("warning", warning) for warning in results.warnings if not status_message or status_message not in warning
+    ]
     return [line for line in lines if line[1]]
 
 
-def write_heading(results: Results, every: bool = False) -> str:
-    """The heading as aligned text."""
-    return labelled(heading(results, every))
+def format_heading(results: Results, show_reductions: bool = False) -> str:
+    """Format the heading as aligned text."""
+    return format_labelled_lines(make_heading(results, show_reductions))
 
 
-def write_heading_markdown(results: Results, every: bool = False) -> str:
-    """The heading as markdown."""
-    lines = heading(results, every)
+def format_heading_markdown(results: Results, show_reductions: bool = False) -> str:
+    """Format the heading as Markdown."""
+    lines = make_heading(results, show_reductions)
     body = "".join(f"- {escape_line(label + ': ' * bool(label) + text)}\n" for label, text in lines[1:])
     return f"## {escape_line(results.title)}\n\n- heun: {results.version}\n{body}\n"
 
 
-def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """A line for each sentence: the label stands before the first."""
+def _label_sentences(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """Return a line for each sentence, with the label before the first."""
     return [(label * (not i), sentence) for i, sentence in enumerate(sentences)]
 
 
-def _moved(ways: Sequence[str]) -> list[tuple[str, str]]:
-    """Which bodies had to leave their place in the drawing, those that moved most first."""
-    named = ", ".join(ways[:MOST_MOVED])
-    more = f" and {len(ways) - MOST_MOVED} more" if len(ways) > MOST_MOVED else ""
-    return [("moved", f"to close the joints: {named}{more}; heun model lists it")] if ways else []
+def _describe_moved_bodies(displacements: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the line on bodies that had to leave their place in the drawing, those that moved most first."""
+    first_displacements = ", ".join(displacements[:MAX_MOVED_BODIES])
+    more = f" and {len(displacements) - MAX_MOVED_BODIES} more" if len(displacements) > MAX_MOVED_BODIES else ""
+    return (
+        [("moved", f"to close the joints: {first_displacements}{more}; heun model lists it")] if displacements else []
+    )
 
 
-def _started(sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """What starts to move, or rests, otherwise than one may expect."""
-    told = list(sentences[:MOST_TOLD])
-    if len(sentences) > MOST_TOLD:
-        told.append(f"{len(sentences) - MOST_TOLD} more: heun model lists them")
-    return _labelled("start", told)
+def _describe_start(sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the lines on what starts to move, or rests, in an unexpected manner."""
+    shown_sentences = list(sentences[:MAX_SENTENCES])
+    if len(sentences) > MAX_SENTENCES:
+        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more: heun model lists them")
+    return _label_sentences("start", shown_sentences)
 
 
-def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """What is told of contacts, the first of it."""
-    told = list(sentences[:MOST_TOLD])
-    if len(sentences) > MOST_TOLD:
-        told.append(f"{len(sentences) - MOST_TOLD} more in --format json, model.contacts")
-    return _labelled("contacts", told)
+def _describe_contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the lines on contacts, at most MAX_SENTENCES of them."""
+    shown_sentences = list(sentences[:MAX_SENTENCES])
+    if len(sentences) > MAX_SENTENCES:
+        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more in --format json, model.contacts")
+    return _label_sentences("contacts", shown_sentences)
 
 
-def _anew(reasons: Sequence[str]) -> list[tuple[str, str]]:
-    """Why the run was begun anew by an implicit method, if it was: stiffness nobody meant may be a slip in the spec.
+def _describe_stiff_restart(reasons: Sequence[str]) -> list[tuple[str, str]]:
+    """Return why the run was restarted with an implicit method: unintended stiffness may be a mistake in the spec.
 
-    That a method of fewer stages took over, where events end most steps, points to no slip: `heun model` tells it.
+    A restart with a method of fewer stages, where events end most steps, points to no mistake; only `heun model` tells
+    it.
     """
-    return [("stiff", text.removeprefix(STIFF)) for text in reasons if text.startswith(STIFF)]
+    return [("stiff", text.removeprefix(STIFF_PREFIX)) for text in reasons if text.startswith(STIFF_PREFIX)]
 
 
-def _model(results: Results) -> str:
+def _describe_model(results: Results) -> str:
     model = results.model
     parts = [str(model.get("space", "spatial"))]
-    things = (("bodies", "body"), ("freedoms", "freedom"), ("loops", "loop"), ("redundant", "redundant row"))
+    counted_keys = (("bodies", "body"), ("freedoms", "freedom"), ("loops", "loop"), ("redundant", "redundant row"))
     parts += [
-        count(int(model[key]), what)
-        for key, what in things
+        format_count(int(model[key]), what)
+        for key, what in counted_keys
         if isinstance(model.get(key), int) and (model[key] or key in ("bodies", "freedoms"))
     ]
     if model.get("given_way"):
         parts[-1] += f", of which {int(model['given_way'])} give way"
     if model.get("driven"):
         parts[2] += f" beside {int(model['driven'])} driven"
-    return ", ".join(parts) + (PLANAR if model.get("plane") == "declared" else "")
+    return ", ".join(parts) + (PLANAR_NOTE if model.get("plane") == "declared" else "")
 
 
-def _run(results: Results) -> str:
+def _describe_run(results: Results) -> str:
     times = results.time
     work = results.work
     kernel = f"{work.get('kernel', 'pure')} kernel" if work else ""
@@ -127,34 +132,36 @@ def _run(results: Results) -> str:
         method = f"{results.model['method']}, " if results.model.get("method") else ""
         if results.model.get("step"):
             method = f"{results.model['method']} in steps of {results.model['step']:.4g} s, "
-        parts.append(f"{method}{count(int(work['steps']), 'step')}, {count(int(work['evaluations']), 'evaluation')}")
+        parts.append(
+            f"{method}{format_count(int(work['steps']), 'step')}, {format_count(int(work['evaluations']), 'evaluation')}"
+        )
     elif len(times) == 1:
         parts.append("nothing integrated")
     return "; ".join(part for part in (*parts, kernel) if part)
 
 
-def _errors(results: Results) -> str:
-    estimate, parts = results.accuracy.get("estimate", Estimate()), []
+def _describe_errors(results: Results) -> str:
+    estimate, parts = results.accuracy.get("estimate", ErrorEstimate()), []
     loads = max(estimate.get(kind) or 0.0 for kind in LOADS)
     if "rest" in results.model:
-        parts = _sentence("pose within {} of the scene's size", estimate.get("motion"))
+        parts = _fill_number("pose within {} of the scene's size", estimate.get("motion"))
     elif results.work.get("steps"):
-        parts = _sentence("motion within {} of the scene's size", estimate.get("motion"))
+        parts = _fill_number("motion within {} of the scene's size", estimate.get("motion"))
     elif loads <= tolerances.WRITTEN:
         return "exact but for rounding"
-    parts += _sentence("loads within {} of the largest", loads or None)
+    parts += _fill_number("loads within {} of the largest", loads or None)
     return ", ".join(parts) if parts else "not estimated"
 
 
-def _residuals(results: Results) -> str:
+def _describe_residuals(results: Results) -> str:
     accuracy = results.accuracy
     moves = results.work.get("steps") and "rest" not in results.model
-    parts = _sentence("energy kept to {}", accuracy.get("energy_drift")) if moves else []
-    parts += _sentence("joints closed to {} m", accuracy.get("constraint_gap") or None)
-    parts += _sentence("forces balance to {}", accuracy.get("balance_residual"))
+    parts = _fill_number("energy kept to {}", accuracy.get("energy_drift")) if moves else []
+    parts += _fill_number("joints closed to {} m", accuracy.get("constraint_gap") or None)
+    parts += _fill_number("forces balance to {}", accuracy.get("balance_residual"))
     return ", ".join(parts)
 
 
-def _sentence(text: str, value: float | None) -> list[str]:
+def _fill_number(text: str, value: float | None) -> list[str]:
     known = value is not None and math.isfinite(value)
-    return [text.format(rough(float(np.float64(value))))] if known and value is not None else []
+    return [text.format(format_error(float(np.float64(value))))] if known and value is not None else []

@@ -1,4 +1,4 @@
-"""Blocks as tables of instants: a line for each, group by group; for one instant a line for each group."""
+"""Tables at given instants: a row for each instant, group by group; for one instant a row for each group."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.output.tables.table_blocks import RowGroup, TableBlock, texts_of
-from heuncli.output.tables.text_table import TextColumn, TextTable, head
+from heuncli.output.tables.table_blocks import RowGroup, TableBlock, format_numbers
+from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import (
     OPEN,
@@ -15,30 +15,30 @@ from heuncli.study.quantities.digits import (
     UNKNOWN_NOTE,
     ZERO_NOTE,
     Certainty,
-    beyond_horizon,
+    format_unclaimed,
     write_times,
 )
 
 Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each instant
 
 
-def instants_tables(block: TableBlock, times: Array, horizon: float | None, certain: Certainty) -> list[TextTable]:
-    """A line for each instant, group by group; for one instant a line for each group."""
+def make_instants_tables(block: TableBlock, times: Array, horizon: float | None, certain: Certainty) -> list[TextTable]:
+    """Make the tables of a block with a row for each instant, group by group; for one instant a row for each group."""
     word, note = block.missing
     if word != OPEN and all(np.isnan(row.values).all() for group in block.groups for row in group.rows):
         return [TextTable(block.heading, notes=(note,))]
     tables: list[TextTable] = []
     notes = list(block.notes)
-    lay = _at_one if len(times) == 1 else _one_below_the_other
-    for groups in _same_columns(block.groups):
-        cells = {group.name: group_texts(block, group, times, horizon, certain) for group in groups}
+    layout = _layout_single_instant if len(times) == 1 else _layout_instants
+    for groups in _split_by_units(block.groups):
+        cells = {group.name: format_group(block, group, times, horizon, certain) for group in groups}
         units = {row.label: row.unit for group in groups for row in group.rows}
-        labels = _not_zero(groups, cells) if word == OPEN else _in_order(groups)
+        labels = _find_nonzero_labels(groups, cells) if word == OPEN else _order_labels(groups)
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"0 throughout: {', '.join(group.name for group in groups)}")
-        of = {row.label: row.vector for group in groups for row in group.rows}
-        columns = [TextColumn(head(label, units[label]), vector=of[label]) for label in labels]
-        lead, rows = lay(block, groups, labels, cells, times)
+        vectors = {row.label: row.vector for group in groups for row in group.rows}
+        columns = [TextColumn(format_head(label, units[label]), vector=vectors[label]) for label in labels]
+        lead, rows = layout(block, groups, labels, cells, times)
         tables += [TextTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
     shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
@@ -47,23 +47,25 @@ def instants_tables(block: TableBlock, times: Array, horizon: float | None, cert
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
 
 
-def _at_one(
+def _layout_single_instant(
     block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
 ) -> tuple[list[TextColumn], list[tuple[str, ...] | str]]:
-    """Leading columns, and a row for each group."""
-    named = any(group.name for group in groups)
-    noted = any(group.note for group in groups)
+    """Return the leading columns, and a row for each group."""
+    has_names = any(group.name for group in groups)
+    has_notes = any(group.note for group in groups)
     rows: list[tuple[str, ...] | str] = []
     for group in groups:
-        about = [group.name] * named + [group.note] * noted
-        rows.append((*about, *(cells[group.name].get(label, [""])[0] for label in labels)))
-    return [TextColumn(block.what, "left")] * named + [TextColumn("", "left", once=named)] * noted, rows
+        leading_cells = [group.name] * has_names + [group.note] * has_notes
+        rows.append((*leading_cells, *(cells[group.name].get(label, [""])[0] for label in labels)))
+    return [TextColumn(block.what, "left")] * has_names + [
+        TextColumn("", "left", is_shown_once=has_names)
+    ] * has_notes, rows
 
 
-def _one_below_the_other(
+def _layout_instants(
     block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
 ) -> tuple[list[TextColumn], list[tuple[str, ...] | str]]:
-    """Leading columns, and a row for each instant of each group."""
+    """Return the leading columns, and a row for each instant of each group."""
     clock = write_times(times.tolist(), float(np.ptp(times)))
     empty = [""] * len(times)
     rows: list[tuple[str, ...] | str] = []
@@ -74,44 +76,49 @@ def _one_below_the_other(
     return [TextColumn("t [s]")], rows
 
 
-def _in_order(groups: Sequence[RowGroup]) -> list[str]:
-    """The labels of all groups, each after those it follows in its own."""
+def _order_labels(groups: Sequence[RowGroup]) -> list[str]:
+    """Return the labels of all groups in an order that keeps the order within each group."""
     order: list[str] = []
     for group in groups:
-        behind = 0
+        next_index = 0
         for row in group.rows:
             if row.label not in order:
-                order.insert(behind, row.label)
-            behind = order.index(row.label) + 1
+                order.insert(next_index, row.label)
+            next_index = order.index(row.label) + 1
     return order
 
 
-def group_texts(
+def format_group(
     block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
 ) -> dict[str, list[str]]:
-    """The cells of a group by label, one an instant."""
+    """Format the cells of a group by label, one for each instant."""
     numbers = np.stack([row.values for row in group.rows], axis=1)
-    known = [horizon is None or t < horizon for t in times.tolist()]
-    words = [{OPEN: UNKNOWN if t in certain.beside else block.missing[0]} for t in times.tolist()]
+    within_horizon = [horizon is None or t < horizon for t in times.tolist()]
+    words = [{OPEN: UNKNOWN if t in certain.singular_times else block.missing[0]} for t in times.tolist()]
     cells = {}
-    for row, texts in zip(group.rows, texts_of(group, numbers, certain), strict=True):
-        own = [
-            text if sure else beyond_horizon(value, row.unit, certain, text)
-            for value, text, sure in zip(row.values.tolist(), texts, known, strict=True)
+    for row, texts in zip(group.rows, format_numbers(group, numbers, certain), strict=True):
+        texts_of_row = [
+            text if is_known else format_unclaimed(value, row.unit, certain, text)
+            for value, text, is_known in zip(row.values.tolist(), texts, within_horizon, strict=True)
         ]
-        cells[row.label] = [word.get(text, text) for word, text in zip(words, own, strict=True)]
+        cells[row.label] = [word.get(text, text) for word, text in zip(words, texts_of_row, strict=True)]
     return cells
 
 
-def _not_zero(groups: Sequence[RowGroup], cells: Cells) -> list[str]:
-    """The labels of what is not 0 throughout, vectors whole, in their order."""
-    whole = {row.label: row.vector or row.label for group in groups for row in group.rows}
-    shown = {whole[label] for own in cells.values() for label, texts in own.items() if set(texts) != {"0"}}
-    return [label for label in _in_order(groups) if whole[label] in shown]
+def _find_nonzero_labels(groups: Sequence[RowGroup], cells: Cells) -> list[str]:
+    """Return the ordered labels of numbers that are not zero throughout; a vector is kept or left out as a whole."""
+    vector_of_label = {row.label: row.vector or row.label for group in groups for row in group.rows}
+    shown = {
+        vector_of_label[label]
+        for texts_of_label in cells.values()
+        for label, texts in texts_of_label.items()
+        if set(texts) != {"0"}
+    }
+    return [label for label in _order_labels(groups) if vector_of_label[label] in shown]
 
 
-def _same_columns(groups: Sequence[RowGroup]) -> list[list[RowGroup]]:
-    """The groups in tables whose columns have one unit each."""
+def _split_by_units(groups: Sequence[RowGroup]) -> list[list[RowGroup]]:
+    """Split the groups into tables in which each column has one unit."""
     tables: list[tuple[dict[str, str], list[RowGroup]]] = []
     for group in groups:
         units = {row.label: row.unit for row in group.rows}

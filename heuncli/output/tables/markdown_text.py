@@ -1,30 +1,30 @@
-"""Text as markdown shows it: what a spec or a file name says is text there, never markup."""
+"""Escape text for Markdown, so that nothing in a spec or file name acts as markup."""
 
 from __future__ import annotations
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 
-# What means something anywhere in a line. Brackets alone, such as those of units, do not: a link needs what follows.
+# Characters with a meaning anywhere in a line. Brackets alone, such as those of units, have none: a link needs more.
 MARKUP = r"(?i)([\\`*_{<#|~&$]|!(?=\[)|\](?=[(\[:])|\[(?=\^)|:(?=//)|(?<=www)\.|(?<=[a-z0-9])@(?=[a-z0-9]))"
-BEGINS = r"^(\d*)([-+=.)>\[])"  # and at its beginning
+LINE_START_MARKUP = r"^(\d*)([-+=.)>\[])"  # with a meaning at its beginning only
 
 
 def escape_markdown(text: str) -> str:
-    """A text within a line, such as a cell, that is shown as it is."""
-    import re  # begun without: most commands write no markdown
+    """Escape a text within a line, such as a cell."""
+    import re  # imported here, as most commands write no markdown
 
-    return re.sub(MARKUP, r"\\\1", shown(text))
+    return re.sub(MARKUP, r"\\\1", escape(text))
 
 
 def escape_line(text: str) -> str:
-    """A text at the beginning of a line, where more means something."""
+    """Escape a text at the beginning of a line, where more characters act as markup."""
     import re
 
-    return re.sub(BEGINS, r"\1\\\2", escape_markdown(text).strip())
+    return re.sub(LINE_START_MARKUP, r"\1\\\2", escape_markdown(text).strip())
 
 
 def fence_text(text: str, language: str = "text") -> str:
-    """A text of several lines as it is, between fences that it does not hold itself."""
+    """Put a text of several lines between fences that are longer than any in it."""
     fence = "```"
     while fence in text:
         fence += "`"

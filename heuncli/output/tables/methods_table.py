@@ -1,4 +1,4 @@
-"""The list of methods of integration, as a table and as plain data for JSON."""
+"""The list of integration methods, as a table and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ NOTES = (
 )
 
 
-def table() -> TextTable:
-    """A row a method."""
+def make_methods_table() -> TextTable:
+    """Make the table with a row for each method."""
     rows = tuple((m.name, str(m.order), m.kind, m.steps, m.attitude, m.purpose) for m in METHODS)
     return TextTable(HEADING, COLUMNS, rows, NOTES)
 
 
-def block() -> dict[str, Any]:
-    """The methods as plain data for JSON: the default, and a mapping for each."""
+def to_json_block() -> dict[str, Any]:
+    """Return the methods as plain data for JSON: the default, and a mapping for each."""
     keys = ("name", "order", "kind", "steps", "attitude", "purpose")
     return {"default": AUTO, "methods": [{key: getattr(m, key) for key in keys} for m in METHODS]}

@@ -1,7 +1,7 @@
-"""The whole report of a run as tables: its blocks, and the columns whose extremes have to be searched.
+"""The whole report of a run as tables, and the columns whose extremes must be searched.
 
-`page_of(results, labels)` first; then either `columns` and `groups` for a search and `extremes` with its outcome, or
-`instants`.
+Call `make_page(results, labels, magnitudes)` first. Then search with `make_columns` and `make_groups` and pass the
+outcome to `make_tables_of_extremes`, or call `make_tables_at_instants`.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables import cut_runs
-from heuncli.output.tables.certain_sums import sums_table
-from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtedInstants, abridged, extremes_table
-from heuncli.output.tables.instants_tables import instants_tables
-from heuncli.output.tables.run_searches import NONE, RunExtremes, with_stresses
-from heuncli.output.tables.table_blocks import NumberRow, TableBlock, build
+from heuncli.output.tables.certain_sums import make_sums_table
+from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants, drop_components, make_extremes_tables
+from heuncli.output.tables.instants_tables import make_instants_tables
+from heuncli.output.tables.run_searches import NO_EXTREMES, RunExtremes, append_stresses
+from heuncli.output.tables.table_blocks import NumberRow, TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
 from heuncli.output.tables.text_table import TextTable
-from heuncli.results.results import Array, CertainSum, Extremes, Magnitudes, Mask, Place, Results
-from heuncli.results.results_schema import REPORT_OF, REPORTS, quantity
-from heuncli.study.quantities.digits import Certainty, certainty, with_axis
+from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Mask, Results
+from heuncli.results.results_schema import REPORT_OF, REPORTS, find_quantity
+from heuncli.study.quantities.digits import Certainty, add_axis_errors, find_certainty
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, in_units, walk
+from heuncli.study.quantities.series import Series, convert_units, iter_series
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
@@ -35,22 +35,25 @@ if TYPE_CHECKING:
     from heuncli.output.tables import cause_tables
 
 
-class SharesAt(Protocol):
-    """A run's loads by cause wherever they are asked for."""
+class ShareSource(Protocol):
+    """Solves a run's loads by cause at any instants."""
 
     def shares_at(self, times: Array) -> Results:
-        """The results with shares at instants (n,), ascending."""
+        """Return the results with shares at instants (n,), in ascending order."""
 
-    def shares_along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
-        """The results with shares at instants (n,), of a run of cuts that is cut at these places alone."""
+    def shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
+        """Return the results with shares at instants (n,), with a run of cuts that is cut only at these places."""
 
 
 class Page(NamedTuple):
-    """The tables of a run: blocks and runs of cuts up to the horizon, before they are laid out.
+    """The tables of a run: its blocks and runs of cuts up to the horizon, before they are laid out.
 
-    of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon; struck:
-    of each blow the extremes along its runs of cuts; along_runs: of the whole run, what else was searched of them;
-    details: whether tables are shown that only those want who ask for them; doubted: instants of marked extremes.
+    magnitudes: what its numbers are summed from
+    last_instant: results at the last instant, if the run ends beyond its horizon
+    impact_extremes: for each impact, the extremes along its runs of cuts
+    run_extremes: for the whole run, further extremes of its runs of cuts
+    details: whether to include tables that are shown only on request
+    doubtful: instants whose extremes are marked
     """
 
     results: Results
@@ -59,214 +62,234 @@ class Page(NamedTuple):
     of: Magnitudes
     beyond: Results | None = None
     struck: Sequence[Mapping[str, Extremes]] = ()
-    along_runs: Mapping[str, RunExtremes] = NONE
+    along_runs: Mapping[str, RunExtremes] = NO_EXTREMES
     details: bool = True
-    doubted: DoubtedInstants = NO_DOUBT
+    doubted: DoubtfulInstants = NO_DOUBT
 
-    def columns(self, results: Results) -> Array:
-        """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
-        rows = [row.values**2 if row.even else row.values for row in self._rows(results)]
+    def make_columns(self, results: Results) -> Array:
+        """Return all rows of all blocks as columns for the search, (n_t, n), magnitudes squared."""
+        rows = [row.values**2 if row.is_magnitude else row.values for row in self._find_rows(results)]
         return np.stack(rows, axis=1) if rows else np.zeros((len(results.time), 0))
 
-    def along(self, results: Results) -> list[tuple[str, Array]]:
-        """The resultants of the runs of cuts, each (n_t, n_cuts), with the names of their runs."""
-        made = cut_runs.runs_of(results, self.labels)
-        return [(run.name, values) for run in made for values in run.values[: len(cut_runs.LOADS)]]
+    def run_columns(self, results: Results) -> list[tuple[str, Array]]:
+        """Return the section forces of the runs of cuts, (n_t, n_cuts) each, with the names of their runs."""
+        runs = cut_runs.collect_runs(results, self.labels)
+        return [(run.name, values) for run in runs for values in run.values[: len(cut_runs.LOADS)]]
 
     @property
     def has_runs(self) -> bool:
         """Whether there are runs of cuts."""
         return any("s" in section for section in self.results.sections.values())
 
-    def groups(self) -> list[list[int]]:
-        """Which columns are compared with each other: each is on its own."""
-        return [[column] for column in range(len(self._rows(self.results)))]
+    def make_groups(self) -> list[list[int]]:
+        """Return the groups of columns that are compared with each other: here each column is its own group."""
+        return [[column] for column in range(len(self._find_rows(self.results)))]
 
-    def errors(self) -> Array:
-        """How well the numbers are known, of all rows and of the resultants of runs, (n,)."""
-        errors = [self.certain.error(row.kind, row.unit) for row in self._rows(self.results)]
-        for _ in cut_runs.runs_of(self.results, self.labels):
-            errors += [self.certain.error("sections", load.unit) for load in cut_runs.LOADS]
+    def find_errors(self) -> Array:
+        """Return the error of each row and of each section force of runs, (n,)."""
+        errors = [self.certain.error_of(row.kind, row.unit) for row in self._find_rows(self.results)]
+        for _ in cut_runs.collect_runs(self.results, self.labels):
+            errors += [self.certain.error_of("sections", load.unit) for load in cut_runs.LOADS]
         return np.array(errors)
 
-    def even(self) -> Mask:
-        """Which columns are squares of magnitudes, (n,)."""
-        rows = [row.even for row in self._rows(self.results)]
-        more = len(cut_runs.LOADS) * len(cut_runs.runs_of(self.results, self.labels))
-        return np.array(rows + [False] * more, dtype=bool)
+    def magnitude_columns(self) -> Mask:
+        """Return the mask of columns that are squares of magnitudes, (n,)."""
+        rows = [row.is_magnitude for row in self._find_rows(self.results)]
+        n_loads = len(cut_runs.LOADS) * len(cut_runs.collect_runs(self.results, self.labels))
+        return np.array(rows + [False] * n_loads, dtype=bool)
 
-    def extremes(self, searched: Extremes, shares: SharesAt | None = None) -> list[TextTable]:
-        """The tables with extremes, from those searched for each of `groups`; shares: by cause, at any instants."""
+    def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[TextTable]:
+        """Make the tables of extremes.
+
+        search_result: the extremes of each group of columns
+        shares: source of loads by cause, if they are requested
+        """
         tables: list[TextTable] = []
         start = 0
-        times, last = self.results.time, self._last_values()
-        for block in self._lasting(self.results):
+        times, all_last_values = self.results.time, self._find_last_values()
+        for block in self._find_searched_blocks(self.results):
             rows = [row for group in block.groups for row in group.rows]
-            own = slice(start, start + len(rows))
-            part = self._roots(block, searched.part(own))
-            beyond = last[own] if last is not None else None
-            tables += extremes_table(block, times, part, self.certain, beyond, self.doubted)
+            columns = slice(start, start + len(rows))
+            part = self._take_roots(block, search_result.select(columns))
+            last_values = all_last_values[columns] if all_last_values is not None else None
+            tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful)
             start += len(rows)
-        for k, run in enumerate(cut_runs.runs_of(self.results, self.labels)):
-            of = self.along_runs.get(run.name, RunExtremes())
-            whole = with_stresses(run, *self._of_run(searched, k), of.stresses)
-            tables += cut_runs.extremes_tables(run, times, *whole, self.certain, of.cuts)
-        more = self._by_cause(searched, shares) if shares is not None else []
-        return [*tables, *more, *self._ending()]
+        for k, run in enumerate(cut_runs.collect_runs(self.results, self.labels)):
+            found = self.run_extremes.get(run.name, RunExtremes())
+            loads_and_stresses = append_stresses(run, *self._find_run_extremes(search_result, k), found.stresses)
+            tables += cut_runs.make_extremes_tables(run, times, *loads_and_stresses, self.certain, found.cuts)
+        share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
+        return [*tables, *share_tables, *self._make_last_tables()]
 
-    def _by_cause(self, searched: Extremes, shares: SharesAt) -> list[TextTable]:
-        """What each cause does of the extremes."""
+    def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[TextTable]:
+        """Make the tables of what each cause contributes to the extremes."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
-        n = len(searched.low) - len(searched.places)
-        instants = np.unique(np.concatenate([searched.low_at[:n], searched.high_at[:n]]))
-        shared = self._shared(shares.shares_at(instants)) if n else {}
+        n = len(search_result.low) - len(search_result.places)
+        instants = np.unique(np.concatenate([search_result.low_at[:n], search_result.high_at[:n]]))
+        numbers = self._collect_shares(shares.shares_at(instants)) if n else {}
         span, tables, start = float(np.ptp(self.results.time)), list[TextTable](), 0
-        for block in self._lasting(self.results):
+        for block in self._find_searched_blocks(self.results):
             count = sum(len(group.rows) for group in block.groups)
-            own = self._roots(block, searched.part(slice(start, start + count)))
-            tables += cause_tables.extremes_table(block, shared, instants, own, self.certain, span)
+            block_extremes = self._take_roots(block, search_result.select(slice(start, start + count)))
+            tables += cause_tables.make_extremes_tables(block, numbers, instants, block_extremes, self.certain, span)
             start += count
-        for k, run in enumerate(cut_runs.runs_of(self.results, self.labels)):
-            tables += self._run_by_cause(run, searched, k, shares)
+        for k, run in enumerate(cut_runs.collect_runs(self.results, self.labels)):
+            tables += self._make_run_share_tables(run, search_result, k, shares)
         return tables
 
-    def _shared(self, results: Results) -> dict[cause_tables.Key, cause_tables.SharedNumber]:
+    def _collect_shares(self, results: Results) -> dict[cause_tables.Key, cause_tables.SharedNumber]:
         from heuncli.output.tables import cause_tables
 
-        return cause_tables.shared_rows(results, in_units(walk(results, self.labels), self.labels.units))
+        return cause_tables.collect_shares(results, convert_units(iter_series(results, self.labels), self.labels.units))
 
-    def _run_by_cause(self, run: cut_runs.CutRun, searched: Extremes, k: int, shares: SharesAt) -> list[TextTable]:
-        """What each cause does of the extremes along a run."""
+    def _make_run_share_tables(
+        self, run: cut_runs.CutRun, search_result: Extremes, k: int, shares: ShareSource
+    ) -> list[TextTable]:
+        """Make the tables of what each cause contributes to the extremes along a run of cuts."""
         from heuncli.output.tables import cause_tables
 
-        found, places = self._of_run(searched, k)
-        at = np.unique(np.concatenate([found.low_at, found.high_at]))
-        results = shares.shares_along(run.name, at, [place for both in places for place in both])
-        return cause_tables.run_extremes_table(run, results, found, places, self.certain)
+        extremes, places = self._find_run_extremes(search_result, k)
+        instants = np.unique(np.concatenate([extremes.low_at, extremes.high_at]))
+        results = shares.shares_along(run.name, instants, [place for both in places for place in both])
+        return cause_tables.make_run_extremes_tables(run, results, extremes, places, self.certain)
 
     @staticmethod
-    def _roots(block: TableBlock, part: Extremes) -> Extremes:
-        """The extremes of a block's rows, magnitudes themselves and not their squares."""
-        even = np.array([row.even for group in block.groups for row in group.rows], dtype=bool)
-        low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (part.low, part.high))
-        return part._replace(low=low, high=high)
+    def _take_roots(block: TableBlock, extremes: Extremes) -> Extremes:
+        """Replace the extremes of squared magnitudes by those of the magnitudes."""
+        is_magnitude = np.array([row.is_magnitude for group in block.groups for row in group.rows], dtype=bool)
+        low, high = (np.where(is_magnitude, np.sqrt(np.abs(bound)), bound) for bound in (extremes.low, extremes.high))
+        return extremes._replace(low=low, high=high)
 
-    def instants(
+    def make_tables_at_instants(
         self,
         results: Results,
         *,
         every_cut: bool = False,
-        searched: Extremes | None = None,
-        shares: SharesAt | None = None,
+        search_result: Extremes | None = None,
+        shares: ShareSource | None = None,
     ) -> list[TextTable]:
-        """The tables at the instants of `results`, which is the same run at any instants; searched: where it is one."""
+        """Make the tables at the instants of `results`, which is the same run solved at any instants.
+
+        search_result: extremes along the runs of cuts, if there is one instant only
+        """
         horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))
-        certain = with_axis(self.certain._replace(beside=unknown), results, self.of, self.labels.units)
+        certain = add_axis_errors(
+            self.certain._replace(singular_times=unknown), results, self.magnitudes, self.labels.units
+        )
         tables: list[TextTable] = []
-        for block in self._blocks(results):
-            tables += instants_tables(block, results.time, horizon, certain)
-        for k, run in enumerate(cut_runs.runs_of(results, self.labels)):
-            if searched is not None:
-                of = self.along_runs.get(run.name, RunExtremes())
-                whole = with_stresses(run, *self._of_run(searched, k), of.stresses)
-                tables.append(cut_runs.extremes_table(run, results.time, *whole, self.certain))
-            made = cut_runs.instants_tables(run, results.time, horizon, self.certain, every=every_cut)
-            tables += [made[0]._replace(heading=""), *made[1:]] if searched is not None else made
+        for block in self._make_blocks(results):
+            tables += make_instants_tables(block, results.time, horizon, certain)
+        for k, run in enumerate(cut_runs.collect_runs(results, self.labels)):
+            if search_result is not None:
+                found = self.run_extremes.get(run.name, RunExtremes())
+                loads_and_stresses = append_stresses(run, *self._find_run_extremes(search_result, k), found.stresses)
+                tables.append(cut_runs.make_extremes_table(run, results.time, *loads_and_stresses, self.certain))
+            run_tables = cut_runs.make_instants_tables(run, results.time, horizon, self.certain, every_cut=every_cut)
+            tables += [run_tables[0]._replace(heading=""), *run_tables[1:]] if search_result is not None else run_tables
         if shares is not None:
-            tables += self._instants_by_cause(results, certain, searched, shares)
-        return [*tables, *self._ending(every_cut)]
+            tables += self._make_instants_share_tables(results, certain, search_result, shares)
+        return [*tables, *self._make_last_tables(every_cut)]
 
-    def _instants_by_cause(
-        self, results: Results, certain: Certainty, searched: Extremes | None, shares: SharesAt
+    def _make_instants_share_tables(
+        self, results: Results, certain: Certainty, search_result: Extremes | None, shares: ShareSource
     ) -> list[TextTable]:
-        """What each cause does at some instants."""
+        """Make the tables of what each cause contributes at the given instants."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
         horizon = self.results.horizon
-        shared, tables = self._shared(results), list[TextTable]()
-        for block in self._blocks(results):
-            tables += cause_tables.instants_table(block, shared, results.time, horizon, certain)
-        for k, run in enumerate(cut_runs.runs_of(results, self.labels)):
-            if searched is not None:
-                tables += self._run_by_cause(run, searched, k, shares)
+        numbers, tables = self._collect_shares(results), list[TextTable]()
+        for block in self._make_blocks(results):
+            tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
+        for k, run in enumerate(cut_runs.collect_runs(results, self.labels)):
+            if search_result is not None:
+                tables += self._make_run_share_tables(run, search_result, k, shares)
             else:
-                tables += cause_tables.run_instants_table(run, results, horizon, certain)
+                tables += cause_tables.make_run_instants_tables(run, results, horizon, certain)
         return tables
 
-    def _of_run(self, searched: Extremes, k: int) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
-        """The extremes of the resultants of a run, and their places."""
+    def _find_run_extremes(
+        self, search_result: Extremes, k: int
+    ) -> tuple[Extremes, tuple[tuple[CutPosition, CutPosition], ...]]:
+        """Return the extremes of the section forces of run k, and their places."""
         n = len(cut_runs.LOADS)
-        first = len(searched.low) - len(searched.places) + n * k
-        return searched.part(slice(first, first + n)), searched.places[n * k : n * (k + 1)]
+        first = len(search_result.low) - len(search_result.places) + n * k
+        return search_result.select(slice(first, first + n)), search_result.places[n * k : n * (k + 1)]
 
-    def _last_values(self) -> Array | None:
-        """The values of all rows at the last instant, where that is beyond the horizon."""
-        if self.beyond is None:
+    def _find_last_values(self) -> Array | None:
+        """Return the values of all rows at the last instant, or None if the run ends within its horizon."""
+        if self.last_instant is None:
             return None
-        blocks = self._lasting(self.beyond)
+        blocks = self._find_searched_blocks(self.last_instant)
         return np.array([row.values[-1] for block in blocks for group in block.groups for row in group.rows])
 
-    def _rows(self, results: Results) -> list[NumberRow]:
-        return [row for block in self._lasting(results) for group in block.groups for row in group.rows]
+    def _find_rows(self, results: Results) -> list[NumberRow]:
+        return [row for block in self._find_searched_blocks(results) for group in block.groups for row in group.rows]
 
-    def _lasting(self, results: Results) -> list[TableBlock]:
-        return self._blocks(results, lasting=True)
+    def _find_searched_blocks(self, results: Results) -> list[TableBlock]:
+        return self._make_blocks(results, only_searched=True)
 
-    def _blocks(self, results: Results, *, lasting: bool = False) -> list[TableBlock]:
-        series: Sequence[Series] = in_units(walk(results, self.labels), self.labels.units)
-        plans = [plan for plan in PLANS if (plan.lasting or not lasting) and (self.details or not plan.detail)]
-        made = [block for plan in plans if (block := build(plan, results, self.labels, series)) is not None]
-        return [abridged(block) for block in made] if lasting else made
+    def _make_blocks(self, results: Results, *, only_searched: bool = False) -> list[TableBlock]:
+        series: Sequence[Series] = convert_units(iter_series(results, self.labels), self.labels.units)
+        plans = [
+            plan for plan in PLANS if (plan.has_extremes or not only_searched) and (self.details or not plan.is_detail)
+        ]
+        blocks = [block for plan in plans if (block := build_block(plan, results, self.labels, series)) is not None]
+        return [drop_components(block) for block in blocks] if only_searched else blocks
 
-    def _ending(self, every: bool = False) -> list[TextTable]:
-        sums = sums_table(self.results, self.certain, self.beyond, self.labels.units.of("N"))
-        return [*([sums] if sums else []), *self._events(every), *self._impulses(every)]
+    def _make_last_tables(self, show_all: bool = False) -> list[TextTable]:
+        sums = make_sums_table(self.results, self.certain, self.last_instant, self.labels.units.find("N"))
+        return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
-    def _events(self, every: bool) -> list[TextTable]:
+    def _make_event_tables(self, show_all: bool) -> list[TextTable]:
         if not self.results.events:
             return []
-        from heuncli.output.tables.event_table import events_table  # where there are conditions
+        from heuncli.output.tables.event_table import make_events_table  # if there are conditions
 
-        return [events_table(self.results, every=every)]
+        return [make_events_table(self.results, all_instants=show_all)]
 
-    def _impulses(self, every: bool) -> list[TextTable]:
+    def _make_impulse_tables(self, show_all: bool) -> list[TextTable]:
         if not self.results.impulses:
             return []
-        from heuncli.output.tables.impulse_tables import BlowReport, impulse_tables  # where something strikes
+        from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables  # if there are impacts
 
-        of = BlowReport(self.results, self.labels, self.certain, self.of, self.struck, self.details)
-        return impulse_tables(of, every=every)
+        report = ImpactReport(
+            self.results, self.labels, self.certain, self.magnitudes, self.impact_extremes, self.details
+        )
+        return make_impulse_tables(report, show_all=show_all)
 
 
-def page_of(results: Results, labels: Labels, of: Magnitudes, *, details: bool = True) -> Page:
-    """The page of a run, ending before its horizon; `of`: what its numbers are summed from."""
+def make_page(results: Results, labels: Labels, magnitudes: Magnitudes, *, details: bool = True) -> Page:
+    """Make the page of a run, which ends before the run's horizon.
+
+    magnitudes: what its numbers are summed from
+    """
     horizon = results.horizon
-    certain = certainty(results, labels, of)
+    certain = find_certainty(results, labels, magnitudes)
     if horizon is None or results.time[-1] < horizon:
-        return Page(results, labels, certain, of, details=details)
-    known = max(1, int(np.searchsorted(results.time, horizon)))
-    beyond = some_instants(results, slice(-1, None))
-    return Page(some_instants(results, slice(known)), labels, certain, of, beyond, details=details)
+        return Page(results, labels, certain, magnitudes, details=details)
+    n_known = max(1, int(np.searchsorted(results.time, horizon)))
+    last_instant = select_instants(results, slice(-1, None))
+    return Page(select_instants(results, slice(n_known)), labels, certain, magnitudes, last_instant, details=details)
 
 
-def some_instants(results: Results, which: slice) -> Results:
-    """The results at some of their instants."""
+def select_instants(results: Results, which: slice) -> Results:
+    """Return the results at some of their instants."""
 
     def those(keys: tuple[str, ...], value: Any) -> Any:
         if isinstance(value, dict):
             return {key: those((*keys, key), member) for key, member in value.items()}
-        row = quantity(keys)
-        return value[which] if row is not None and row.timed else value
+        row = find_quantity(keys)
+        return value[which] if row is not None and row.is_timed else value
 
     blocks = {block: those((block,), getattr(results, block)) for block in REPORT_OF}
-    sums = [_some_of_sum(block, which) for block in results.certain_sums]
+    sums = [_select_sum_instants(block, which) for block in results.certain_sums]
     return replace(results, time=results.time[which], certain_sums=sums, **blocks)
 
 
-def _some_of_sum(block: CertainSum, which: slice) -> CertainSum:
-    """A certain sum at some instants; a factor that turns with the pose is an array over them."""
+def _select_sum_instants(block: DeterminateSum, which: slice) -> DeterminateSum:
+    """Return a determinate sum at some instants; a factor that depends on the pose is an array over them."""
     factors = {
         path: factor[which] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
     }

@@ -1,81 +1,90 @@
-"""Tables too wide for a page in parts, below each other: each begins with the columns that say what a line is of."""
+"""Split tables that are too wide for a page into parts; each begins with the columns that name its rows."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from heuncli.base.wrapping import wrapped
-from heuncli.output.tables.text_table import GAP, INDENT, TextTable, aligned
+from heuncli.base.wrapping import wrap_text
+from heuncli.output.tables.text_table import GAP, INDENT, TextTable, align_cells
 
-GOES_ON = "continued"
-LEAST_TEXT = 24  # places that a last column of text must have to go on in lines of its own
+CONTINUED = "continued"
+MIN_TEXT_WIDTH = 24  # minimum width of a last column of text that is wrapped
 
 
-def fit(table: TextTable, width: int) -> list[TextTable]:
-    """The table in parts no wider than `width` if that can be; each repeats the leading columns of words."""
+def split_to_width(table: TextTable, width: int) -> list[TextTable]:
+    """Split the table into parts no wider than `width`, if possible; each part repeats the leading columns of words."""
     if not table.columns:
         return [table]
-    widths = [max(map(len, column)) + len(GAP) for column in zip(*aligned(table), strict=True)]
+    widths = [max(map(len, column)) + len(GAP) for column in zip(*align_cells(table), strict=True)]
     indent = len(INDENT) if any(isinstance(row, str) for row in table.rows) else 0
-    over = indent + sum(widths) - len(GAP) - width
-    if over <= 0:
+    excess = indent + sum(widths) - len(GAP) - width
+    if excess <= 0:
         return [table]
-    if len(widths) > 1 and table.columns[-1].align == "left" and widths[-1] - len(GAP) - over >= LEAST_TEXT:
-        return [table._replace(rows=tuple(in_lines(table, widths[-1] - len(GAP) - over)))]
-    if table.columns[-1].spare:
+    if len(widths) > 1 and table.columns[-1].align == "left" and widths[-1] - len(GAP) - excess >= MIN_TEXT_WIDTH:
+        return [table._replace(rows=tuple(wrap_last_column(table, widths[-1] - len(GAP) - excess)))]
+    if table.columns[-1].is_optional:
         rest = tuple(row if isinstance(row, str) else row[:-1] for row in table.rows)
-        return fit(table._replace(columns=table.columns[:-1], rows=rest), width)
+        return split_to_width(table._replace(columns=table.columns[:-1], rows=rest), width)
     lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if column.align == "left"), default=0)
-    again = [i for i in range(lead) if not table.columns[i].once]
-    room = [width - indent + len(GAP) - sum(widths[i] for i in columns) for columns in (range(lead), again)]
-    parts = shared_out(widths, unparted(table, lead, widths, room[1]), room)
+    repeated = [i for i in range(lead) if not table.columns[i].is_shown_once]
+    widths_left = [width - indent + len(GAP) - sum(widths[i] for i in columns) for columns in (range(lead), repeated)]
+    parts = distribute_columns(widths, group_vector_columns(table, lead, widths, widths_left[1]), widths_left)
     tables = []
     for number, part in enumerate(parts):
-        kept = [*(again if number else range(lead)), *part]
-        rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in kept) for row in table.rows)
+        shown_columns = [*(repeated if number else range(lead)), *part]
+        rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
         notes = table.notes if number == len(parts) - 1 else ()
-        tables.append(TextTable(heading(table, number), tuple(table.columns[i] for i in kept), rows, notes))
+        tables.append(
+            TextTable(make_part_heading(table, number), tuple(table.columns[i] for i in shown_columns), rows, notes)
+        )
     return tables
 
 
-def in_lines(table: TextTable, room: int) -> Iterator[tuple[str, ...] | str]:
-    """The rows with the text of the last column in lines of so many places."""
+def wrap_last_column(table: TextTable, text_width: int) -> Iterator[tuple[str, ...] | str]:
+    """Wrap the text of the last column to a width, in rows of its own."""
     for row in table.rows:
         if isinstance(row, str):
             yield row
             continue
-        first, *rest = wrapped(row[-1], room, 0)
+        first, *rest = wrap_text(row[-1], text_width, 0)
         yield (*row[:-1], first)
         yield from ((*[""] * (len(row) - 1), line) for line in rest)
 
 
-def heading(table: TextTable, part: int) -> str:
-    """The heading of a part: of the first all of it, of the others what it is called."""
+def make_part_heading(table: TextTable, part: int) -> str:
+    """Return the heading of a part: the whole heading for the first, only its title for the others."""
     if not part or not table.heading:
         return "" if part else table.heading
-    lead, at, behind = table.heading.partition(")  ")  # of a blow, its instant and what struck
-    begins, called = (lead + at, behind) if lead.startswith("IMPULSE at") and behind else ("", table.heading)
-    return f"{begins}{called.partition('  ')[0]}  {GOES_ON}"
+    lead, separator, remainder = table.heading.partition(")  ")  # of an impact: its instant and names
+    impact_title, table_heading = (
+        (lead + separator, remainder) if lead.startswith("IMPULSE at") and remainder else ("", table.heading)
+    )
+    return f"{impact_title}{table_heading.partition('  ')[0]}  {CONTINUED}"
 
 
-def unparted(table: TextTable, lead: int, widths: Sequence[int], room: int) -> list[list[int]]:
-    """The columns behind the leading ones, those of one vector together as long as they have room."""
-    found: list[list[int]] = []
-    for place in range(lead, len(widths)):
-        vector, before = table.columns[place].vector, found[-1] if found else []
-        same = vector and before and table.columns[before[-1]].vector == vector
-        if same and sum(widths[i] for i in (*before, place)) <= room:
-            before.append(place)
+def group_vector_columns(table: TextTable, lead: int, widths: Sequence[int], max_width: int) -> list[list[int]]:
+    """Group the columns after the leading ones: those of one vector stay together as long as they fit."""
+    column_groups: list[list[int]] = []
+    for column in range(lead, len(widths)):
+        vector, last_group = table.columns[column].vector, column_groups[-1] if column_groups else []
+        is_same_vector = vector and last_group and table.columns[last_group[-1]].vector == vector
+        if is_same_vector and sum(widths[i] for i in (*last_group, column)) <= max_width:
+            last_group.append(column)
         else:
-            found.append([place])
-    return found
+            column_groups.append([column])
+    return column_groups
 
 
-def shared_out(widths: Sequence[int], unparted: Sequence[list[int]], room: Sequence[int]) -> list[list[int]]:
-    """The columns of each part, as many as have room; room: of the first part and of the others."""
+def distribute_columns(
+    widths: Sequence[int], column_groups: Sequence[list[int]], widths_left: Sequence[int]
+) -> list[list[int]]:
+    """Distribute the groups of columns over parts.
+
+    widths_left: room in the first part, and in each of the others
+    """
     parts: list[list[int]] = [[]]
-    for columns in unparted:
-        if parts[-1] and sum(widths[i] for i in (*parts[-1], *columns)) > room[len(parts) > 1]:
+    for columns in column_groups:
+        if parts[-1] and sum(widths[i] for i in (*parts[-1], *columns)) > widths_left[len(parts) > 1]:
             parts.append([])
         parts[-1] += columns
     return parts

@@ -1,9 +1,9 @@
-"""Words around numbers. Imports nothing, so that `heun validate` does without NumPy."""
+"""Format counts with their nouns. Imports nothing, so that `heun validate` does not need NumPy."""
 
 from __future__ import annotations
 
 
-def count(number: int, what: str) -> str:
-    """A number of things: `1 body`, `2 bodies`, `no loops`."""
-    plural = f"{what[:-1]}ies" if what.endswith("y") else f"{what}s"
-    return f"{number or 'no'} {what if number == 1 else plural}"
+def format_count(number: int, noun: str) -> str:
+    """Format a number of things: `1 body`, `2 bodies`, `no loops`."""
+    plural = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
+    return f"{number or 'no'} {noun if number == 1 else plural}"

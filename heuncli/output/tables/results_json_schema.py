@@ -1,26 +1,28 @@
-"""The results of `heun run --format json` as a JSON Schema (draft-07), from the rows that say what they hold."""
+"""The JSON Schema (draft-07) of the results of `heun run --format json`, made from the definitions of the
+quantities.
+"""
 
 from __future__ import annotations
 
 import re
 from typing import Any
 
-from heuncli.output.tables.collective_schema import collectives_schema
-from heuncli.results.results_schema import BLOWS, NAMES, TREE, Node, Quantity
+from heuncli.output.tables.collective_schema import make_collectives_schema
+from heuncli.results.results_schema import IMPULSES, NAMES, TREE, Node, Quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 IN_LISTS = "NUMBER"
-NUMBER = {"type": ["number", "boolean", "null"]}  # a truth of an event is one, too
+NUMBER = {"type": ["number", "boolean", "null"]}  # the value of a condition is a boolean
 FORMAT = {"const": 1, "description": "version of the form of results"}
 
 
-def results_schema() -> dict[str, Any]:
-    """The schema of a result, of load collectives, or of either of all load cases."""
-    one = _block(TREE, timed=True)
-    one["properties"]["heun"] = FORMAT
-    one["properties"] |= {key: {} for key in ("spec", "version", "warnings") if key not in one["properties"]}
-    one["required"] = ["heun", "status", "time"]
+def make_results_schema() -> dict[str, Any]:
+    """Return the schema of a result, of load collectives, or of either for all load cases."""
+    result = _make_block_schema(TREE, is_timed=True)
+    result["properties"]["heun"] = FORMAT
+    result["properties"] |= {key: {} for key in ("spec", "version", "warnings") if key not in result["properties"]}
+    result["required"] = ["heun", "status", "time"]
     bound = {"type": ["object", "null"], "properties": {"value": NUMBER, "at": NUMBER, "case": {"type": "string"}}}
     row = {"type": "object", "properties": {"unit": {"type": "string"}, "min": bound, "max": bound}}
     either = [{"$ref": "#/definitions/result"}, {"$ref": "#/definitions/collectives"}]
@@ -33,38 +35,42 @@ def results_schema() -> dict[str, Any]:
     }  # fmt: skip
     return {
         "$schema": DRAFT, "title": "A result of heun run",
-        "definitions": {"result": one, "collectives": collectives_schema(FORMAT)}, "anyOf": [*either, cases],
+        "definitions": {"result": result, "collectives": make_collectives_schema(FORMAT)}, "anyOf": [*either, cases],
     }  # fmt: skip
 
 
-def _block(node: Node, timed: bool) -> dict[str, Any]:
-    """A block: its known keys, and what stands under names of the scene, of which a block may have any.
+def _make_block_schema(node: Node, is_timed: bool) -> dict[str, Any]:
+    """Return the schema of a block: its known keys, and what may stand under names of the scene.
 
-    timed: whether quantities that run over the instants do so here; at a blow they do not.
+    is_timed: whether quantities vary over the instants here; those of an impact do not
     """
-    known = {key: _member(member, timed and key != BLOWS) for key, member in node.items() if key not in NAMES}
-    named = [_member(member, timed) for key, member in node.items() if key in NAMES and key != IN_LISTS]
+    known = {
+        key: _make_member_schema(member, is_timed and key != IMPULSES)
+        for key, member in node.items()
+        if key not in NAMES
+    }
+    named = [_make_member_schema(member, is_timed) for key, member in node.items() if key in NAMES and key != IN_LISTS]
     if IN_LISTS in node and len(node) == 1:
-        return {"type": "array", "items": _member(node[IN_LISTS], timed)}
-    rest: Any = named[0] if named else False
-    return {"type": "object", "properties": known, "additionalProperties": rest}
+        return {"type": "array", "items": _make_member_schema(node[IN_LISTS], is_timed)}
+    additional: Any = named[0] if named else False
+    return {"type": "object", "properties": known, "additionalProperties": additional}
 
 
-def _member(member: Node | Quantity, timed: bool) -> dict[str, Any]:
+def _make_member_schema(member: Node | Quantity, is_timed: bool) -> dict[str, Any]:
     if not isinstance(member, Quantity):
-        return _block(member, timed)
+        return _make_block_schema(member, is_timed)
     meaning = LINK.sub(r"\1", member.meaning).replace("`", "").replace("\\|", "|")
     unit = " or ".join(member.units)
-    about = {"description": f"{meaning} [{unit}]" if unit and unit != "1" else meaning}
-    if member.own_form:
-        return about
+    schema = {"description": f"{meaning} [{unit}]" if unit and unit != "1" else meaning}
+    if member.has_own_form:
+        return schema
     if member.is_words:
-        return {**about, "type": ["string", "array", "object", "null"]}
-    over_time = member.timed and timed
-    depths = {len(member.axes(run)) + over_time for run in (False, True)}
-    return {**about, "anyOf": [_nested(n) for n in sorted(depths)]}
+        return {**schema, "type": ["string", "array", "object", "null"]}
+    over_time = member.is_timed and is_timed
+    depths = {len(member.instant_axes(run)) + over_time for run in (False, True)}
+    return {**schema, "anyOf": [_make_nested_schema(n) for n in sorted(depths)]}
 
 
-def _nested(depth: int) -> dict[str, Any]:
-    """Numbers in lists of lists, so many deep; null for what is open."""
-    return {"type": "array", "items": _nested(depth - 1)} if depth else dict(NUMBER)
+def _make_nested_schema(depth: int) -> dict[str, Any]:
+    """Return the schema of numbers in lists nested to a depth; null stands for an indeterminate number."""
+    return {"type": "array", "items": _make_nested_schema(depth - 1)} if depth else dict(NUMBER)

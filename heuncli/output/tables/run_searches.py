@@ -1,6 +1,6 @@
-"""What is searched of runs of cuts beside the loads along them: stresses along them, and all of it at each cut shown.
+"""What is searched along runs of cuts besides the section forces: stresses, and all quantities at each cut shown.
 
-Squares stand for magnitudes, whose kinks at zero they do not have.
+Magnitudes are searched as squares, which have no kink at zero.
 """
 
 from __future__ import annotations
@@ -11,88 +11,95 @@ from types import MappingProxyType
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.cut_runs import CutRun, RunQuantity, runs_of, thinned
-from heuncli.results.results import Array, Extremes, Indices, Mask, Place, Results
+from heuncli.output.tables.cut_runs import CutRun, RunQuantity, choose_cuts, collect_runs
+from heuncli.results.results import Array, CutPosition, Extremes, Indices, Mask, Results
 from heuncli.study.quantities.digits import Certainty
 from heuncli.study.quantities.labels import Labels
 
 
 class RunExtremes(NamedTuple):
-    """Extremes of the stresses along a run; of loads and stresses at its cuts that are shown."""
+    """Extremes of the stresses along a run, and of forces and stresses at the cuts that are shown."""
 
     stresses: Extremes | None = None
     cuts: Extremes | None = None
 
 
-NONE: Mapping[str, RunExtremes] = MappingProxyType({})
+NO_EXTREMES: Mapping[str, RunExtremes] = MappingProxyType({})
 
 
 class RunSearch(NamedTuple):
-    """Quantities of one run as columns of a search; cuts: those that are shown, none for the run as a whole."""
+    """Quantities of one run of cuts as columns of a search.
+
+    cuts: those that are shown; none if the whole run is searched
+    """
 
     run: CutRun
     labels: Labels
     quantities: tuple[RunQuantity, ...]
     cuts: Indices
 
-    def of(self, results: Results) -> Array:
-        """The values at other instants, (n, n_t, n_cuts)."""
-        found = next(run for run in runs_of(results, self.labels) if run.name == self.run.name)
+    def evaluate(self, results: Results) -> Array:
+        """Return the values at the instants of other results, (n, n_t, n_cuts), magnitudes squared."""
+        same_run = next(run for run in collect_runs(results, self.labels) if run.name == self.run.name)
         first = self.run.quantities.index(self.quantities[0])
-        values = found.values[first : first + len(self.quantities)]
-        even = np.array([own.even for own in self.quantities])[:, None, None]
-        return np.where(even, values * values, values)
+        values = same_run.values[first : first + len(self.quantities)]
+        is_magnitude = np.array([quantity.is_magnitude for quantity in self.quantities])[:, None, None]
+        return np.where(is_magnitude, values * values, values)
 
-    def columns(self, results: Results) -> Array:
-        """The quantities at the cuts as columns, (n_t, n * n_cuts), the cuts of one quantity side by side."""
-        values = self.of(results)[:, :, self.cuts]
+    def make_columns(self, results: Results) -> Array:
+        """Return the quantities at the cuts as columns, (n_t, n * n_cuts), with the cuts of one quantity side by
+        side.
+        """
+        values = self.evaluate(results)[:, :, self.cuts]
         return values.transpose(1, 0, 2).reshape(values.shape[1], -1)
 
-    def along(self, results: Results) -> list[tuple[str, Array]]:
-        """Each quantity along the whole run, (n_t, n_nodes), with the name of the run."""
-        return [(self.run.name, values) for values in self.of(results)]
+    def run_columns(self, results: Results) -> list[tuple[str, Array]]:
+        """Return each quantity along the whole run, (n_t, n_nodes), with the name of the run."""
+        return [(self.run.name, values) for values in self.evaluate(results)]
 
-    def errors(self, certain: Certainty) -> Array:
-        """How well they are known, (n * n_cuts,), or (n,) along the run."""
-        return self._each([certain.error("sections", own.unit) for own in self.quantities])
+    def find_errors(self, certain: Certainty) -> Array:
+        """Return the error of each column, (n * n_cuts,), or of each quantity along the run, (n,)."""
+        return self._repeat_for_cuts([certain.error_of("sections", quantity.unit) for quantity in self.quantities])
 
     @property
-    def even(self) -> Mask:
-        """Which columns are squares of magnitudes."""
-        return self._each([own.even for own in self.quantities]).astype(bool)
+    def magnitude_columns(self) -> Mask:
+        """The mask of columns that are squares of magnitudes."""
+        return self._repeat_for_cuts([quantity.is_magnitude for quantity in self.quantities]).astype(bool)
 
     @property
     def groups(self) -> list[list[int]]:
-        """Each column on its own."""
+        """The groups of columns that are compared with each other: each column is its own group."""
         return [[column] for column in range(len(self.quantities) * len(self.cuts))]
 
-    def roots(self, found: Extremes) -> Extremes:
-        """The extremes of the quantities themselves, not of squares."""
-        low, high = (np.where(self.even, np.sqrt(np.abs(bound)), bound) for bound in (found.low, found.high))
-        return found._replace(low=low, high=high)
+    def take_roots(self, extremes: Extremes) -> Extremes:
+        """Replace the extremes of squared magnitudes by those of the magnitudes."""
+        low, high = (
+            np.where(self.magnitude_columns, np.sqrt(np.abs(bound)), bound) for bound in (extremes.low, extremes.high)
+        )
+        return extremes._replace(low=low, high=high)
 
-    def _each(self, values: Sequence[float]) -> Array:
+    def _repeat_for_cuts(self, values: Sequence[float]) -> Array:
         return np.repeat(np.array(values, dtype=np.float64), len(self.cuts) or 1)
 
 
-def at_cuts(run: CutRun, labels: Labels) -> RunSearch:
-    """All quantities at the cuts that are shown."""
-    return RunSearch(run, labels, run.quantities, thinned(run))
+def search_cuts(run: CutRun, labels: Labels) -> RunSearch:
+    """Make the search of all quantities at the cuts that are shown."""
+    return RunSearch(run, labels, run.quantities, choose_cuts(run))
 
 
-def stresses_along(run: CutRun, labels: Labels) -> RunSearch:
-    """The stresses along the run."""
+def search_stresses(run: CutRun, labels: Labels) -> RunSearch:
+    """Make the search of the stresses along the run."""
     return RunSearch(run, labels, run.stresses, np.zeros(0, dtype=np.intp))
 
 
-def with_stresses(
-    run: CutRun, loads: Extremes, places: tuple[tuple[Place, Place], ...], stresses: Extremes | None
-) -> tuple[Extremes, tuple[tuple[Place, Place], ...]]:
-    """The extremes of the loads along a run and of its stresses, one after the other."""
+def append_stresses(
+    run: CutRun, loads: Extremes, places: tuple[tuple[CutPosition, CutPosition], ...], stresses: Extremes | None
+) -> tuple[Extremes, tuple[tuple[CutPosition, CutPosition], ...]]:
+    """Append the extremes of the stresses along a run to those of its section forces."""
     if stresses is None or not run.stresses:
         return loads, places
     low, low_at, low_column, high, high_at, high_column = (
-        np.concatenate([mine, its]) for mine, its in zip(loads[:6], stresses[:6], strict=True)
+        np.concatenate([of_loads, of_stresses]) for of_loads, of_stresses in zip(loads[:6], stresses[:6], strict=True)
     )
-    both = Extremes(low, low_at, low_column, high, high_at, high_column, loads.searched, loads.complete)
+    both = Extremes(low, low_at, low_column, high, high_at, high_column, loads.is_searched, loads.is_complete)
     return both, (*places, *stresses.places)

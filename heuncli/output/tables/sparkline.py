@@ -1,4 +1,4 @@
-"""Numbers as a row of letters, from low to high: ▁▂▃▄▅▆▇█, and what stands for them where those cannot be shown."""
+"""Draw numbers as a row of characters from low to high: ▁▂▃▄▅▆▇█, or plain ASCII where these cannot be shown."""
 
 from __future__ import annotations
 
@@ -8,38 +8,44 @@ import numpy as np
 
 from heuncli.results.results import Array
 
-BLOCKS = "▁▂▃▄▅▆▇█"
-PLAIN = "_.-:=+*#"
-NONE = {BLOCKS: "·", PLAIN: " "}  # of what is not known
+BLOCK_CHARACTERS = "▁▂▃▄▅▆▇█"
+ASCII_CHARACTERS = "_.-:=+*#"
+UNKNOWN_CHARACTERS = {BLOCK_CHARACTERS: "·", ASCII_CHARACTERS: " "}  # for unknown numbers
 
 
-def letters(encoding: str | None) -> str:
-    """The letters that a terminal of an encoding shows; None: what is read as UTF-8."""
+def choose_characters(encoding: str | None) -> str:
+    """Return the characters that a terminal of this encoding shows; None stands for UTF-8."""
     try:
-        BLOCKS.encode(encoding or "utf-8")
+        BLOCK_CHARACTERS.encode(encoding or "utf-8")
     except (UnicodeError, LookupError):
-        return PLAIN
-    return BLOCKS
+        return ASCII_CHARACTERS
+    return BLOCK_CHARACTERS
 
 
-def sparkline(values: Sequence[float] | Array, width: int, limits: tuple[float, float], by: str = BLOCKS) -> str:
-    """A letter a number, from the lower limit to the upper one; of more than `width` the greatest of neighbours.
+def draw_sparkline(
+    values: Sequence[float] | Array, width: int, limits: tuple[float, float], characters: str = BLOCK_CHARACTERS
+) -> str:
+    """Draw a character for each number between the limits; of more than `width` numbers, neighbours are joined to their
+    maximum.
 
-    Not known (nan): a point. Where both limits are the same all are low.
+    An unknown number (nan) becomes a dot. If both limits are equal, all characters are low.
     """
-    known = squeezed(np.asarray(values, dtype=np.float64), width)
+    shown_values = reduce_to_width(np.asarray(values, dtype=np.float64), width)
     low, high = limits
-    heights = (known - low) / (high - low) if high > low else np.where(np.isnan(known), np.nan, 0.0)
-    return "".join(NONE[by] if np.isnan(height) else _letter(height, by) for height in heights.tolist())
+    heights = (shown_values - low) / (high - low) if high > low else np.where(np.isnan(shown_values), np.nan, 0.0)
+    return "".join(
+        UNKNOWN_CHARACTERS[characters] if np.isnan(height) else _choose_character(height, characters)
+        for height in heights.tolist()
+    )
 
 
-def _letter(height: float, by: str) -> str:
-    """The letter of a height from 0 to 1."""
-    return by[min(max(int(height * len(by)), 0), len(by) - 1)]
+def _choose_character(height: float, characters: str) -> str:
+    """Return the character of a height from 0 to 1."""
+    return characters[min(max(int(height * len(characters)), 0), len(characters) - 1)]
 
 
-def squeezed(values: Array, width: int) -> Array:
-    """At most so many numbers: of neighbours the greatest, nan where none of them is known."""
+def reduce_to_width(values: Array, width: int) -> Array:
+    """Reduce the numbers to at most `width`: the maximum of neighbours, nan if none of them is known."""
     if len(values) <= width:
         return values
     starts = np.arange(width) * len(values) // width
@@ -48,11 +54,13 @@ def squeezed(values: Array, width: int) -> Array:
     return np.where(np.isneginf(greatest), np.nan, greatest)
 
 
-def histogram(values: Array, limits: tuple[float, float], bins: int, by: str = BLOCKS) -> str:
-    """How many of the numbers lie in each part between the limits."""
+def draw_histogram(values: Array, limits: tuple[float, float], bins: int, characters: str = BLOCK_CHARACTERS) -> str:
+    """Draw how many of the numbers lie in each of the bins between the limits."""
     known = values[np.isfinite(values)]
     low, high = limits
     if not known.size or not high > low:
-        return by[-1] * min(known.size, 1)
+        return characters[-1] * min(known.size, 1)
     counts, _ = np.histogram(known, bins, (low, high))
-    return "".join(" " if count == 0 else _letter(count / counts.max(), by) for count in counts.tolist())
+    return "".join(
+        " " if count == 0 else _choose_character(count / counts.max(), characters) for count in counts.tolist()
+    )

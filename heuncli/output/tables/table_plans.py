@@ -1,6 +1,6 @@
-"""Which quantities the tables show, under which heading, with which note on each thing.
+"""Plans of the tables: which quantities they show, under which heading, with which note on each object.
 
-A plan is one table of the report: of one kind of results it takes the named quantities, in their order.
+A plan is one table of the report: it takes the named quantities of one kind of results, in their order.
 """
 
 from __future__ import annotations
@@ -15,15 +15,18 @@ from heuncli.results.results_schema import RESULTANTS, STRESSES
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE
 from heuncli.study.quantities.labels import Labels
 
-POINTS = ("the origin", "the point")
+POINT_PHRASES = ("the origin", "the point")
 NO_AXIS = ("none", "none: there is no force, so no axis")
 
 
 class TablePlan(NamedTuple):
-    """How a kind of results becomes a block: the quantities in their order, and the text about it.
+    """How a kind of results becomes a block: the quantities in their order, and the texts.
 
-    `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it is shown at instants.
-    `missing`: what stands for nan, and the note that explains it. A `detail` is shown to those who name its report.
+    what: heads the column of names
+    only: takes one name of the kind
+    has_extremes: False for a line in space, which is shown at instants only
+    missing: the text for nan, and the note that explains it
+    is_detail: whether it is shown only to those who request its report
     """
 
     key: str
@@ -38,64 +41,64 @@ class TablePlan(NamedTuple):
     detail: bool = False
 
     @property
-    def of_foundation(self) -> bool:
+    def is_foundation(self) -> bool:
         """Whether it shows the foundation's total with its supports and elements."""
         return self.kind == "foundation" and self.only is None
 
 
-def _about(results: Results, labels: Labels) -> str:
-    unit, size = labels.units.of("m")
-    about = size * np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
-    place = f"({', '.join(f'{component:.6g}' for component in about)}) {unit}"
-    return f"{labels.about} = {place}" if labels.about else f"{POINTS[bool(about.any())]} {place}"
+def _format_moment_point(results: Results, labels: Labels) -> str:
+    unit, size = labels.units.find("m")
+    point = size * np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
+    place = f"({', '.join(f'{component:.6g}' for component in point)}) {unit}"
+    return f"{labels.moment_point} = {place}" if labels.moment_point else f"{POINT_PHRASES[bool(point.any())]} {place}"
 
 
-def _axes(results: Results) -> str:
-    """The axes in which joint loads are told."""
-    told = results.model.get("axes")
-    return f'axes of the "{told}" body' if told else "world axes"
+def _format_axes(results: Results) -> str:
+    """Format the axes in which joint loads are given."""
+    body = results.model.get("axes")
+    return f'axes of the "{body}" body' if body else "world axes"
 
 
-def _joint_note(name: str, labels: Labels) -> str:
+def _make_joint_note(name: str, labels: Labels) -> str:
     info = labels.joints.get(name)
-    return f"{info.type}, {info.from_} → {info.to}" if info else ""
+    return f"{info.type}, {info.first_end} → {info.second_end}" if info else ""
 
 
-def _force_note(name: str, labels: Labels) -> str:
+def _make_force_note(name: str, labels: Labels) -> str:
     info = labels.forces.get(name)
     return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
 
 
-def _stop_note(name: str, labels: Labels) -> str:
+def _make_stop_note(name: str, labels: Labels) -> str:
     info = labels.stops.get(name)
     if info is None:
         return ""
-    unit, size = labels.units.of("rad" if info.coordinate.endswith(".angle") else "m")
+    unit, size = labels.units.find("rad" if info.coordinate.endswith(".angle") else "m")
     if info.latch:
-        at = f" at {size * info.at:.6g} {unit}" if isinstance(info.at, float) else f" at the stop {info.at}"
-        return f"latch, {info.coordinate}{at if info.at is not None else ''}"
+        place = f" at {size * info.catch:.6g} {unit}" if isinstance(info.catch, float) else f" at the stop {info.catch}"
+        return f"latch, {info.coordinate}{place if info.catch is not None else ''}"
     limits = (("from", info.low), ("to", info.high))
-    told = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
-    return f"{info.coordinate} {' '.join(told)} {unit}"
+    limit_texts = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
+    return f"{info.coordinate} {' '.join(limit_texts)} {unit}"
 
 
-def _exerted(labels: Labels) -> str:
-    """What the stops of a scene exert."""
+def _name_stop_load(labels: Labels) -> str:
+    """Return "force", "moment" or both, for what the stops of a scene exert."""
     turning = {info.coordinate.endswith(".angle") for info in labels.stops.values()}
     return "force or moment" if len(turning) != 1 else "moment" if True in turning else "force"
 
 
-def _section_note(name: str, labels: Labels) -> str:
+def _make_section_note(name: str, labels: Labels) -> str:
     info = labels.sections.get(name)
-    return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
+    return f"{info.body}; e1 = {info.first_axis}; moments about {info.moment_point}" if info else ""
 
 
-def _foundation_note(name: str, labels: Labels) -> str:
-    kind, _, own = name.partition(" ")
-    if kind == "element" and own in labels.stops:
-        return ("" if labels.stops[own].latch else "stop, ") + _stop_note(own, labels)
-    notes = {"support": _joint_note, "element": _force_note}
-    return notes[kind](own, labels) if kind in notes else ""
+def _make_foundation_note(name: str, labels: Labels) -> str:
+    kind, _, object_name = name.partition(" ")
+    if kind == "element" and object_name in labels.stops:
+        return ("" if labels.stops[object_name].latch else "stop, ") + _make_stop_note(object_name, labels)
+    notes = {"support": _make_joint_note, "element": _make_force_note}
+    return notes[kind](object_name, labels) if kind in notes else ""
 
 
 FOUNDATION = TablePlan(
@@ -104,9 +107,9 @@ FOUNDATION = TablePlan(
     "",
     ("force", "moment"),
     lambda results, labels: (
-        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_about(results, labels)}"
+        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_format_moment_point(results, labels)}"
     ),
-    _foundation_note,
+    _make_foundation_note,
 )
 MASS_EFFECT = TablePlan(
     "foundation",
@@ -115,10 +118,10 @@ MASS_EFFECT = TablePlan(
     ("force", "moment_orbital", "moment_spin"),
     lambda results, labels: (
         "MASS EFFECT  F = Σ m ẍ, moments the rates of Σ m x × ẋ (orbital) and Σ I σ (spin),"
-        f" world axes, about {_about(results, labels)}"
+        f" world axes, about {_format_moment_point(results, labels)}"
     ),
     only="mass_effect",
-    detail=True,
+    is_detail=True,
 )
 AXIS = TablePlan(
     "foundation",
@@ -127,9 +130,9 @@ AXIS = TablePlan(
     ("point", "direction", "pitch"),
     lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
     only="axis",
-    lasting=False,
+    has_extremes=False,
     missing=NO_AXIS,
-    detail=True,
+    is_detail=True,
 )
 JOINTS = TablePlan(
     "joints",
@@ -137,17 +140,19 @@ JOINTS = TablePlan(
     "joint",
     ("force", "moment", "axial", "radial", "tilting", "tension", "torque", "pressure", "drive"),
     lambda results, labels: (
-        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
+        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_format_axes(results)}, moment about the "to" point'
     ),
-    _joint_note,
+    _make_joint_note,
 )
 STOPS = TablePlan(
     "joints",
     "stops",
     "stop",
     ("force", "moment"),
-    lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
-    _stop_note,
+    lambda results, labels: (
+        f'STOPS  {_name_stop_load(labels)} ON "to", along the coordinate that is limited; 0 where free'
+    ),
+    _make_stop_note,
 )
 COUPLED = (
     *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
@@ -166,7 +171,7 @@ SECTIONS = TablePlan(
     "section",
     (*RESULTANTS, *STRESSES),
     lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
-    _section_note,
+    _make_section_note,
 )
 ENERGY = TablePlan(
     "energy",
@@ -189,7 +194,7 @@ PLANS = (
         "joint",
         ("angle", "rate", "travel", "speed", "acceleration", "angular_acceleration"),
         lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
-        _joint_note,
+        _make_joint_note,
     ),
     TablePlan(
         "points",
@@ -214,11 +219,11 @@ PLANS = (
             "FORCES  value, length of its line, angle of a turn spring, their rate, power put in"
             + ("; of a bushing in its own axes" if any("shift" in own for own in results.forces.values()) else "")
         ),
-        _force_note,
+        _make_force_note,
     ),
     ENERGY,
 )
-# What a blow does, each table under its instant and what struck: of impulses the same tables as of loads.
+# Tables of an impact under its instant and names: for impulses the same tables as for loads.
 IMPULSES = (
     TablePlan(
         "bodies",
@@ -229,7 +234,7 @@ IMPULSES = (
     ),
     FOUNDATION._replace(
         heading=lambda results, labels: (
-            f"FOUNDATION  impulse and its moment ON the ground, world axes, moment about {_about(results, labels)}"
+            f"FOUNDATION  impulse and its moment ON the ground, world axes, moment about {_format_moment_point(results, labels)}"
         )
     ),
     AXIS._replace(
@@ -240,7 +245,7 @@ IMPULSES = (
     ),
     JOINTS._replace(
         heading=lambda results, labels: (
-            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_axes(results)}, moment about the "to" point'
+            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_format_axes(results)}, moment about the "to" point'
         )
     ),
     STOPS._replace(

@@ -1,4 +1,4 @@
-"""Lines that a GitHub workflow reads from what a step prints, and shows at the line of the file they name.
+"""Lines that a GitHub workflow reads from the output of a step, and shows at the line of the file that they name.
 
     ::error file=FILE,line=3,col=5,title=TITLE::MESSAGE
 
@@ -10,16 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
-from heuncli.base.foreign_text import shown_lines
+from heuncli.base.foreign_text import escape_lines
 from heuncli.base.named_tuples import NamedTuple
 
-MOST = 9  # of a kind: a step shows ten, of which the last says how many more there are
-IN_MESSAGES = {"%": "%25", "\r": "%0D", "\n": "%0A"}
-IN_PROPERTIES = IN_MESSAGES | {":": "%3A", ",": "%2C"}
+MAX_OF_KIND = 9  # of a kind: GitHub shows ten, and the last one gives the number of further ones
+MESSAGE_ESCAPES = {"%": "%25", "\r": "%0D", "\n": "%0A"}
+PROPERTY_ESCAPES = MESSAGE_ESCAPES | {":": "%3A", ",": "%2C"}
 
 
 class Annotation(NamedTuple):
-    """What is to be shown: `error`, `warning` or `notice`, where, and the words."""
+    """An annotation: `error`, `warning` or `notice`, its place in a file, and its text."""
 
     kind: str
     title: str
@@ -29,27 +29,29 @@ class Annotation(NamedTuple):
     column: int = 0
 
     def __str__(self) -> str:
-        file = PurePath(self.file).as_posix() if self.file else ""  # a workflow finds none that begins with ./
-        given = (("file", file), ("line", self.line), ("col", self.column), ("title", self.title))
-        properties = ",".join(f"{name}={_written(str(value), IN_PROPERTIES)}" for name, value in given if value)
-        message = _written(self.message, IN_MESSAGES)
+        file = PurePath(self.file).as_posix() if self.file else ""  # GitHub finds no file that begins with ./
+        named_values = (("file", file), ("line", self.line), ("col", self.column), ("title", self.title))
+        properties = ",".join(
+            f"{name}={_escape(str(value), PROPERTY_ESCAPES)}" for name, value in named_values if value
+        )
+        message = _escape(self.message, MESSAGE_ESCAPES)
         return f"::{self.kind}{' ' * bool(properties)}{properties}::{message}"
 
 
-def _written(text: str, codes: dict[str, str]) -> str:
-    """A text with what would end it written by its code; what steers a terminal is escaped before."""
-    visible = "\r".join(map(shown_lines, text.split("\r")))
-    return "".join(codes.get(letter, letter) for letter in visible)
+def _escape(text: str, escapes: dict[str, str]) -> str:
+    """Escape control characters of terminals, and then the characters that would end a message or property."""
+    visible = "\r".join(map(escape_lines, text.split("\r")))
+    return "".join(escapes.get(letter, letter) for letter in visible)
 
 
-def lines(annotations: Iterable[Annotation]) -> Iterator[str]:
-    """The lines: at most nine of a kind, and then one that says how many more there are."""
-    shown: dict[str, int] = {}
+def iter_lines(annotations: Iterable[Annotation]) -> Iterator[str]:
+    """Yield the lines: at most nine of a kind, and then one that gives the number of further ones."""
+    counts: dict[str, int] = {}
     for annotation in annotations:
-        shown[annotation.kind] = shown.get(annotation.kind, 0) + 1
-        if shown[annotation.kind] <= MOST:
+        counts[annotation.kind] = counts.get(annotation.kind, 0) + 1
+        if counts[annotation.kind] <= MAX_OF_KIND:
             yield f"{annotation}\n"
-    for kind, count in shown.items():
-        if count > MOST:
-            more = count - MOST
+    for kind, count in counts.items():
+        if count > MAX_OF_KIND:
+            more = count - MAX_OF_KIND
             yield f"{Annotation(kind, f'{more} more', f'{more} more like these: see the log, or the report')}\n"

@@ -1,4 +1,4 @@
-"""The sections of a page: where they cut their bodies, and what is carried there."""
+"""The sections of a page: the points of their cuts, their axes and the section forces there."""
 
 from __future__ import annotations
 
@@ -7,36 +7,38 @@ from typing import Any
 import numpy as np
 
 from heuncli.output.tables.table_plans import SECTIONS
-from heuncli.output.web_page.number_rows import loads_of
+from heuncli.output.web_page.number_rows import make_section_loads
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Section, Spec
 from heuncli.study.quantities.digits import Certainty
 from heuncli.study.quantities.labels import Labels
 
-NOTHING = (0.0, 0.0, 0.0)
+ORIGIN = (0.0, 0.0, 0.0)
 
 
-def sections_of(spec: Spec, results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
-    """The sections with the places of their cuts and the axes n, e1, e2, all in body axes, and their loads."""
-    numbers = {name: k for k, name in enumerate(spec.bodies)}
-    found = []
+def make_sections(spec: Spec, results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
+    """Make the page's entry for every section: points of the cuts and axes n, e1, e2 in body axes, and the section
+    forces.
+    """
+    body_numbers = {name: k for k, name in enumerate(spec.bodies)}
+    sections = []
     for name, block in results.sections.items():
         section = spec.sections[name]
         to_body = results.bodies[section.body]["rotation"][0].T
-        normal, first = to_body @ block["normal"][0], to_body @ block["first_axis"][0]
-        found.append({
-            "name": name, "body": numbers[section.body], "note": SECTIONS.note(name, labels),
-            "cuts": _places(section, block, normal).tolist(),
+        normal, first_axis = to_body @ block["normal"][0], to_body @ block["first_axis"][0]
+        sections.append({
+            "name": name, "body": body_numbers[section.body], "note": SECTIONS.note(name, labels),
+            "cuts": _compute_cut_points(section, block, normal).tolist(),
             "s": [float(s) for s in block["s"]] if "s" in block else None,
-            "side": list(block.get("side", [])), "normal": normal.tolist(), "first": first.tolist(),
-            "second": np.cross(normal, first).tolist(), "loads": loads_of(name, block, labels, certain),
+            "side": list(block.get("side", [])), "normal": normal.tolist(), "first": first_axis.tolist(),
+            "second": np.cross(normal, first_axis).tolist(), "loads": make_section_loads(name, block, labels, certain),
         })  # fmt: skip
-    return found
+    return sections
 
 
-def _places(section: Section, block: dict[str, Any], normal: Array) -> Array:
-    """Where the cuts stand, (n_cuts, 3), body axes."""
+def _compute_cut_points(section: Section, block: dict[str, Any], normal: Array) -> Array:
+    """Compute the points of the cuts, (n_cuts, 3), body axes."""
     if "s" not in block:
-        return np.array([section.at or NOTHING], dtype=np.float64)
-    begin = np.array(section.from_ or NOTHING, dtype=np.float64)
-    return np.asarray(begin + np.asarray(block["s"])[:, None] * normal)
+        return np.array([section.at or ORIGIN], dtype=np.float64)
+    start = np.array(section.from_ or ORIGIN, dtype=np.float64)
+    return np.asarray(start + np.asarray(block["s"])[:, None] * normal)

@@ -1,7 +1,7 @@
-"""The instants that a page holds: those asked for, and more between them where the motion would look torn.
+"""Choose the instants that a page holds: the requested ones, and more between them where the motion would look jerky.
 
-Nothing is shown beyond the horizon. Blows and jumps have both of their sides, and where a load is largest there is a
-frame, too.
+Nothing beyond the horizon is shown. Impacts and jumps get an instant on both sides, and an instant is added where a
+load is largest.
 """
 
 from __future__ import annotations
@@ -15,145 +15,167 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.motion.integration.segments import limits_of
+from heuncli.motion.integration.segments import find_one_sided_limits
 from heuncli.results.results import Array, Indices, Results
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import distinct
-from heuncli.study.search.instants import turned_between
+from heuncli.study.search.extremes import sort_distinct
+from heuncli.study.search.instants import find_largest_turns
 
-LEAST = 120  # frames of a motion
-TURNED = 0.3  # rad: how far a body may turn from one frame to the next
-MOST = 600  # frames, where nobody says how many
-MOST_JUMPS = 60  # whose sides are frames: knots of tables count as jumps, too
-SAME = 1e-3  # of the way from one asked instant to the next: a summit is missed by the square of it
-MISSED = (
+MIN_FRAMES = 120  # frames of a motion
+MAX_TURN = 0.3  # rad: how far a body may turn from one frame to the next
+MAX_PAGE_FRAMES = 600  # frames, unless the user gives another limit
+MAX_JUMPS = 60  # with a frame on both sides; the knots of tables are jumps, too
+MIN_PEAK_DISTANCE = 1e-3  # parts of the interval; the error of the peak value is of second order in it
+MISSED_PEAKS_NOTE = (
     "Of the instants at which loads are largest {} found no room in this page: what is highest here is so at frames "
     "alone; heun run tells the largest."
 )
-MOST_BYTES = 24_000_000  # of the numbers of a page, before they are text
+MAX_BYTES = 24_000_000  # of a page's numbers, before they are encoded as text
 
 
 class PageFrames(NamedTuple):
-    """The instants (n,) [s] of a page, and what is to be said of them."""
+    """The instants (n,) [s] of a page, and the notes that the page shows about them."""
 
     times: Array
     told: tuple[str, ...]
 
 
-def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
-    """The frames of a page, at most so many; peaks: instants that are among them if there is room."""
+def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES) -> PageFrames:
+    """Choose at most `max_frames` instants for a page.
+
+    peaks: instants [s] that are included if the limit permits
+    """
     results = study.results
-    if study.of_one_instant:
+    if study.has_one_instant:
         return PageFrames(results.time, ())
     horizon = results.horizon
-    asked = results.time if horizon is None else results.time[results.time < horizon]
-    if len(asked) < 2:
-        of_horizon = ("Nothing is claimed of this motion beyond its start.",) if len(results.time) > len(asked) else ()
-        return PageFrames(results.time[:1], of_horizon)
-    limit = max(2, min(most, MOST_BYTES // _bytes_of_a_frame(study)))
-    beside, missed = _beside(study, peaks, asked, max(limit - len(asked), limit // 3))
-    room = limit - len(beside)
-    told = [MISSED.format(missed)] if missed else []
-    if len(asked) > room:
-        told.append(f"The run was asked for at {len(asked)} instants; {room} of them are in this page.")
-        even = asked[np.linspace(0, len(asked) - 1, room).round().astype(np.intp)]
-    else:
-        even = _filled(study, asked, room)
-    found = np.asarray(distinct(np.concatenate([even, beside])))
-    turned = float(turned_between(study.setup, study.history, found).max(initial=0.0))
-    if turned > tolerances.TORN:
-        told.append(
-            f"Between two frames a body turns up to {math.degrees(turned):.0f}°: only the frames show where it is."
+    sample_times = results.time if horizon is None else results.time[results.time < horizon]
+    if len(sample_times) < 2:
+        horizon_note = (
+            ("Nothing is claimed of this motion beyond its start.",) if len(results.time) > len(sample_times) else ()
         )
-    return PageFrames(found, tuple(told))
+        return PageFrames(results.time[:1], horizon_note)
+    limit = max(2, min(max_frames, MAX_BYTES // _estimate_frame_bytes(study)))
+    extra, missed = _choose_extra_instants(study, peaks, sample_times, max(limit - len(sample_times), limit // 3))
+    capacity = limit - len(extra)
+    notes = [MISSED_PEAKS_NOTE.format(missed)] if missed else []
+    if len(sample_times) > capacity:
+        notes.append(f"The run was asked for at {len(sample_times)} instants; {capacity} of them are in this page.")
+        regular = sample_times[np.linspace(0, len(sample_times) - 1, capacity).round().astype(np.intp)]
+    else:
+        regular = _fill_between(study, sample_times, capacity)
+    times = np.asarray(sort_distinct(np.concatenate([regular, extra])))
+    largest_turn = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
+    if largest_turn > tolerances.TORN:
+        notes.append(
+            f"Between two frames a body turns up to {math.degrees(largest_turn):.0f}°: only the frames show where it is."
+        )
+    return PageFrames(times, tuple(notes))
 
 
-def results_at(study: Study, times: Array) -> Results:
-    """The results at the frames: where a frame was asked for they are those of the run to the last bit."""
-    own = study.results
-    if np.array_equal(times, own.time):
-        return own
-    found = study.resample(times)
-    there = np.flatnonzero(np.isin(times, own.time))
-    asked = np.searchsorted(own.time, times[there])
-    blocks = {block: _with(getattr(found, block), getattr(own, block), there, asked) for block in REPORT_OF}
-    return replace(found, **blocks)
+def resample_at_frames(study: Study, times: Array) -> Results:
+    """Resample the results at the frames. At instants of the run itself the values are those of the run, bit for
+    bit.
+    """
+    original = study.results
+    if np.array_equal(times, original.time):
+        return original
+    frame_results = study.resample(times)
+    positions = np.flatnonzero(np.isin(times, original.time))
+    source_rows = np.searchsorted(original.time, times[positions])
+    blocks = {
+        block: _copy_instants(getattr(frame_results, block), getattr(original, block), positions, source_rows)
+        for block in REPORT_OF
+    }
+    return replace(frame_results, **blocks)
 
 
-def _with(block: Any, own: Any, there: Indices, asked: Indices) -> Any:
-    """A block of results with some of the instants of another, of which it has more or fewer.
+def _copy_instants(block: Any, source: Any, positions: Indices, source_rows: Indices) -> Any:
+    """Return a block of results in which the rows at `positions` are copied from those at `source_rows` of another
+    block.
 
-    So an array whose length differs runs over the instants, and all others do not.
+    The blocks have different numbers of instants, so an array runs over the instants if and only if the lengths differ.
     """
     if isinstance(block, dict):
-        return {key: _with(value, own[key], there, asked) if key in own else value for key, value in block.items()}
-    if not isinstance(block, np.ndarray) or len(block) == len(own):
+        return {
+            key: _copy_instants(value, source[key], positions, source_rows) if key in source else value
+            for key, value in block.items()
+        }
+    if not isinstance(block, np.ndarray) or len(block) == len(source):
         return block
-    made = block.copy()
-    made[there] = own[asked]
-    return made
+    block_copy = block.copy()
+    block_copy[positions] = source[source_rows]
+    return block_copy
 
 
-def _filled(study: Study, asked: Array, limit: int) -> Array:
-    """The asked instants, and so many between each two of them that the motion can be followed."""
-    wanted = turned_between(study.setup, study.history, asked) / TURNED
-    if len(asked) < LEAST:
-        wanted = np.maximum(wanted, np.diff(asked) / (asked[-1] - asked[0]) * LEAST)
-    parts = _parts(wanted, limit - 1)
-    first = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
-    return np.append(asked[first] + share * np.diff(asked)[first], asked[-1])
+def _fill_between(study: Study, sample_times: Array, limit: int) -> Array:
+    """Return the requested instants with so many between each two of them that the motion can be followed."""
+    target_counts = find_largest_turns(study.setup, study.history, sample_times) / MAX_TURN
+    if len(sample_times) < MIN_FRAMES:
+        target_counts = np.maximum(
+            target_counts, np.diff(sample_times) / (sample_times[-1] - sample_times[0]) * MIN_FRAMES
+        )
+    counts = _round_counts(target_counts, limit - 1)
+    interval = np.repeat(np.arange(len(counts)), counts)
+    fraction = (np.arange(len(interval)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[interval]
+    return np.append(sample_times[interval] + fraction * np.diff(sample_times)[interval], sample_times[-1])
 
 
-def _parts(wanted: Array, most: int) -> Indices:
-    """Whole numbers (n,) from 1 on, not below those wanted as far as all together are at most so many."""
-    more = np.maximum(np.ceil(wanted) - 1.0, 0.0)
-    spare = most - len(wanted)
-    if more.sum() > spare:
-        more = np.floor(more * (spare / more.sum()))
-    return np.asarray(1 + more.astype(np.intp))
-
-
-def _beside(study: Study, peaks: Array, asked: Array, most: int) -> tuple[Array, int]:
-    """Instants beside those asked for, at most so many: both sides of blows, then of jumps, then peaks.
-
-    Of each kind all or none; and how many peaks found no room.
+def _round_counts(target_counts: Array, max_total: int) -> Indices:
+    """Round the target counts (n,) up to whole numbers, at least 1; reduce them if their sum would exceed
+    `max_total`.
     """
-    blows = [float(blow["time"]) for blow in study.results.impulses]
-    jumps = study.history.jumps if len(study.history.jumps) <= MOST_JUMPS else []
-    found: Array = np.zeros(0)
+    extra = np.maximum(np.ceil(target_counts) - 1.0, 0.0)
+    spare = max_total - len(target_counts)
+    if extra.sum() > spare:
+        extra = np.floor(extra * (spare / extra.sum()))
+    return np.asarray(1 + extra.astype(np.intp))
+
+
+def _choose_extra_instants(study: Study, peaks: Array, sample_times: Array, max_count: int) -> tuple[Array, int]:
+    """Choose at most `max_count` extra instants: both sides of impacts, then both sides of jumps, then peaks.
+
+    Each kind is included completely or not at all. Also returns the number of peaks that were left out.
+    """
+    impact_times = [float(blow["time"]) for blow in study.results.impulses]
+    jumps = study.history.jumps if len(study.history.jumps) <= MAX_JUMPS else []
+    extra_times: Array = np.zeros(0)
     missed = 0
-    for kind in (_sides(blows, asked), _sides(jumps, asked), summits := _apart(peaks, asked)):
-        more = np.asarray(distinct(np.concatenate([found, kind])))
-        missed = len(summits) if kind is summits and len(more) > most else 0
-        found = more if len(more) <= most else found
-    return found, missed
+    for kind in (
+        _make_side_instants(impact_times, sample_times),
+        _make_side_instants(jumps, sample_times),
+        separate_peaks := _select_separate_peaks(peaks, sample_times),
+    ):
+        candidates = np.asarray(sort_distinct(np.concatenate([extra_times, kind])))
+        missed = len(separate_peaks) if kind is separate_peaks and len(candidates) > max_count else 0
+        extra_times = candidates if len(candidates) <= max_count else extra_times
+    return extra_times, missed
 
 
-def _sides(instants: Sequence[float] | Array, asked: Array) -> Array:
-    """The last instants before some and the first after them, within those asked for."""
-    inside = distinct(np.array([t for t in instants if asked[0] < t <= asked[-1]], dtype=np.float64))
-    return np.concatenate(limits_of(inside)) if len(inside) else inside
+def _make_side_instants(instants: Sequence[float] | Array, sample_times: Array) -> Array:
+    """Make the last instants before the given ones and the first after them, for those within the requested range."""
+    inside = sort_distinct(np.array([t for t in instants if sample_times[0] < t <= sample_times[-1]], dtype=np.float64))
+    return np.concatenate(find_one_sided_limits(inside)) if len(inside) else inside
 
 
-def _apart(peaks: Array, asked: Array) -> Array:
-    """Peaks that are none of the asked instants, and do not stand beside one that shows the same."""
-    inside = peaks[(peaks > asked[0]) & (peaks < asked[-1])]
-    after = np.searchsorted(asked, inside)
-    near = np.minimum(inside - asked[after - 1], asked[after] - inside)
-    return np.asarray(inside[near > SAME * (asked[after] - asked[after - 1])])
+def _select_separate_peaks(peaks: Array, sample_times: Array) -> Array:
+    """Select the peaks that are not requested instants, nor so close to one that it shows the same value."""
+    inside = peaks[(peaks > sample_times[0]) & (peaks < sample_times[-1])]
+    after = np.searchsorted(sample_times, inside)
+    distance = np.minimum(inside - sample_times[after - 1], sample_times[after] - inside)
+    return np.asarray(inside[distance > MIN_PEAK_DISTANCE * (sample_times[after] - sample_times[after - 1])])
 
 
-def _bytes_of_a_frame(study: Study) -> int:
-    """How much the numbers of one instant take, nearly."""
+def _estimate_frame_bytes(study: Study) -> int:
+    """Estimate the size of the numbers of one instant, in bytes."""
     results = study.results
-    count = sum(_numbers(getattr(results, block)) for block in REPORT_OF if block not in ("bodies", "points"))
+    count = sum(_count_numbers(getattr(results, block)) for block in REPORT_OF if block not in ("bodies", "points"))
     return 8 * count // len(results.time) + 28 * len(results.bodies) + 1
 
 
-def _numbers(block: object) -> int:
-    """How many numbers stand in a block."""
+def _count_numbers(block: object) -> int:
+    """Count the numbers in a block, including nested blocks."""
     if isinstance(block, dict):
-        return sum(_numbers(member) for member in block.values())
+        return sum(_count_numbers(member) for member in block.values())
     return int(block.size) if isinstance(block, np.ndarray) else 0

@@ -1,4 +1,6 @@
-"""What a page draws of a machine: its bodies with their poses at all frames, joints, springs; its reach."""
+"""The geometry that a page draws: bodies with their poses at all frames, joints, springs, ropes, symbols; the
+extent.
+"""
 
 from __future__ import annotations
 
@@ -10,202 +12,220 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
-from heuncli.output.machine_geometry.coupled_pulls import CoupledPull, coupled_pulls
-from heuncli.output.machine_geometry.machine import BodyLook, Machine, machine_of
+from heuncli.output.machine_geometry.coupled_pulls import CouplingForce, iter_coupling_forces
+from heuncli.output.machine_geometry.machine import BodyGeometry, Machine, make_machine
 from heuncli.output.machine_geometry.marks import Mark
 from heuncli.output.machine_geometry.poses import Poses
-from heuncli.output.machine_geometry.ropes import RopeLook, strand_ends
-from heuncli.output.machine_geometry.solids import ROUND, Surface
-from heuncli.output.web_page.packing import drawn
+from heuncli.output.machine_geometry.ropes import RopeGeometry, compute_span_ends
+from heuncli.output.machine_geometry.solids import ROUND_FACES, Surface
+from heuncli.output.web_page.packing import pack_points
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
 
-FINE, FEW = 48, 8  # faces about an axis where there are no more bodies
-SEEN = 1e-7  # of a vector: what places that are drawn tell
-REACH_FRAMES = 60  # frames by which the reach of a motion is told
+FINE_FACES, FEW_BODIES = 48, 8  # faces about an axis, used up to this number of bodies
+DRAWN_PRECISION = 1e-7  # relative precision of points that are drawn (float32)
+MAX_EXTENT_FRAMES = 60  # frames from which the extent of the motion is computed
 
 
-def looks_of(spec: Spec, scene: PreparedScene | None = None) -> Machine:
-    """What is seen of a spec, scene: as assembled; what is round is the finer the fewer bodies there are."""
-    return machine_of(spec, FINE if len(spec.bodies) <= FEW else ROUND, scene)
+def make_page_machine(spec: Spec, scene: PreparedScene | None = None) -> Machine:
+    """Make the machine geometry of a spec; round shapes get more faces if there are few bodies.
+
+    scene: the spec as assembled, or None
+    """
+    return make_machine(spec, FINE_FACES if len(spec.bodies) <= FEW_BODIES else ROUND_FACES, scene)
 
 
 class Topologies:
-    """Faces over numbered corners, each kind once: all spheres of a page share one. Keeps what it has seen."""
+    """The face lists of a page, each stored once under a number, so that all spheres share one. Mutable: it grows."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[tuple[int, ...], ...], int] = {}
 
-    def number(self, faces: tuple[tuple[int, ...], ...]) -> int:
-        """The number of a kind."""
+    def register(self, faces: tuple[tuple[int, ...], ...]) -> int:
+        """Return the number of a face list; a new one is stored."""
         return self._known.setdefault(faces, len(self._known))
 
-    def told(self) -> list[list[list[int]]]:
-        """All of them by their numbers."""
+    def to_lists(self) -> list[list[list[int]]]:
+        """Return all face lists in the order of their numbers."""
         return [[list(face) for face in faces] for faces in self._known]
 
 
-def scene_of(
+def make_page_scene(
     machine: Machine, spec: Spec, results: Results, poses: Poses, normal: Array | None = None
 ) -> dict[str, Any]:
-    """The scene as a page reads it; bodies are told by their numbers, the ground by -1.
+    """Make the scene in the form that the page's scripts read; bodies are referred to by number, the ground by -1.
 
-    normal: of the plane in which all of it stays, (3,), if there is one.
+    normal: of the plane of a planar motion, (3,); None: the common axis of the pins, if they have one
     """
-    number = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
-    kinds = Topologies()
+    body_numbers = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
+    topologies = Topologies()
     rolling = {wheel.wheel.body for wheel in spec.rolling.values()}
-    bodies = [_body(body, results, kinds, body.name in rolling) for body in machine.bodies]
-    order = {joint.name: k for k, joint in enumerate(machine.joints)}
+    bodies = [_make_body(body, results, topologies, body.name in rolling) for body in machine.bodies]
+    joint_numbers = {joint.name: k for k, joint in enumerate(machine.joints)}
     belts = {belt.name for belt in machine.belts}
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
     return {
         "bodies": bodies,
-        "topologies": kinds.told(),
+        "topologies": topologies.to_lists(),
         "joints": [
             {
-                "name": j.name, "kind": j.kind, "a": number[j.a], "p": _triple(j.p), "b": number[j.b],
-                "q": _triple(j.q), "axis": _triple(j.axis), "rope": j.name in ropes,
+                "name": j.name, "kind": j.kind, "a": body_numbers[j.a], "p": _to_floats(j.p), "b": body_numbers[j.b],
+                "q": _to_floats(j.q), "axis": _to_floats(j.axis), "rope": j.name in ropes,
             }
             for j in machine.joints
         ],
         "lines": [
-            {"name": x.name, "kind": x.kind, "a": number[x.a], "p": _triple(x.p), "b": number[x.b], "q": _triple(x.q)}
+            {"name": x.name, "kind": x.kind, "a": body_numbers[x.a], "p": _to_floats(x.p), "b": body_numbers[x.b], "q": _to_floats(x.q)}
             for x in machine.lines
         ],
-        "paths": [drawn(path) for path in machine.paths],
+        "paths": [pack_points(path) for path in machine.paths],
         "belts": [
-            {"body": number[belt.carrier], "strands": drawn(belt.strands), "run": drawn(belt.run(results.coordinates))}
+            {"body": body_numbers[belt.carrier], "strands": pack_points(belt.strands), "run": pack_points(belt.compute_travel(results.coordinates))}
             for belt in machine.belts
         ],
-        "ropes": [_rope(rope, poses, number) for rope in machine.ropes],
-        "marks": [_mark(mark, poses) for mark in machine.marks],
+        "ropes": [_make_rope(rope, poses, body_numbers) for rope in machine.ropes],
+        "marks": [_make_mark(mark, poses) for mark in machine.marks],
         "acting": [
-            {"joint": order[own.joint], "symbols": own.symbols, "slides": own.slides} for own in machine.acting
+            {"joint": joint_numbers[joint_load.joint], "symbols": joint_load.symbols, "slides": joint_load.slides} for joint_load in machine.joint_symbols
         ],
-        "symbols": {name: _symbol(name) for name in sorted(_symbols(machine))},
-        "ground": [{"name": name, "at": _triple(point)} for name, point in machine.grounded.items()],
-        "gravity": _triple(np.array(spec.gravity)),
-        "pulls": [_pull(pull, belts) for pull in coupled_pulls(machine, poses, results.couplings)],
-        "normal": _normal(machine, poses) if normal is None else _triple(normal),
-        **_reach(machine, poses),
+        "symbols": {name: _make_symbol(name) for name in sorted(_collect_symbols(machine))},
+        "ground": [{"name": name, "at": _to_floats(point)} for name, point in machine.ground_points.items()],
+        "gravity": _to_floats(np.array(spec.gravity)),
+        "pulls": [_make_coupling_force(pull, belts) for pull in iter_coupling_forces(machine, poses, results.couplings)],
+        "normal": _find_common_pin_axis(machine, poses) if normal is None else _to_floats(normal),
+        **_compute_extent(machine, poses),
     }  # fmt: skip
 
 
-def _triple(vector: Array) -> list[float]:
+def _to_floats(vector: Array) -> list[float]:
     return [float(component) for component in vector]
 
 
-def _body(body: BodyLook, results: Results, kinds: Topologies, rolls: bool) -> dict[str, Any]:
-    """A body: its poses, its surfaces, bars and lines, its points, in its own axes; rolls: as a wheel, or a ball."""
+def _make_body(body: BodyGeometry, results: Results, topologies: Topologies, is_rolling: bool) -> dict[str, Any]:
+    """Make a body's entry: its poses, and its surfaces, bars, lines and points in body axes.
+
+    is_rolling: whether the body is a wheel or a ball; then two edges of each sphere are drawn, which show its rotation
+    """
     pose = results.bodies[body.name]
-    rolled = [edge for surface in body.surfaces if rolls and surface.ball is not None for edge in surface.edges[:2]]
+    rolling_edges = [
+        edge for surface in body.surfaces if is_rolling and surface.ball is not None for edge in surface.edges[:2]
+    ]
     return {
         "name": body.name,
-        "places": drawn(pose["position"]),
-        "attitudes": drawn(pose["quaternion"]),
-        "surfaces": [_surface(surface, kinds) for surface in body.surfaces],
-        "bars": [drawn(line) for line in body.bars],
-        "lines": [drawn(line) for line in (*body.lines, *rolled)],
-        "spread": body.spread,
-        "points": [{"name": name, "at": _triple(point)} for name, point in body.points.items()],
+        "places": pack_points(pose["position"]),
+        "attitudes": pack_points(pose["quaternion"]),
+        "surfaces": [_make_surface(surface, topologies) for surface in body.surfaces],
+        "bars": [pack_points(line) for line in body.bars],
+        "lines": [pack_points(line) for line in (*body.lines, *rolling_edges)],
+        "spread": body.is_ellipsoid,
+        "points": [{"name": name, "at": _to_floats(point)} for name, point in body.points.items()],
     }
 
 
-def _surface(surface: Surface, kinds: Topologies) -> dict[str, Any]:
-    """Corners and faces; of a sphere no more than what it is: it is round from everywhere."""
+def _make_surface(surface: Surface, topologies: Topologies) -> dict[str, Any]:
+    """Make a surface's entry: corners and faces; for a sphere only its center and radius."""
     if surface.ball is not None:
         centre, radius = surface.ball
-        return {"ball": {"center": _triple(np.array(centre)), "radius": float(radius)}}
-    return {"corners": drawn(surface.corners), "faces": kinds.number(surface.faces)}
+        return {"ball": {"center": _to_floats(np.array(centre)), "radius": float(radius)}}
+    return {"corners": pack_points(surface.corners), "faces": topologies.register(surface.faces)}
 
 
-def _rope(rope: RopeLook, poses: Poses, number: Mapping[str, int]) -> dict[str, Any]:
-    """A rope: where its strands begin and end at all frames, and about what it runs between them."""
+def _make_rope(rope: RopeGeometry, poses: Poses, body_numbers: Mapping[str, int]) -> dict[str, Any]:
+    """Make a rope's entry: the ends of its spans at all frames, and the arcs between the spans."""
     return {
         "name": rope.name,
-        "count": len(rope.strands),
-        "ends": drawn(strand_ends(rope, poses)),
+        "count": len(rope.spans),
+        "ends": pack_points(compute_span_ends(rope, poses)),
         "arcs": [
             {
-                "before": arc.before, "body": number[arc.body], "center": _triple(arc.centre),
-                "along": number[arc.along], "axis": _triple(arc.axis),
+                "before": arc.span, "body": body_numbers[arc.body], "center": _to_floats(arc.centre),
+                "along": body_numbers[arc.axis_body], "axis": _to_floats(arc.axis),
             }
             for arc in rope.arcs
         ],
     }  # fmt: skip
 
 
-def _mark(mark: Mark, poses: Poses) -> dict[str, Any]:
-    """A symbol with its place and direction, at all frames or, of one that stands still, once."""
-    places, ways = mark.stands(poses)
-    kept = 1 if stands_still(places) and stands_still(ways) else None
+def _make_mark(mark: Mark, poses: Poses) -> dict[str, Any]:
+    """Make a symbol's entry: its position and direction at all frames, or only once if it does not move."""
+    places, directions = mark.locate(poses)
+    count = 1 if is_constant(places) and is_constant(directions) else None
     return {
         "symbol": mark.symbol,
         "name": mark.name,
-        "places": drawn(places[:kept]),
-        "ways": drawn(ways[:kept]),
+        "places": pack_points(places[:count]),
+        "ways": pack_points(directions[:count]),
     }
 
 
-def stands_still(vectors: Array) -> bool:
-    """Whether vectors (n, 3) are one to the digits that are drawn."""
-    return bool(np.abs(vectors - vectors[0]).max() <= SEEN * float(np.abs(vectors[0]).max()))
+def is_constant(vectors: Array) -> bool:
+    """Return whether all vectors (n, 3) are equal to the precision of the drawing."""
+    return bool(np.abs(vectors - vectors[0]).max() <= DRAWN_PRECISION * float(np.abs(vectors[0]).max()))
 
 
-def _pull(pull: CoupledPull, belts: Collection[str]) -> dict[str, Any]:
-    """The force of a coupling ON a body: where it stands at all frames; what it is stands in a row of the numbers.
+def _make_coupling_force(pull: CouplingForce, belts: Collection[str]) -> dict[str, Any]:
+    """Make the entry of a coupling force ON a body: its point of action at all frames, and the path of the row of its
+    values.
 
-    Of a belt's strands it is told here, for no row tells the direction of each.
+    The pulls of a belt's strands are included as vectors, because no row holds the direction of each.
     """
     belt = pull.name in belts
-    told = {"row": f"couplings.{pull.name}.{'tight' if belt else f'on.{pull.on}.force'}", "at": drawn(pull.places)}
-    return {"name": pull.name, "on": pull.on, **told, "forces": drawn(pull.forces) if belt else None}
+    reference = {
+        "row": f"couplings.{pull.name}.{'tight' if belt else f'on.{pull.body}.force'}",
+        "at": pack_points(pull.points),
+    }
+    return {"name": pull.name, "on": pull.body, **reference, "forces": pack_points(pull.forces) if belt else None}
 
 
-def _symbols(machine: Machine) -> set[str]:
-    """The symbols that a page draws as they are in pictures."""
-    return {mark.symbol for mark in machine.marks} | {name for own in machine.acting for name in own.symbols}
+def _collect_symbols(machine: Machine) -> set[str]:
+    """Collect the names of all symbols that the page draws."""
+    return {mark.symbol for mark in machine.marks} | {
+        name for joint_load in machine.joint_symbols for name in joint_load.symbols
+    }
 
 
-def _symbol(name: str) -> list[dict[str, Any]]:
-    """The parts of a symbol, in pixels."""
-    return [{"points": part.points, "closed": part.closed, "fill": part.fill} for part in SYMBOLS[name].parts]
+def _make_symbol(name: str) -> list[dict[str, Any]]:
+    """Make the parts of a symbol, in pixels."""
+    return [{"points": part.points, "closed": part.is_closed, "fill": part.fill} for part in SYMBOLS[name].parts]
 
 
-def corners_of(body: BodyLook) -> Array:
-    """All that is drawn of a body, (n, 3), in its axes."""
+def collect_corners(body: BodyGeometry) -> Array:
+    """Collect all points that are drawn of a body, (n, 3), body axes."""
     parts = [*(s.corners for s in body.surfaces), *body.strokes, *(p[None] for p in body.points.values())]
     return np.concatenate([np.zeros((0, 3)), *parts]) if parts else np.zeros((1, 3))
 
 
-def _reach(machine: Machine, poses: Poses) -> dict[str, Any]:
-    """Centre and half edges of a box that holds all of the machine at all frames, and the radius of a ball [m]."""
-    some = np.linspace(0, len(poses.times) - 1, min(len(poses.times), REACH_FRAMES)).round().astype(int)
-    clouds = [point[None] for point in machine.grounded.values()]
+def _compute_extent(machine: Machine, poses: Poses) -> dict[str, Any]:
+    """Compute center and half edges of a box that holds the machine at all frames, and the radius of a ball that does
+    [m].
+    """
+    instants = np.linspace(0, len(poses.times) - 1, min(len(poses.times), MAX_EXTENT_FRAMES)).round().astype(int)
+    clouds = [point[None] for point in machine.ground_points.values()]
     clouds += machine.paths
-    clouds += [strand_ends(rope, poses).reshape(-1, 3) for rope in machine.ropes]
-    clouds += [mark.stands(poses)[0] for mark in machine.marks]
+    clouds += [compute_span_ends(rope, poses).reshape(-1, 3) for rope in machine.ropes]
+    clouds += [mark.locate(poses)[0] for mark in machine.marks]
     clouds += [joint.p[None] for joint in machine.joints if joint.a == GROUND]
     clouds += [joint.q[None] for joint in machine.joints if joint.b == GROUND]
     for body in machine.bodies:
-        corners = corners_of(body)
-        clouds += [poses.at(body.name, corners, k) for k in some.tolist()]
+        corners = collect_corners(body)
+        clouds += [poses.locate_points(body.name, corners, k) for k in instants.tolist()]
     cloud = np.concatenate(clouds)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     radius = float(np.sqrt(((cloud - centre) ** 2).sum(axis=1).max()))
-    return {"center": _triple(centre), "half": _triple(half), "radius": radius or 1.0}
+    return {"center": _to_floats(centre), "half": _to_floats(half), "radius": radius or 1.0}
 
 
-def _normal(machine: Machine, poses: Poses) -> list[float] | None:
-    """The direction about which all joints turn, world axes, if there is one: the machine moves across it."""
+def _find_common_pin_axis(machine: Machine, poses: Poses) -> list[float] | None:
+    """Find the direction to which all pin axes are parallel, world axes, or None. The machine moves in the plane across
+    it.
+    """
     axes = []
     for joint in machine.joints:
         if joint.kind == "pin":
             axis = joint.axis / np.linalg.norm(joint.axis)
-            axes.append(axis if joint.a == GROUND else poses.attitudes[joint.a][0] @ axis)
+            axes.append(axis if joint.a == GROUND else poses.orientations[joint.a][0] @ axis)
     if not axes or any(np.linalg.norm(np.cross(axes[0], axis)) > tolerances.PARALLEL for axis in axes[1:]):
         return None
-    return _triple(axes[0])
+    return _to_floats(axes[0])

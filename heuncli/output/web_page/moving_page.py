@@ -1,4 +1,4 @@
-"""A solved scene as one page that moves: what is drawn, the numbers beside it, and what is said of them."""
+"""Render a solved scene as one animated page: the geometry, the numbers, and notes about them."""
 
 from __future__ import annotations
 
@@ -7,111 +7,117 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.records import replace
-from heuncli.output.machine_geometry.poses import poses_in
-from heuncli.output.machine_geometry.views import plane_of
-from heuncli.output.tables.heading import heading
+from heuncli.output.machine_geometry.poses import extract_poses
+from heuncli.output.machine_geometry.views import find_motion_plane
+from heuncli.output.tables.heading import make_heading
 from heuncli.output.tables.table_plans import SECTIONS
-from heuncli.output.web_page.cuts import sections_of
-from heuncli.output.web_page.frames import MOST, PageFrames, frames_of, results_at
-from heuncli.output.web_page.geometry import looks_of, scene_of
-from heuncli.output.web_page.inlined import whole_page
-from heuncli.output.web_page.number_rows import blocks_of, blow_tables
-from heuncli.output.web_page.packing import packed
-from heuncli.output.web_page.peaks import peak_times
+from heuncli.output.web_page.cuts import make_sections
+from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, resample_at_frames
+from heuncli.output.web_page.geometry import make_page_machine, make_page_scene
+from heuncli.output.web_page.inlined import assemble_page
+from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables
+from heuncli.output.web_page.packing import pack_values
+from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.digits import Certainty, certainty
-from heuncli.study.quantities.labels import Labels, labels_of
+from heuncli.study.quantities.digits import Certainty, find_certainty
+from heuncli.study.quantities.labels import Labels, make_labels
 from heuncli.study.quantities.table_units import Units
 
-MOST_MARKS = 400  # events and blows on the time line
-NOT_SOUGHT = "There are too many loads to seek the largest between the instants of the run: they may be larger there."
-MOST_BLOWS = 12  # whose numbers are listed
-TELLING = ("stiff", "split", "status", "warning")  # lines of a heading that are told at once
+MAX_TIME_MARKS = 400  # events and impacts on the time line
+PEAKS_NOTE = "There are too many loads to seek the largest between the instants of the run: they may be larger there."
+MAX_IMPACTS = 12  # whose tables are included
+HEADING_NOTES = ("stiff", "split", "status", "warning")  # lines of the heading that are shown as notes
 
 
-def moving_page(study: Study, units: Units, most: int = MOST) -> str:
-    """The page of a study solved for motion and loads; most: of its frames."""
-    return whole_page(study.results.title, page_data(study, units, most))
+def render_moving_page(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES) -> str:
+    """Render the page of a study that is solved for motion and loads, with at most `max_frames` frames."""
+    return assemble_page(study.results.title, make_page_data(study, units, max_frames))
 
 
-def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
-    """All that a page knows: plain data, arrays packed."""
-    own, spec, scene = study.results, study.spec, study.setup.scene
-    labels = replace(labels_of(spec), units=units)
-    certain = certainty(own, labels, study.magnitudes)
-    peaks = peak_times(study, labels, certain)
-    frames = frames_of(study, peaks.times, most)
-    results = results_at(study, frames.times)
-    horizon = own.horizon
+def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES) -> dict[str, Any]:
+    """Make all data of a page: plain dictionaries and lists, with arrays packed as text."""
+    original, spec, scene = study.results, study.spec, study.setup.scene
+    labels = replace(make_labels(spec), units=units)
+    certain = find_certainty(original, labels, study.magnitudes)
+    peaks = find_peaks(study, labels, certain)
+    frames = choose_frames(study, peaks.times, max_frames)
+    results = resample_at_frames(study, frames.times)
+    horizon = original.horizon
     return {
-        "title": shown(own.title),
-        "about": [[label, shown(text)] for label, text in (*heading(own)[1:], ("spec", _digest(own))) if text],
-        "version": own.version,
-        "file": shown(str(own.spec.get("path", ""))),
-        "told": [*frames.told, *[NOT_SOUGHT] * (not peaks.sought), *_told(own, horizon)],
+        "title": escape(original.title),
+        "about": [
+            [label, escape(text)]
+            for label, text in (*make_heading(original)[1:], ("spec", _format_spec_digest(original)))
+            if text
+        ],
+        "version": original.version,
+        "file": escape(str(original.spec.get("path", ""))),
+        "told": [*frames.notes, *[PEAKS_NOTE] * (not peaks.is_searched), *_iter_notes(original, horizon)],
         "horizon": horizon,
         "count": len(frames.times),
-        "time": packed(frames.times),
-        "marks": list(_marks(own, frames)),
-        "length": list(units.of("m")),
-        "scene": scene_of(looks_of(spec, scene), spec, results, poses_in(results), plane_of(scene)),
-        "blocks": blocks_of(results, labels, certain),
-        "blows": list(_blows(own, frames, labels, certain)),
-        "sections": sections_of(spec, results, labels, certain),
+        "time": pack_values(frames.times),
+        "marks": list(_iter_time_marks(original, frames)),
+        "length": list(units.find("m")),
+        "scene": make_page_scene(
+            make_page_machine(spec, scene), spec, results, extract_poses(results), find_motion_plane(scene)
+        ),
+        "blocks": make_blocks(results, labels, certain),
+        "blows": list(_iter_impacts(original, frames, labels, certain)),
+        "sections": make_sections(spec, results, labels, certain),
         "cutting": SECTIONS.heading(results, labels),
-        "foundation": _about(results),
+        "foundation": _find_moment_center(results),
     }
 
 
-def _digest(results: Results) -> str:
-    """The spec that was solved, by its digest."""
+def _format_spec_digest(results: Results) -> str:
+    """Format the path and the digest of the spec that was solved."""
     digest = results.spec.get("sha256")
     return f"{results.spec.get('path', '')}, sha256 {digest}" if digest else ""
 
 
-def _told(results: Results, horizon: float | None) -> Iterator[str]:
-    """What is to be known before the numbers are read."""
-    yield from (shown(f"{label}: {text}") for label, text in heading(results) if label in TELLING)
+def _iter_notes(results: Results, horizon: float | None) -> Iterator[str]:
+    """Yield the notes that a reader needs before reading the numbers."""
+    yield from (escape(f"{label}: {text}") for label, text in make_heading(results) if label in HEADING_NOTES)
     if horizon is not None:
         yield f"The motion is known up to t = {horizon:.6g} s: nothing beyond is claimed, and nothing of it is here."
-    if len(results.impulses) > MOST_BLOWS:
-        yield f"There are {len(results.impulses)} blows; the numbers of the first {MOST_BLOWS} are listed."
+    if len(results.impulses) > MAX_IMPACTS:
+        yield f"There are {len(results.impulses)} blows; the numbers of the first {MAX_IMPACTS} are listed."
     if any(joint.get("open") for joint in results.joints.values()):
         yield "Open: redundant supports leave some numbers open; they are told as such, and have no arrow."
 
 
-def _blows(results: Results, frames: PageFrames, labels: Labels, certain: Certainty) -> Iterator[dict[str, Any]]:
-    """The blows within the frames, each with the frame just after it and its tables."""
-    for number, blow in enumerate(results.impulses[:MOST_BLOWS]):
-        at = float(blow["time"])
-        if frames.times[0] <= at <= frames.times[-1]:
-            words = f"{', '.join(blow['names']) or 'blow'}, {at:.6g} s"
-            tables = blow_tables(number, blow, results, labels, certain)
-            yield {"number": number, "frame": _frame(frames, at), "words": shown(words), "blocks": tables}
+def _iter_impacts(results: Results, frames: PageFrames, labels: Labels, certain: Certainty) -> Iterator[dict[str, Any]]:
+    """Yield the impacts within the frames, each with the first frame at or after it and its tables."""
+    for number, impact in enumerate(results.impulses[:MAX_IMPACTS]):
+        time = float(impact["time"])
+        if frames.times[0] <= time <= frames.times[-1]:
+            caption = f"{', '.join(impact['names']) or 'blow'}, {time:.6g} s"
+            tables = make_impact_page_tables(number, impact, results, labels, certain)
+            yield {"number": number, "frame": _find_frame(frames, time), "words": escape(caption), "blocks": tables}
 
 
-def _frame(frames: PageFrames, at: float) -> int:
-    """The frame that is at an instant, or next after it."""
-    return min(int(np.searchsorted(frames.times, at)), len(frames.times) - 1)
+def _find_frame(frames: PageFrames, time: float) -> int:
+    """Find the number of the frame at an instant, or of the next one after it."""
+    return min(int(np.searchsorted(frames.times, time)), len(frames.times) - 1)
 
 
-def _about(results: Results) -> list[float] | None:
-    """The point about which the foundation's moment is told [m]."""
+def _find_moment_center(results: Results) -> list[float] | None:
+    """Return the reference point of the foundation's moment [m], or None."""
     about: Array | None = results.foundation.get("about")
     return None if about is None else [float(component) for component in np.asarray(about)]
 
 
-def _marks(results: Results, frames: PageFrames) -> Iterator[dict[str, Any]]:
-    """Blows and events within the frames: what, when, at which frame."""
-    found = [(float(blow["time"]), ", ".join(blow["names"]) or "blow") for blow in results.impulses]
+def _iter_time_marks(results: Results, frames: PageFrames) -> Iterator[dict[str, Any]]:
+    """Yield the impacts and events within the frames: name, time and frame."""
+    found = [(float(impact["time"]), ", ".join(impact["names"]) or "blow") for impact in results.impulses]
     for name, event in results.events.items():
         words = event.get("to", ())
-        for k, at in enumerate(np.asarray(event["time"]).tolist()):
-            found.append((float(at), name + ("" if k >= len(words) or words[k] else " ends")))
+        for k, time in enumerate(np.asarray(event["time"]).tolist()):
+            found.append((float(time), name + ("" if k >= len(words) or words[k] else " ends")))
     first, last = float(frames.times[0]), float(frames.times[-1])
-    for at, words in sorted(found)[:MOST_MARKS]:
-        if first <= at <= last:
-            yield {"frame": _frame(frames, at), "time": at, "words": shown(str(words))}
+    for time, words in sorted(found)[:MAX_TIME_MARKS]:
+        if first <= time <= last:
+            yield {"frame": _find_frame(frames, time), "time": time, "words": escape(str(words))}

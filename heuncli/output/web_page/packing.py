@@ -1,6 +1,6 @@
-"""Arrays as text in a page: base64 of their bytes, least significant first, which a browser reads without loss.
+"""Pack arrays as text for a page: base64 of their little-endian bytes, which a browser reads without loss.
 
-A column of one number throughout is that number: most of a plane motion's columns are 0.
+A constant column is packed as one number, because most columns of a planar motion are 0.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import numpy as np
 
 from heuncli.results.results import Array
 
-Packed = str | float  # base64 of all numbers, or the one that all of them are
+Packed = str | float  # base64 of all numbers, or the number itself if all are equal
 
 
-def packed(values: Array) -> Packed:
-    """All digits of an array, flat: numbers that are read. nan, which stands for what is open, stays one."""
+def pack_values(values: Array) -> Packed:
+    """Pack an array, flattened, with all its digits. A nan, which stands for an indeterminate value, is kept."""
     flat = np.ascontiguousarray(values, dtype="<f8").ravel()
     first = float(flat[0]) if flat.size else 0.0
     if math.isfinite(first) and bool((flat == first).all()):
@@ -24,6 +24,6 @@ def packed(values: Array) -> Packed:
     return base64.b64encode(flat.tobytes()).decode("ascii")
 
 
-def drawn(values: Array) -> str:
-    """Seven digits of an array, flat: places that are drawn."""
+def pack_points(values: Array) -> str:
+    """Pack an array, flattened, as float32 (seven digits), for points that are drawn."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")

@@ -1,4 +1,4 @@
-"""Areas under tables: what a spring has stored whose force is told by one."""
+"""Integrate tables: the energy that a spring stores whose force is given by a table."""
 
 from __future__ import annotations
 
@@ -13,54 +13,66 @@ from heuncli.scene.expressions.curves import COEFFICIENTS
 from heuncli.scene.expressions.programs import Expression, TableFunction
 
 
-def with_areas(law: Expression) -> Expression:
-    """The law of one table, whose numbers go on with its area from 0 to each of its knots, (pieces + 1,).
+def append_areas(law: Expression) -> Expression:
+    """Append to a table law the area from 0 to each of its knots, (pieces + 1,).
 
     The kernel finds from them the area to any x (kernel/evaluator.py, area_under).
     """
     (table,) = law.tables
     numbers = array("d", table.numbers)
-    numbers.frombytes(areas(table).tobytes())
+    numbers.frombytes(compute_areas(table).tobytes())
     return replace(law, tables=(replace(table, numbers=numbers),))
 
 
-def areas(table: TableFunction) -> Array:
-    """From 0 to each knot; of a periodic table from the place in its own range that stands for 0.
+def compute_areas(table: TableFunction) -> Array:
+    """Compute the areas from 0 to each knot; of a periodic table, from the place in its own range that corresponds to
+    0.
 
-    They are summed up outwards from there: what is near 0 is not the difference of large ones.
+    They are summed outward from there, so that a value near 0 is not the difference of large ones.
     """
-    n, memory = table.pieces, np.frombuffer(table.numbers)
-    period, knots = float(memory[0]), memory[1 : n + 2]
-    c = memory[n + 2 :].reshape(-1, COEFFICIENTS).T
-    h = np.diff(knots)
-    whole = h * (c[0] + h * (c[1] / 2.0 + h * (c[2] / 3.0 + h * c[3] / 4.0)))
-    zero, home = home_of(knots, period)
+    piece_count, numbers = table.pieces, np.frombuffer(table.numbers)
+    period, knots = float(numbers[0]), numbers[1 : piece_count + 2]
+    coefficients = numbers[piece_count + 2 :].reshape(-1, COEFFICIENTS).T
+    lengths = np.diff(knots)
+    piece_areas = lengths * (
+        coefficients[0]
+        + lengths * (coefficients[1] / 2.0 + lengths * (coefficients[2] / 3.0 + lengths * coefficients[3] / 4.0))
+    )
+    zero, zero_piece = locate_zero(knots, period)
 
-    def up_to(knot: float) -> float:
-        """From `zero` to an end of its own piece, or of the table where that is beside it: Gauss, 2 nodes."""
-        if not 0 <= home < n:
-            return (knot - zero) * table.y[0 if home < 0 else -1]
-        middle, half = 0.5 * (zero + knot) - knots[home], 0.5 * (knot - zero)
-        values = [np.polyval(c[::-1, home], middle + side * half / math.sqrt(3.0)) for side in (-1.0, 1.0)]
+    def area_to_knot(knot: float) -> float:
+        """Integrate from `zero` to an end of its piece, or of the table if it lies outside, by 2-point Gauss
+        quadrature.
+        """
+        if not 0 <= zero_piece < piece_count:
+            return (knot - zero) * table.y[0 if zero_piece < 0 else -1]
+        middle, half = 0.5 * (zero + knot) - knots[zero_piece], 0.5 * (knot - zero)
+        values = [
+            np.polyval(coefficients[::-1, zero_piece], middle + side * half / math.sqrt(3.0)) for side in (-1.0, 1.0)
+        ]
         return float(half * sum(values))
 
-    found = np.empty(n + 1)
-    if home < n:
-        found[home + 1 :] = up_to(knots[home + 1]) + np.append(0.0, np.cumsum(whole[home + 1 :]))
-    if home >= 0:
-        found[home::-1] = up_to(knots[home]) - np.append(0.0, np.cumsum(whole[:home][::-1]))
-    return found
+    knot_areas = np.empty(piece_count + 1)
+    if zero_piece < piece_count:
+        knot_areas[zero_piece + 1 :] = area_to_knot(knots[zero_piece + 1]) + np.append(
+            0.0, np.cumsum(piece_areas[zero_piece + 1 :])
+        )
+    if zero_piece >= 0:
+        knot_areas[zero_piece::-1] = area_to_knot(knots[zero_piece]) - np.append(
+            0.0, np.cumsum(piece_areas[:zero_piece][::-1])
+        )
+    return knot_areas
 
 
-def home_of(knots: Array, period: float) -> tuple[float, int]:
-    """What stands for 0 in a table's own range, and the piece it is in: -1 before a table that ends, n beyond it."""
+def locate_zero(knots: Array, period: float) -> tuple[float, int]:
+    """Find the place of 0 in a table's own range, and its piece: -1 before a table that ends, n behind it."""
     last = len(knots) - 2
     zero = 0.0
     if period > 0.0:
-        turns = math.floor(-float(knots[0]) / period)
-        if -period * turns >= knots[-1]:  # by rounding: it is the first point of the next turn
-            turns += 1
-        zero = 0.0 - period * turns
+        periods = math.floor(-float(knots[0]) / period)
+        if -period * periods >= knots[-1]:  # by rounding it is the first point of the next period
+            periods += 1
+        zero = 0.0 - period * periods
     elif not knots[0] <= zero <= knots[-1]:
         return zero, -1 if zero < knots[0] else last + 1
     return zero, min(max(int(np.searchsorted(knots, zero, side="right")) - 1, 0), last)

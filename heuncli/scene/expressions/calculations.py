@@ -1,8 +1,8 @@
-"""A number that was read from an expression once, calculated again with other parameters, and not read again.
+"""Recalculate a number from its expression with other parameter values, without parsing the text again.
 
-What an expression of parameters alone means is a row of numbers, each as written, a parameter's, or what an operation
-makes of earlier ones. With other values it is the same row, as long as no choice hangs on a value: where one does
-(`a if c else b`, tables, an exponent that is no number written out) nothing is kept of it.
+An expression of parameters alone becomes a row of numbers: each is a literal, a parameter, or the result of an
+operation on earlier ones. With other values the row stays the same, unless a choice depends on a value (`a if c else
+b`, tables, an exponent that is no literal): then nothing is cached.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ Dimension = tuple[int, int, int]
 
 
 class Operation(NamedTuple):
-    """An operation on earlier numbers of the row; reads: how long its program is."""
+    """An operation on earlier numbers of the row; length: that of its program."""
 
     program: expressions.Expressions
     length: int
     operands: tuple[int, ...]
 
 
-MOST = 7  # calculations of one text, beside the last
-Source = float | str | Operation  # of a number: as it is written, a parameter's name, or made of others
+MAX_OLDER_ENTRIES = 7  # older calculations stored for one text, besides the latest
+NumberSource = float | str | Operation  # of a number: a literal, a parameter's name, or an operation
 
 
 class Calculation(NamedTuple):
-    """An expression, where its numbers come from, and the dimensions of its parameters, None where they have none."""
+    """An expression, the sources of its numbers, and the dimensions of its parameters (None without one)."""
 
     expression: Expression
-    sources: tuple[Source, ...]
+    sources: tuple[NumberSource, ...]
     dimensions: dict[str, Dimension | None]
 
-    def again(self, parameters: Mapping[str, float | None]) -> Expression | None:
-        """The expression with these values; None: it has to be read, for there is something to be told of it."""
+    def recalculate(self, parameters: Mapping[str, float | None]) -> Expression | None:
+        """Return the expression with these values; None if it has to be parsed, because of an error to report."""
         numbers: list[float] = []
         for source in self.sources:
             if isinstance(source, Operation):
@@ -54,37 +54,37 @@ class Calculation(NamedTuple):
         constant = numbers[self.expression.code[1]]
         if not math.isfinite(constant):
             return None
-        again: Expression = replace(self.expression, constant=constant, constants=tuple(numbers))
-        return again
+        recalculated: Expression = replace(self.expression, constant=constant, constants=tuple(numbers))
+        return recalculated
 
 
-class Calculations:
-    """Numbers that were read, by their texts. Impure: what is read is kept, which changes no number.
+class CalculationCache:
+    """Cache of parsed numbers by their texts. Impure: entries are added, which changes no number.
 
-    Of a text there are several where its parameters were given with units, and without.
+    A text has several entries if its parameters were given with and without units.
     """
 
     def __init__(self) -> None:
-        self.known: dict[str, tuple[Calculation, ...]] = {}
+        self.entries: dict[str, tuple[Calculation, ...]] = {}
 
-    def again(
+    def recalculate(
         self, text: str, parameters: Mapping[str, float | None], dimension_of: Callable[[str], Dimension | None]
     ) -> Expression | None:
-        """What a text means with these values; None: it has to be read."""
-        for one in self.known.get(text, ()):
-            if all(dimension_of(name) == dimension for name, dimension in one.dimensions.items()):
-                return one.again(parameters)
+        """Return the expression of a text with these values; None if it has to be parsed."""
+        for entry in self.entries.get(text, ()):
+            if all(dimension_of(name) == dimension for name, dimension in entry.dimensions.items()):
+                return entry.recalculate(parameters)
         return None
 
-    def keep(
+    def store(
         self,
         text: str,
         expression: Expression,
-        sources: Sequence[Source] | None,
+        sources: Sequence[NumberSource] | None,
         dimension_of: Callable[[str], Dimension | None],
     ) -> None:
-        """Keep how a number was calculated; sources: None where a choice hangs on a value."""
+        """Store how a number was calculated. sources: None if a choice depends on a value; then nothing is stored."""
         if sources is not None:
             dimensions = {name: dimension_of(name) for name in sources if isinstance(name, str)}
-            others = self.known.get(text, ())[-MOST:]
-            self.known[text] = (*others, Calculation(expression, tuple(sources), dimensions))
+            others = self.entries.get(text, ())[-MAX_OLDER_ENTRIES:]
+            self.entries[text] = (*others, Calculation(expression, tuple(sources), dimensions))

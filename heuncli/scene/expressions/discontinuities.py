@@ -1,8 +1,8 @@
-"""Where the branches of an expression change with time alone: its jumps and kinks.
+"""Find where the branches of an expression change with time alone: its jumps and kinks.
 
-A change is decided, not sampled: an enclosure (kernel/enclosure.py) of what tells the branch shows that nothing changes
-within a stretch of time, or that its margin only rises or falls there, so that the branches at the ends tell all; else
-the stretch is halved, down to neighbouring doubles.
+A change is proved, not sampled. An enclosure (kernel/enclosure.py) of the branch decision shows that nothing changes
+within an interval of time, or that its margin only rises or only falls there, so that the branches at the ends suffice.
+Otherwise the interval is halved, down to adjacent doubles.
 """
 
 from __future__ import annotations
@@ -27,33 +27,39 @@ from heuncli.scene.expressions.programs import (
     TableFunction,
 )
 
-COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
+MIN_CELLS, MAX_CELLS = 1 << 12, 1 << 20  # cells of the coarsest and the finest grid
 CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
-FIRST_CELLS = 256  # of a stretch looked at first
-MOST_EQUAL = 4096  # doubles before a change of branch at which rounding may make the operands equal, one discontinuity
-LOOKED_AT = 1000  # equal parts of a run, at whose ends the sign of a value is looked at
-MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
-OF_TIME = (VAR, 0)  # the program that is the time itself
-RISING = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))  # rise or fall with their margin
+FIRST_CELLS = 256  # cells in each of the first intervals
+MAX_TIED_DOUBLES = (
+    4096  # doubles before a change of branch at which rounding may make the operands equal, one discontinuity
+)
+SAMPLE_COUNT = 1000  # equal parts of a run, at whose ends values are sampled
+MAX_OPEN_INTERVALS = (
+    1 << 13
+)  # undecided intervals at once; a margin that is zero up to rounding has one for each double
+TIME_PROGRAM = (VAR, 0)  # the program of the time itself
+MONOTONIC_OPERATIONS = frozenset(
+    OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge")
+)  # monotonic in the margin
 Decide = Callable[[list[float]], list[float]]
 Enclose = Callable[[list[float], list[float]], Sequence[Sequence[float]]]
 
 
-def discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:
-    """The instants in (t0, t1) at which a branch of the expression changes with time alone: its jumps and kinks.
+def find_discontinuities(expression: Expression, t0: float, t1: float) -> list[float]:
+    """Find the instants in (t0, t1) at which a branch of the expression changes with time alone: its jumps and kinks.
 
-    Each is the first double at which the new branch holds; neighbours (sign at its zero, min(t, 1) at t = 1) leave a
+    Each is the first double at which the new branch holds; adjacent ones (sign at its zero, min(t, 1) at t = 1) leave a
     single instant between them, to be stepped over. Branches that depend on coordinates are left out. Raises LimitError
-    where there are too many to tell apart.
+    if there are too many to separate.
     """
-    return sorted({t for switch in expression.switches for t in _changes(expression, switch, t0, t1)})
+    return sorted({t for switch in expression.switches for t in _find_switch_changes(expression, switch, t0, t1)})
 
 
-def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
-    """For each of ascending discontinuities the last instant before it and the first after it.
+def pair_adjacent_instants(instants: Sequence[float]) -> list[tuple[float, float]]:
+    """For each of ascending discontinuities, return the last instant before it and the first after it.
 
-    Neighbouring doubles are one discontinuity: sign(t - 1) is zero at t = 1 alone, and its limits are those of the
-    branches before and after that instant.
+    Adjacent doubles are one discontinuity: sign(t - 1) is zero at t = 1 alone, and its limits are those of the branches
+    before and after that instant.
     """
     limits: list[tuple[float, float]] = []
     for t in instants:
@@ -65,104 +71,112 @@ def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
     return limits
 
 
-def beyond(last: float) -> float:
-    """An instant behind the end of a run, up to which its last discontinuity may reach by rounding."""
-    return last * (1.0 + 2.0 * MOST_EQUAL * tolerances.EPS)
+def instant_after_end(last: float) -> float:
+    """Return an instant after the end of a run, up to which rounding may shift its last discontinuity."""
+    return last * (1.0 + 2.0 * MAX_TIED_DOUBLES * tolerances.EPS)
 
 
-def breaks_within(value: Expression, last: float) -> list[float]:
-    """The discontinuities within (0, last], ascending, as `discontinuities` tells them.
+def find_run_discontinuities(value: Expression, last: float) -> list[float]:
+    """Find the discontinuities within (0, last], ascending, as `find_discontinuities` does.
 
-    One that stands at the end of the run is told whole, also where by rounding its new branch begins just behind: a run
-    that ends at a jump tells what is after it, whichever way the jump is written. It is left out where there is no
-    value behind, as behind the end of a table.
+    A discontinuity at the end of the run is included, even if rounding puts its new branch just after the end: a run
+    that ends at a jump shows the value after it, however the jump is written. It is left out if there is no value after
+    it, as behind the end of a table.
     """
     if not last > 0.0:
         return []
-    instants = discontinuities(value, 0.0, beyond(last))
+    instants = find_discontinuities(value, 0.0, instant_after_end(last))
     if not instants or instants[-1] <= last:
         return instants
-    before, after = one_sided_limits(instants)[-1]
+    before, after = pair_adjacent_instants(instants)[-1]
     inside = [t for t in instants if t <= before]
-    return inside if before >= last or _ends_between(value, before, after) else instants
+    return inside if before >= last or _becomes_undefined(value, before, after) else instants
 
 
-def _ends_between(value: Expression, before: float, after: float) -> bool:
-    """Whether a value has a number at the one instant and none at the other; what else it depends on is taken as 1."""
-    there = [math.isfinite(value.value(t, [1.0] * len(value.uses))) for t in (before, after)]
-    return there[0] and not there[1]
+def _becomes_undefined(value: Expression, first: float, second: float) -> bool:
+    """Return whether a value is finite at the first instant and not at the second; coordinates are taken as 1."""
+    is_defined = [math.isfinite(value.value(t, [1.0] * len(value.uses))) for t in (first, second)]
+    return is_defined[0] and not is_defined[1]
 
 
-def changes(value: Expression, last: float) -> list[tuple[float, float]]:
-    """The last instant before and the first after each change of branch within the run, not what is at 0 alone."""
-    return [(before, after) for before, after in one_sided_limits(breaks_within(value, last)) if before > 0.0]
+def find_branch_changes(value: Expression, last: float) -> list[tuple[float, float]]:
+    """Return the last instant before and the first after each change of branch within the run, except one only at 0."""
+    return [
+        (before, after)
+        for before, after in pair_adjacent_instants(find_run_discontinuities(value, last))
+        if before > 0.0
+    ]
 
 
-def jumps(value: Expression, last: float, order: int = 0) -> list[tuple[float, float, float, float]]:
-    """Where a value, or its derivative of an order, jumps within (0, last]: instants before and behind, and limits."""
+def find_jumps(value: Expression, last: float, order: int = 0) -> list[tuple[float, float, float, float]]:
+    """Find where a value, or its derivative of an order, jumps within (0, last]: instants before and after, and
+    limits.
+    """
     found = []
-    for before, after in changes(value, last):
-        first, then = value.derivatives(before)[order], value.derivatives(after)[order]
-        if abs(then - first) > tolerances.SAME_VALUE * max(abs(first), abs(then), 1.0):
-            found.append((before, after, first, then))
+    for before, after in find_branch_changes(value, last):
+        limit_before, limit_after = value.derivatives(before)[order], value.derivatives(after)[order]
+        if abs(limit_after - limit_before) > tolerances.SAME_VALUE * max(abs(limit_before), abs(limit_after), 1.0):
+            found.append((before, after, limit_before, limit_after))
     return found
 
 
-def first_not_positive(value: Expression, last: float) -> float | None:
-    """The first of many instants of a run, those beside jumps and kinks among them, at which a value is not above 0."""
-    return next((t for t in looked_at(value, last) if value.value(t) <= 0.0), None)
+def find_first_not_positive(value: Expression, last: float) -> float | None:
+    """Find the first sampled instant of a run at which a value is not above 0; the samples include all jumps and
+    kinks.
+    """
+    return next((t for t in sample_instants(value, last) if value.value(t) <= 0.0), None)
 
 
-def first_negative(value: Expression, last: float) -> float | None:
-    """The first of the same instants at which a value is below 0 by more than rounding."""
-    seen = [(t, value.value(t)) for t in looked_at(value, last)]
-    rounding = tolerances.SAME_VALUE * max((abs(x) for _, x in seen), default=0.0)
-    return next((t for t, x in seen if x < -rounding), None)
+def find_first_negative(value: Expression, last: float) -> float | None:
+    """Find the first of the same instants at which a value is below 0 by more than rounding."""
+    samples = [(t, value.value(t)) for t in sample_instants(value, last)]
+    rounding = tolerances.SAME_VALUE * max((abs(x) for _, x in samples), default=0.0)
+    return next((t for t, x in samples if x < -rounding), None)
 
 
-def looked_at(value: Expression, last: float) -> list[float]:
-    """Many instants of a run, those beside jumps and kinks among them."""
-    grid = {last * k / LOOKED_AT for k in range(LOOKED_AT + 1)}
-    grid.update(t for pair in changes(value, last) for t in pair)
+def sample_instants(value: Expression, last: float) -> list[float]:
+    """Return many instants of a run, including those next to its jumps and kinks."""
+    grid = {last * k / SAMPLE_COUNT for k in range(SAMPLE_COUNT + 1)}
+    grid.update(t for pair in find_branch_changes(value, last) for t in pair)
     return sorted(grid)
 
 
-def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
-    """Where one switch changes, decided; where that has no end, as seen on a grid, too."""
-    if switch.decision[:2] == OF_TIME and switch.decision[2] == KNOT and switch.decision[5] != PERIODIC:
-        return _knots(expression.tables[switch.decision[3]], t0, t1)
-    found = SwitchSearch(expression, switch, Grid(t0, t1, COARSEST)).changes()
-    found = _seen(expression, switch, t0, t1) if found is None else found
-    return [t for t in (*found, *_edges(expression, switch, found)) if t0 < t < t1]
+def _find_switch_changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
+    """Find where one switch changes, by proof; if that does not end, by a grid."""
+    if switch.decision[:2] == TIME_PROGRAM and switch.decision[2] == KNOT and switch.decision[5] != PERIODIC:
+        return _find_table_changes(expression.tables[switch.decision[3]], t0, t1)
+    change_instants = SwitchSearch(expression, switch, TimeGrid(t0, t1, MIN_CELLS)).find_changes()
+    change_instants = _find_sampled_changes(expression, switch, t0, t1) if change_instants is None else change_instants
+    return [t for t in (*change_instants, *_find_tied_instants(expression, switch, change_instants)) if t0 < t < t1]
 
 
-def _knots(table: TableFunction, t0: float, t1: float) -> list[float]:
-    """Where a table of the time itself goes from piece to piece: at its points.
+def _find_table_changes(table: TableFunction, t0: float, t1: float) -> list[float]:
+    """Find where a table of the time itself changes from piece to piece: at its points.
 
-    The last one is computed on the last piece. Where the table is held beyond, what is held begins there.
-    These are the doubles that a search finds, to the last bit; of a million of them it takes minutes.
+    The last point is computed on the last piece. If the table holds its end values, that constant begins there. These
+    are the doubles that a search would find, to the last bit; for a million of them it would take minutes.
     """
-    inner = table.x[bisect_right(table.x, t0) : bisect_left(table.x, t1)]
+    points = table.x[bisect_right(table.x, t0) : bisect_left(table.x, t1)]
     last = table.x[-1]
     ends = {last, math.nextafter(last, math.inf)} if table.kind == HELD else {math.nextafter(last, math.inf)}
-    return [t for t in (*(t for t in inner if t < last), *sorted(ends)) if t0 < t < t1]
+    return [t for t in (*(t for t in points if t < last), *sorted(ends)) if t0 < t < t1]
 
 
-def _edges(expression: Expression, switch: Switch, changes: Sequence[float]) -> list[float]:
-    """The instants just before changes of branch at which rounding cannot tell the old branch from the new one."""
+def _find_tied_instants(expression: Expression, switch: Switch, changes: Sequence[float]) -> list[float]:
+    """Find the instants just before changes of branch at which rounding cannot tell the old branch from the new one."""
     if not changes:
         return []
-    from heuncli.scene.expressions.tied_branches import tied_instants  # NumPy, which a check of a spec does without
+    from heuncli.scene.expressions.tied_branches import find_tied_instants  # NumPy, which validation avoids
 
     margin = switch.decision[:-4] if switch.margin is None else switch.margin
     table = None if switch.margin is not None else expression.tables[switch.decision[-3]]
-    enclose, compute = _over_stretches(expression, margin), _at_instants(expression, margin)
-    return tied_instants(changes, enclose, compute, table, MOST_EQUAL)
+    enclose, compute = _enclose_program(expression, margin), _evaluate_program(expression, margin)
+    return find_tied_instants(changes, enclose, compute, table, MAX_TIED_DOUBLES)
 
 
 @record
-class Grid:
-    """The instants t0 + (t1 - t0) i / cells; the last one lies before t1."""
+class TimeGrid:
+    """The instants t0 + (t1 - t0) i / cells; the last one lies just before t1."""
 
     t0: float
     t1: float
@@ -175,68 +189,76 @@ class Grid:
 
 
 class SwitchSearch:
-    """The search for the changes of one switch over a run."""
+    """Searches the changes of one switch over a run."""
 
-    def __init__(self, expression: Expression, switch: Switch, grid: Grid) -> None:
+    def __init__(self, expression: Expression, switch: Switch, grid: TimeGrid) -> None:
         self.expression, self.switch, self.grid = expression, switch, grid
-        self.decide = _at_instants(expression, switch.decision)
-        self.decisions = _over_stretches(expression, switch.decision)
+        self.decide = _evaluate_program(expression, switch.decision)
+        self.bound_decision = _enclose_program(expression, switch.decision)
         margin = switch.margin or switch.decision[:-4]  # of a table, the argument
-        rises = switch.margin is None or switch.decision[-2] in RISING
-        self.margins = _over_stretches(expression, margin) if rises else None
+        rises = switch.margin is None or switch.decision[-2] in MONOTONIC_OPERATIONS
+        self.bound_margin = _enclose_program(expression, margin) if rises else None
         self.branch: dict[float, float] = {}
         self.found: list[float] = []
-        self.cells: list[tuple[float, float]] = []  # with changes, at whose ends the branches tell of all
+        self.cells: list[tuple[float, float]] = []  # monotonic cells with different branches at their ends
 
-    def changes(self) -> list[float] | None:
-        """The first double of each new branch; None where too many stretches stay open."""
+    def find_changes(self) -> list[float] | None:
+        """Return the first double of each new branch; None if too many intervals stay undecided."""
         cells = self.grid.cells
-        stretches = [
+        intervals = [
             (i, i + FIRST_CELLS, self.grid[i], self.grid[i + FIRST_CELLS]) for i in range(0, cells, FIRST_CELLS)
         ]
-        while stretches:
-            if len(stretches) > MOST_OPEN:
+        while intervals:
+            if len(intervals) > MAX_OPEN_INTERVALS:
                 return None
-            self.look_at({t for stretch in stretches for t in stretch[2:]})
-            stretches = [half for stretch in self.undecided(stretches) for half in self.halves(*stretch)]
-        self.require_few()
-        return self.found + _between(self.decide, self.cells)
+            self.evaluate_branches({t for stretch in intervals for t in stretch[2:]})
+            intervals = [half for stretch in self.select_undecided(intervals) for half in self.halve(*stretch)]
+        self.require_few_changes()
+        return self.found + _locate_changes(self.decide, self.cells)
 
-    def require_few(self) -> None:
-        """Raise LimitError where the points of a table are too many, which its pieces tell before any is looked for."""
+    def require_few_changes(self) -> None:
+        """Raise LimitError if a table has too many points, which its piece numbers show before any point is
+        searched.
+        """
         if self.switch.margin is not None:
             return
-        passed = [abs(self.branch[end] - self.branch[begin]) for begin, end in self.cells]
-        count = sum(number for number in passed if number < math.inf)  # beyond a table that ends there are none
+        points_passed = [abs(self.branch[end] - self.branch[begin]) for begin, end in self.cells]
+        count = sum(
+            number for number in points_passed if number < math.inf
+        )  # behind a table that ends there are no points
         if count > tolerances.MOST_STEPS:
             where = f"between {self.grid.t0:g} and {self.grid.t1:g} s"
             message = f"'{self.expression.source}' passes {count:,.0f} points of its table {where}, each a step's end"
             hint = f"at most {tolerances.MOST_STEPS:,} steps are taken: a shorter duration, or a table of fewer points"
             raise LimitError(Problem("too-many-jumps", message, self.expression.location, hint))
 
-    def look_at(self, instants: set[float]) -> None:
-        """The branches at instants."""
+    def evaluate_branches(self, instants: set[float]) -> None:
+        """Compute the branches at instants."""
         new = sorted(instants - self.branch.keys())
         self.branch.update(zip(new, self.decide(new), strict=True))
 
-    def undecided(self, stretches: list[tuple[int, int, float, float]]) -> list[tuple[int, int, float, float]]:
-        """The stretches in which there may be changes that are not found yet."""
-        begins, ends = [s[2] for s in stretches], [s[3] for s in stretches]
-        least, largest, *_ = self.decisions(begins, ends)
-        *_, slowest, fastest = self.margins(begins, ends) if self.margins else (least, [math.nan] * len(least))
-        open_still = []
-        for stretch, low, high, slow, fast in zip(stretches, least, largest, slowest, fastest, strict=True):
-            before, after = self.branch[stretch[2]], self.branch[stretch[3]]
+    def select_undecided(self, intervals: list[tuple[int, int, float, float]]) -> list[tuple[int, int, float, float]]:
+        """Return the intervals that may contain changes not found yet."""
+        begins, ends = [s[2] for s in intervals], [s[3] for s in intervals]
+        least, largest, *_ = self.bound_decision(begins, ends)
+        *_, slowest, fastest = (
+            self.bound_margin(begins, ends) if self.bound_margin else (least, [math.nan] * len(least))
+        )
+        undecided = []
+        for interval, low, high, slope_low, slope_high in zip(intervals, least, largest, slowest, fastest, strict=True):
+            before, after = self.branch[interval[2]], self.branch[interval[3]]
             if before == after and (low == high == before or (low != low and before == math.inf)):
                 continue
-            if (slow > 0.0 or fast < 0.0) and (before != after or before < math.inf):
-                self.cells += self.between(*stretch)
+            if (slope_low > 0.0 or slope_high < 0.0) and (before != after or before < math.inf):
+                self.cells += self.find_changed_cells(*interval)
             else:
-                open_still.append(stretch)
-        return open_still
+                undecided.append(interval)
+        return undecided
 
-    def halves(self, i: int, j: int, begin: float, end: float) -> list[tuple[int, int, float, float]]:
-        """Both halves of a stretch, first by cells of the grid; none of neighbouring doubles: there it changes."""
+    def halve(self, i: int, j: int, begin: float, end: float) -> list[tuple[int, int, float, float]]:
+        """Return both halves of an interval, first by cells of the grid. Adjacent doubles are not halved: a change
+        there is found.
+        """
         if j - i > 1:
             k = (i + j) // 2
             return [(i, k, begin, self.grid[k]), (k, j, self.grid[k], end)]
@@ -247,52 +269,58 @@ class SwitchSearch:
             self.found.append(end)
         return []
 
-    def between(self, i: int, j: int, begin: float, end: float) -> list[tuple[float, float]]:
-        """The cells of the grid with changes in a stretch through which the margin rises or falls."""
+    def find_changed_cells(self, i: int, j: int, begin: float, end: float) -> list[tuple[float, float]]:
+        """Return the cells of the grid with changes in an interval on which the margin is monotonic."""
         if j - i <= 1:
             return [(begin, end)]
         k = (i + j) // 2
         middle = self.grid[k]
-        self.look_at({middle})
+        self.evaluate_branches({middle})
         return [
             cell
             for half in ((i, k, begin, middle), (k, j, middle, end))
             if self.branch[half[2]] != self.branch[half[3]]
-            for cell in self.between(*half)
+            for cell in self.find_changed_cells(*half)
         ]
 
 
-def _over_stretches(expression: Expression, code: Code) -> Enclose:
-    """A program in time alone as a function of stretches: least and largest value, least and largest rate."""
+def _enclose_program(expression: Expression, code: Code) -> Enclose:
+    """Return a function that bounds a program in time alone over intervals: least and largest value, least and largest
+    rate.
+    """
     pack = Pack()
     start, count = pack.add_code(expression, code)
-    return lambda begins, ends: pack.spans(start, count, begins, ends)
+    return lambda begins, ends: pack.bound_with_rates(start, count, begins, ends)
 
 
-def _seen(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
-    """Where one switch changes as seen on a grid, refined until it has many cells for each change it shows."""
-    decide = _at_instants(expression, switch.decision)
-    cells, last = COARSEST, math.nextafter(t1, -math.inf)
+def _find_sampled_changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:
+    """Find where one switch changes on a grid, which is refined until it has many cells for each change. Raises
+    LimitError.
+    """
+    decide = _evaluate_program(expression, switch.decision)
+    cells, last = MIN_CELLS, math.nextafter(t1, -math.inf)
     while True:
-        grid = [t0 + (t1 - t0) * (i / cells) for i in range(cells)]
-        grid.append(last)
-        branches = decide(grid)
+        instants = [t0 + (t1 - t0) * (i / cells) for i in range(cells)]
+        instants.append(last)
+        branches = decide(instants)
         changed = [i for i in range(cells) if branches[i] != branches[i + 1]]
         if len(changed) * CELLS_PER_CHANGE <= cells:
             break
-        if cells >= FINEST:
+        if cells >= MAX_CELLS:
             message = f"'{expression.source}' jumps or bends too often between {t0:g} and {t1:g} s"
-            hint = f"at most about {FINEST // CELLS_PER_CHANGE} jumps and kinks can be met exactly"
+            hint = f"at most about {MAX_CELLS // CELLS_PER_CHANGE} jumps and kinks can be met exactly"
             raise LimitError(Problem("too-many-jumps", message, expression.location, hint))
         cells *= 4
-    spans = [(grid[i], grid[i + 1]) for i in changed]
+    spans = [(instants[i], instants[i + 1]) for i in changed]
     if switch.margin is not None:
-        spans += _near_zeros(_at_instants(expression, switch.margin), grid, branches, decide)
-    return _between(decide, spans)
+        spans += _find_near_zeros(_evaluate_program(expression, switch.margin), instants, branches, decide)
+    return _locate_changes(decide, spans)
 
 
-def _at_instants(expression: Expression, code: Code) -> Decide:
-    """A program in time alone as a function of instants; inf stands for what is no number, which is a branch, too."""
+def _evaluate_program(expression: Expression, code: Code) -> Decide:
+    """Return a function that evaluates a program in time alone at instants; NaN, which is a branch of its own, becomes
+    inf.
+    """
     pack = Pack()
     start, count = pack.add_code(expression, code)
 
@@ -302,56 +330,60 @@ def _at_instants(expression: Expression, code: Code) -> Decide:
     return values
 
 
-def _between(decide: Decide, spans: Sequence[tuple[float, float]]) -> list[float]:
-    """Changes of branch in each (low, high], from left to right, each found to the last bit; all spans together."""
+def _locate_changes(decide: Decide, spans: Sequence[tuple[float, float]]) -> list[float]:
+    """Locate the changes of branch in each (low, high], from left to right, to the last bit; all spans together."""
     instants: list[float] = []
     rows = list(zip(spans, decide([low for low, _ in spans]), decide([high for _, high in spans]), strict=True))
     while rows := [row for row in rows if row[1] != row[2]]:
-        firsts = _first_changes(decide, [span for span, _, _ in rows], [branch for _, branch, _ in rows])
+        firsts = _bisect_first_changes(decide, [span for span, _, _ in rows], [branch for _, branch, _ in rows])
         instants += firsts
         rows = [((t, span[1]), b, end) for (span, _, end), t, b in zip(rows, firsts, decide(firsts), strict=True)]
     return instants
 
 
-def _first_changes(decide: Decide, spans: Sequence[tuple[float, float]], branches: Sequence[float]) -> list[float]:
-    """Of spans that begin on a branch and end on another the first double of that, by halving."""
+def _bisect_first_changes(
+    decide: Decide, spans: Sequence[tuple[float, float]], branches: Sequence[float]
+) -> list[float]:
+    """For spans that begin on one branch and end on another, return the first double of the other, by bisection."""
     lows, highs = [low for low, _ in spans], [high for _, high in spans]
-    wide = list(range(len(spans)))
-    while wide:
-        middles = [lows[i] + 0.5 * (highs[i] - lows[i]) for i in wide]
-        halved = [(i, t) for i, t in zip(wide, middles, strict=True) if lows[i] < t < highs[i]]
+    open_spans = list(range(len(spans)))
+    while open_spans:
+        middles = [lows[i] + 0.5 * (highs[i] - lows[i]) for i in open_spans]
+        halved = [(i, t) for i, t in zip(open_spans, middles, strict=True) if lows[i] < t < highs[i]]
         for (i, t), branch in zip(halved, decide([t for _, t in halved]), strict=True):
             if branch == branches[i]:
                 lows[i] = t
             else:
                 highs[i] = t
-        wide = [i for i, _ in halved]
+        open_spans = [i for i, _ in halved]
     return highs
 
 
-def _near_zeros(
+def _find_near_zeros(
     margin: Decide,
     grid: list[float],
     branches: list[float],
     decide: Decide,
 ) -> list[tuple[float, float]]:
-    """Spans in which the margin passes through zero and back between neighbouring points of the grid."""
+    """Find spans in which the margin passes through zero and back between adjacent points of the grid."""
     margins = list(map(abs, margin(grid)))
     spans: list[tuple[float, float]] = []
     for i in range(1, len(grid) - 1):
         left, middle, right = margins[i - 1 : i + 2]
-        bend = left - 2.0 * middle + right
-        is_low = middle <= left and middle <= right and 0.0 < bend < math.inf
+        second_difference = left - 2.0 * middle + right
+        is_low = middle <= left and middle <= right and 0.0 < second_difference < math.inf
         if not is_low or not branches[i - 1] == branches[i] == branches[i + 1]:
             continue
-        if middle > (right - left) ** 2 / (8.0 * bend) + bend:  # the parabola through the three stays well away
+        if (
+            middle > (right - left) ** 2 / (8.0 * second_difference) + second_difference
+        ):  # the parabola through the three stays well away
             continue
         a, b = grid[i - 1], grid[i + 1]
-        for _ in range(60):  # the least margin by thirds; 60 of them leave nothing of the span
+        for _ in range(60):  # ternary search of the least margin; 60 steps reach the resolution of doubles
             c, d = a + (b - a) / 3.0, b - (b - a) / 3.0
-            other = [t for t, branch in zip((c, d), decide([c, d]), strict=True) if branch != branches[i]]
-            if other:
-                spans += [(grid[i - 1], other[0]), (other[0], grid[i + 1])]
+            changed = [t for t, branch in zip((c, d), decide([c, d]), strict=True) if branch != branches[i]]
+            if changed:
+                spans += [(grid[i - 1], changed[0]), (changed[0], grid[i + 1])]
                 break
             left, right = margin([c, d])
             a, b = (a, d) if abs(left) <= abs(right) else (c, b)

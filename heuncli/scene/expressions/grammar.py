@@ -1,9 +1,9 @@
-"""From text to program: the grammar of expressions, read by precedence.
+"""Compile a text to a program: the grammar of expressions, parsed by precedence.
 
     a if c else b  <  or  <  and  <  not  <  comparisons  <  + -  <  * /  <  unary + -  <  **
 
-Nothing is evaluated but by the kernel's evaluator, no Python code object is made, and a text can reach nothing but the
-names it is given. Raises Finding.
+Only the kernel's evaluator computes, no Python code object is made, and a text has access only to the names in its
+scope. Raises Finding.
 """
 
 from __future__ import annotations
@@ -18,197 +18,212 @@ from typing import Any
 from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import RATES, TYPES
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean, nearest
+from heuncli.base.nearest import find_similar, suggest
 from heuncli.base.records import record
-from heuncli.base.units import RATE, UNITS, Dimension, describe, in_si, parse_unit, spelling_of
-from heuncli.results.results_schema import REPORT_OF, ROWS, SHARED
-from heuncli.scene.expressions.calculations import Calculations
-from heuncli.scene.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
-from heuncli.scene.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
-from heuncli.scene.expressions.point_names import FORM, point_meant
+from heuncli.base.units import RATE, UNITS, Dimension, canonical_symbol, describe, parse_unit, si_expression_hint
+from heuncli.results.results_schema import REPORT_OF, ROWS, SHARED_BLOCKS
+from heuncli.scene.expressions.calculations import CalculationCache
+from heuncli.scene.expressions.codegen import COMPARISONS, MAX_NODES, CodeGenerator, Part
+from heuncli.scene.expressions.dimensions import (
+    FACTOR,
+    FREE,
+    coordinate_dimension,
+    known_dimension,
+    literal_dimension,
+    power_dimension,
+)
+from heuncli.scene.expressions.point_names import POINT_FORM_HINT, resolve_point
 from heuncli.scene.expressions.programs import OWN, POINTS, Expression, TableFunction
-from heuncli.scene.expressions.tokens import tokens_of
+from heuncli.scene.expressions.tokens import tokenize
 
-LONGEST, DEEPEST = 2000, 48
-LARGEST_POWER = 64  # whole powers up to this one are multiplied out
+MAX_LENGTH, MAX_DEPTH = 2000, 48
+MAX_WHOLE_POWER = 64  # whole powers up to this are multiplied out
 
 CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
-OF_ONE_NUMBER = (
+UNARY_FUNCTIONS = (
     "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "step",
 )  # fmt: skip
 ARITY: dict[str, tuple[int, int]] = {
-    **dict.fromkeys(OF_ONE_NUMBER, (1, 1)),
+    **dict.fromkeys(UNARY_FUNCTIONS, (1, 1)),
     "atan2": (2, 2),
-    **dict.fromkeys(("min", "max", "hypot"), (2, MOST_NODES)),
+    **dict.fromkeys(("min", "max", "hypot"), (2, MAX_NODES)),
     "table": (2, 2),
 }
 WORDS = frozenset({"if", "else", "and", "or", "not"})
 RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
-COORDINATES = {  # of the joints of one freedom
+COORDINATES_BY_TYPE = {  # by joint type, of the joints with one coordinate
     kind.name: (quantity, RATES[quantity])
     for kind in TYPES.values()
     for quantity in kind.coordinates
     if kind.coordinates == (quantity,)
 }
 BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
-OTHER_NAMES = {  # what people write who come from elsewhere
+OTHER_NAMES = {  # names from other programs, and heun's
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
     "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
 }  # fmt: skip
-LOADS = SHARED | {"stops", "couplings"}  # blocks of the results that are found from the motion
+RESULT_BLOCKS = SHARED_BLOCKS | {"stops", "couplings"}  # blocks of the results that follow from the motion
 REACTIONS = frozenset(
     row.path.split(".")[2]
     for row in ROWS
     if row.path.startswith(("joints.JOINT.", "stops.STOP.")) and set(row.units) & {"N", "N·m"}
 ) - {"shares"}
-LAWS = (
+LAW_HINT = (
     "a law takes t, parameters and coordinates, as shaft.angle, shaft.rate, guide.travel, guide.speed; "
     "a condition takes {of: joints.NAME.force.z, below: 0}"
 )
-LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions are written with a dot elsewhere
+LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # prefixes of functions in other programs
 
-NONE: Mapping[str, Any] = MappingProxyType({})
+NO_NAMES: Mapping[str, Any] = MappingProxyType({})
 
 
 @record
 class Scope:
-    """The names an expression may use. A parameter or table of value None is known, but was itself in error.
+    """The names that an expression may use. A parameter or table with value None is known, but was itself in error.
 
-    joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
-    only where in_time. given: the parameters that have
-    a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
-    calculations: numbers of parameters alone that were read before, in a spec whose names are the same. own: what of
-    the load itself a name means, as `length` of a spring's line: its quantity.
+    joints: the type of each joint
+    points: the points of each body and of the ground
+    in_time: whether time, coordinates and points may be used
+    given: the parameters that have a dimension, as they are written
+    with_units: numbers may have units, and compared values need the same dimension
+    calculations: cache of numbers of parameters alone, from a spec with the same names
+    own: the quantities of the load itself by name, such as `length` of a spring
     """
 
-    parameters: Mapping[str, float | None] = NONE
-    joints: Mapping[str, str] = NONE
-    tables: Mapping[str, TableFunction | None] = NONE
+    parameters: Mapping[str, float | None] = NO_NAMES
+    joints: Mapping[str, str] = NO_NAMES
+    tables: Mapping[str, TableFunction | None] = NO_NAMES
     in_time: bool = False
-    given: Mapping[str, GivenParameter] = NONE
-    points: Mapping[str, Collection[str]] = NONE
+    given: Mapping[str, DimensionedParameter] = NO_NAMES
+    points: Mapping[str, Collection[str]] = NO_NAMES
     with_units: bool = False
-    calculations: Calculations | None = None
-    own: Mapping[str, str] = NONE
+    calculations: CalculationCache | None = None
+    own: Mapping[str, str] = NO_NAMES
 
 
-FIXED = "this one is read once, before the run: give it as a number or by parameters"
+FIXED_VALUE_HINT = "this one is read once, before the run: give it as a number or by parameters"
 
 
-NO_COORDINATE = "only a pin and a slide have coordinates: shaft.angle, guide.travel"
+NO_COORDINATE_HINT = "only a pin and a slide have coordinates: shaft.angle, guide.travel"
 
 
-class GivenParameter(NamedTuple):
+class DimensionedParameter(NamedTuple):
     """A parameter with a dimension, as it is written."""
 
     dimension: Dimension
     text: str
 
-    def told(self, name: str) -> str:
-        """In words."""
+    def describe_dimension(self, name: str) -> str:
+        """Describe the dimension in words."""
         return f"{name} = {self.text} is {describe(self.dimension)}"
 
 
-class Follows(Finding):
-    """Something this value depends on is in error; that error is reported, this one is not."""
+class DependentError(Finding):
+    """A value on which this one depends is in error; that error is reported, and this one is not."""
 
     def __init__(self) -> None:
         super().__init__("follows", "depends on something that is in error", "mend that first")
 
 
 def compile_expression(text: str, scope: Scope) -> Expression:
-    """The expression a text means. Raises Finding."""
+    """Compile the expression of a text. Raises Finding."""
     require_length(text)
-    known = scope.calculations if not scope.with_units else None
-    found = known.again(text, scope.parameters, partial(dimension_in, scope)) if known is not None else None
-    if found is not None:
-        return found
+    cache = scope.calculations if not scope.with_units else None
+    cached = cache.recalculate(text, scope.parameters, partial(find_dimension, scope)) if cache is not None else None
+    if cached is not None:
+        return cached
     try:
         parser = _Parser(text, scope)
         expression = parser.parse()
-        if known is not None and expression.constant is not None:
-            known.keep(text, expression, parser.codegen.sources, partial(dimension_in, scope))
+        if cache is not None and expression.constant is not None:
+            cache.store(text, expression, parser.codegen.sources, partial(find_dimension, scope))
         return expression
     except Finding as finding:
         if finding.code != "wrong-dimension":
             raise
-        hint = "; ".join(filter(None, [told_of(text, scope), finding.hint]))
+        hint = "; ".join(filter(None, [describe_dimensions(text, scope), finding.hint]))
         raise Finding(finding.code, f"'{text.strip()}' {finding.message}", hint) from None
 
 
-def dimension_in(scope: Scope, name: str) -> Dimension | None:
-    """The dimension of a parameter, if it has one."""
-    given = scope.given.get(name)
-    return given.dimension if given is not None else None
+def find_dimension(scope: Scope, name: str) -> Dimension | None:
+    """Return the dimension of a parameter, if it has one."""
+    parameter = scope.given.get(name)
+    return parameter.dimension if parameter is not None else None
 
 
 def require_length(text: str) -> None:
-    """Refuse what is too long to be an expression, or a number with a unit. Raises Finding."""
-    if len(text) > LONGEST:
+    """Raise Finding [expression-limit] for a text too long to be an expression, or a number with a unit."""
+    if len(text) > MAX_LENGTH:
         hint = "parts of it may have names under parameters; many points are a table"
-        raise Finding("expression-limit", f"an expression of {len(text)} characters; at most {LONGEST} are read", hint)
+        raise Finding(
+            "expression-limit", f"an expression of {len(text)} characters; at most {MAX_LENGTH} are read", hint
+        )
 
 
-def told_of(text: str, scope: Scope) -> str | None:
-    """The dimensions of the parameters in a text, in words: a hint."""
+def describe_dimensions(text: str, scope: Scope) -> str | None:
+    """Describe the dimensions of the parameters in a text, as a hint."""
     names = dict.fromkeys(found[0] for found in re.finditer(r"[^\W\d]\w*", text) if found[0] in scope.given)
-    return ", ".join(scope.given[name].told(name) for name in names) or None
+    return ", ".join(scope.given[name].describe_dimension(name) for name in names) or None
 
 
-def too_deep() -> Finding:
-    """The error of an expression with too many parentheses within each other."""
-    message = f"an expression nested more than {DEEPEST} deep"
+def too_deep_finding() -> Finding:
+    """Make the error of an expression with too many nested parentheses."""
+    message = f"an expression nested more than {MAX_DEPTH} deep"
     return Finding("expression-limit", message, "name its inner parts under parameters, or write it as a sum")
 
 
 class _Parser:
-    """One reading of one text."""
+    """Parses one text."""
 
     def __init__(self, text: str, scope: Scope) -> None:
         self.text, self.scope = text, scope
-        self.tokens, self.kinds, self.words = tokens_of(text)
-        self.at = 0
-        self.nested = 0
-        self.codegen = Codegen(strict=scope.with_units)
+        self.tokens, self.kinds, self.words = tokenize(text)
+        self.position = 0
+        self.depth = 0
+        self.codegen = CodeGenerator(strict=scope.with_units)
 
     def parse(self) -> Expression:
         if not self.tokens:
             raise Finding("expression-syntax", "an empty expression", "write a number, or leave the key out")
-        part = self.expression()
-        if self.at < len(self.tokens):
-            raise self.unexpected()
-        return self.codegen.finished(self.text, part)
+        part = self.parse_expression()
+        if self.position < len(self.tokens):
+            raise self.unexpected_token_error()
+        return self.codegen.make_expression(self.text, part)
 
     # tokens
 
     @property
     def token(self) -> str:
-        """The next token, empty at the end."""
-        return self.words[self.at]
+        """The next token; empty at the end."""
+        return self.words[self.position]
 
     @property
     def kind(self) -> str:
-        return self.kinds[self.at]
+        return self.kinds[self.position]
 
-    def take(self, token: str) -> bool:
-        if self.words[self.at] == token:
-            self.at += 1
+    def take_token(self, token: str) -> bool:
+        if self.words[self.position] == token:
+            self.position += 1
             return True
         return False
 
-    def expect(self, token: str, where: str) -> None:
-        if not self.take(token):
+    def expect_token(self, token: str, purpose: str) -> None:
+        if not self.take_token(token):
             found = f", found '{self.token}'" if self.token else ""
             hint = f"put '{token}' before it" if found else "inside { } and [ ] an expression with a comma needs quotes"
-            raise self.syntax(f"expected '{token}' {where}{found}", hint)
+            raise self.syntax_error(f"expected '{token}' {purpose}{found}", hint)
 
-    def syntax(self, message: str, hint: str) -> Finding:
-        place = self.tokens[self.at][2] - len(self.token) + 1 if self.at < len(self.tokens) else len(self.text) + 1
+    def syntax_error(self, message: str, hint: str) -> Finding:
+        place = (
+            self.tokens[self.position][2] - len(self.token) + 1
+            if self.position < len(self.tokens)
+            else len(self.text) + 1
+        )
         return Finding("expression-syntax", f"'{self.text.strip()}' at character {place}: {message}", hint)
 
-    def unexpected(self) -> Finding:
-        """What does not belong where it stands, with the hint for what was probably meant."""
+    def unexpected_token_error(self) -> Finding:
+        """Make the error of a token that does not belong here, with a hint for what was probably meant."""
         hints = {
             "^": "a power is written **", "%": "write x - n*y; there is no remainder", "//": "write /",
             "&&": "write and", "||": "write or", "&": "write and", "|": "write or", "!": "write not",
@@ -217,46 +232,48 @@ class _Parser:
             "×": "write *", "·": "write *", "÷": "write /", "−": "write the plain minus sign -",
         }  # fmt: skip
         if not self.token:
-            return self.syntax("it ends too early", "a value is missing: as 2*L, or 5*sin(t)")
+            return self.syntax_error("it ends too early", "a value is missing: as 2*L, or 5*sin(t)")
         hint = hints.get(self.token)
-        if self.token == "%" and self.at == len(self.tokens) - 1:
+        if self.token == "%" and self.position == len(self.tokens) - 1:
             hint = "a part of a hundred is written as 0.5 for 50 %"
-        if hint is None and self.kind == "name" and self.at and self.tokens[self.at - 1][0] != "number":
-            hint = self.product_hint()
+        if hint is None and self.kind == "name" and self.position and self.tokens[self.position - 1][0] != "number":
+            hint = self.suggest_product()
         if (
             hint is None
             and self.token not in WORDS
             and self.kind in ("name", "number")
-            and self.at
-            and self.tokens[self.at - 1][0] in ("name", "number")
+            and self.position
+            and self.tokens[self.position - 1][0] in ("name", "number")
         ):
-            before = self.tokens[self.at - 1][1]
+            before = self.tokens[self.position - 1][1]
             known = self.token in self.scope.parameters or self.token in RESERVED
-            hint = (None if known else in_si(before, self.token)) or f"for a product write {before}*{self.token}"
+            hint = (
+                None if known else si_expression_hint(before, self.token)
+            ) or f"for a product write {before}*{self.token}"
         if hint is None:
-            hint = self.product_hint() if self.at else None
+            hint = self.suggest_product() if self.position else None
         if hint is None and self.token == ",":
-            hint = self.decimal(self.at)
+            hint = self.suggest_decimal_point(self.position)
         if hint is None and self.token == "if":
             hint = "a value by cases is: a if c else b"
         if hint is None and self.token == "[":
             hint = "points stand in a table: tables: {NAME: {x: [0, 1], y: [5, 7]}}, and here table(NAME, x)"
-        if hint is None and self.token == "." and self.at and self.tokens[self.at - 1][1] == ")":
+        if hint is None and self.token == "." and self.position and self.tokens[self.position - 1][1] == ")":
             hint = "only a joint has coordinates: shaft.angle, guide.travel"
         plain = "an expression is of numbers, names, + - * / ** and ( )"
-        return self.syntax(f"'{self.token}' is not expected here", hint or plain)
+        return self.syntax_error(f"'{self.token}' is not expected here", hint or plain)
 
-    def product_hint(self) -> str | None:
-        """A hint for 2(t + 1), and for a unit behind an expression."""
-        kind, before, _ = self.tokens[self.at - 1]
+    def suggest_product(self) -> str | None:
+        """Make a hint for 2(t + 1), and for a unit after an expression."""
+        kind, before, _ = self.tokens[self.position - 1]
         if self.token == "(" and (kind == "number" or before == ")"):
             return f"for a product write {before}*("
-        if before in (")", "t") and self.kind == "name" and in_si("", self.token) is not None:
+        if before in (")", "t") and self.kind == "name" and si_expression_hint("", self.token) is not None:
             return f"an expression is taken in SI: leave {self.token} out"
         return None
 
-    def decimal(self, comma: int) -> str | None:
-        """A hint for 1,5: the comma stands right between two numbers."""
+    def suggest_decimal_point(self, comma: int) -> str | None:
+        """Make a hint for 1,5: the comma stands right between two numbers."""
         around = self.tokens[max(comma - 1, 0) : comma + 2]
         if [kind for kind, _, _ in around] != ["number", "mark", "number"]:
             return None
@@ -265,200 +282,204 @@ class _Parser:
             return None
         return f"a decimal is written with a point: {whole}.{part}"
 
-    def written(self, begin: int) -> str:
-        """The text from token number `begin` to the last one taken."""
+    def text_since(self, begin: int) -> str:
+        """Return the text from token number `begin` to the last one taken."""
         first = self.tokens[begin]
-        return self.text[first[2] - len(first[1]) : self.tokens[self.at - 1][2]]
+        return self.text[first[2] - len(first[1]) : self.tokens[self.position - 1][2]]
 
     # the grammar
 
-    def expression(self) -> Part:
-        """A value, perhaps by cases."""
-        self.nested += 1
-        if self.nested > DEEPEST:
-            raise too_deep()
-        part = self.disjunction()
-        if self.take("if"):
-            begin = self.at
-            condition = self.disjunction()
-            text = self.written(begin)
-            self.expect("else", "after 'if'")
-            part = self.codegen.choose(condition, part, self.expression(), text)
-        self.nested -= 1
+    def parse_expression(self) -> Part:
+        """Parse a value, perhaps by cases."""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise too_deep_finding()
+        part = self.parse_or()
+        if self.take_token("if"):
+            begin = self.position
+            condition = self.parse_or()
+            text = self.text_since(begin)
+            self.expect_token("else", "after 'if'")
+            part = self.codegen.make_choice(condition, part, self.parse_expression(), text)
+        self.depth -= 1
         return part
 
-    def disjunction(self) -> Part:
-        begin = self.at
-        part = self.conjunction()
+    def parse_or(self) -> Part:
+        begin = self.position
+        part = self.parse_and()
         if self.token != "or":
             return part
-        text = self.written(begin)
-        while self.take("or"):
-            one, begin = self.codegen.number(1.0), self.at
-            other = self.conjunction()
-            part = self.codegen.choose(part, one, self.codegen.truth(other, self.written(begin)), text)
+        text = self.text_since(begin)
+        while self.take_token("or"):
+            one, begin = self.codegen.make_number(1.0), self.position
+            other = self.parse_and()
+            part = self.codegen.make_choice(part, one, self.codegen.make_truth(other, self.text_since(begin)), text)
         return part
 
-    def conjunction(self) -> Part:
-        begin = self.at
-        part = self.negation()
+    def parse_and(self) -> Part:
+        begin = self.position
+        part = self.parse_not()
         if self.token != "and":
             return part
-        text = self.written(begin)
-        while self.take("and"):
-            begin = self.at
-            other = self.negation()
-            truth = self.codegen.truth(other, self.written(begin))
-            part = self.codegen.choose(part, truth, self.codegen.number(0.0), text)
+        text = self.text_since(begin)
+        while self.take_token("and"):
+            begin = self.position
+            other = self.parse_not()
+            truth = self.codegen.make_truth(other, self.text_since(begin))
+            part = self.codegen.make_choice(part, truth, self.codegen.make_number(0.0), text)
         return part
 
-    def negation(self) -> Part:
-        turns = 0
-        while self.take("not"):
-            turns += 1
-        begin = self.at
-        part = self.comparison()
-        if not turns:
+    def parse_not(self) -> Part:
+        count = 0
+        while self.take_token("not"):
+            count += 1
+        begin = self.position
+        part = self.parse_comparison()
+        if not count:
             return part
-        text = self.written(begin)
-        for _ in range(min(turns, 2 + turns % 2)):
-            part = self.codegen.truth(part, text, "eq")
+        text = self.text_since(begin)
+        for _ in range(min(count, 2 + count % 2)):
+            part = self.codegen.make_truth(part, text, "eq")
         return part
 
-    def comparison(self) -> Part:
-        """a, a < b, or a chain a < b < c, in which b is run once."""
-        next_begin = self.at
-        first = self.binary(1)
+    def parse_comparison(self) -> Part:
+        """Parse a, a < b, or a chain a < b < c, in which b runs once."""
+        next_begin = self.position
+        first = self.parse_binary(1)
         if self.token not in COMPARISONS:
             return first
         right, links = first, []
         while self.token in COMPARISONS:
             name, begin = COMPARISONS[self.token], next_begin
-            self.at += 1
-            next_begin = self.at
-            left, right = right, self.binary(1)
-            links.append((name, left, right, self.written(begin)))
+            self.position += 1
+            next_begin = self.position
+            left, right = right, self.parse_binary(1)
+            links.append((name, left, right, self.text_since(begin)))
         if len(links) > 1:
-            return self.codegen.chain(first, links)
+            return self.codegen.make_chain(first, links)
         name, left, right, text = links[0]
-        return self.codegen.apply(name, left, right, text=text)
+        return self.codegen.make_operation(name, left, right, text=text)
 
-    def binary(self, level: int) -> Part:
-        part = self.unary()
+    def parse_binary(self, level: int) -> Part:
+        part = self.parse_unary()
         while self.token in BINARY and BINARY[self.token][0] >= level:
             precedence, name = BINARY[self.token]
-            self.at += 1
-            part = self.codegen.apply(name, part, self.binary(precedence + 1))
+            self.position += 1
+            part = self.codegen.make_operation(name, part, self.parse_binary(precedence + 1))
         return part
 
-    def unary(self) -> Part:
+    def parse_unary(self) -> Part:
         minus, signs = False, 0
         while self.token in ("-", "+"):
             minus ^= self.token == "-"
             signs += 1
-            self.at += 1
-        part = self.power()
-        return self.codegen.apply("neg", part) if minus else part
+            self.position += 1
+        part = self.parse_power()
+        return self.codegen.make_operation("neg", part) if minus else part
 
-    def power(self) -> Part:
-        part = self.operand()
-        if not self.take("**"):
+    def parse_power(self) -> Part:
+        part = self.parse_operand()
+        if not self.take_token("**"):
             return part
-        self.nested += 1
-        if self.nested > DEEPEST:
-            raise too_deep()
-        exponent = self.unary()  # binds to the right: 2**-3**2
-        self.nested -= 1
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise too_deep_finding()
+        exponent = self.parse_unary()  # binds to the right: 2**-3**2
+        self.depth -= 1
         n = exponent.constant
-        if not self.codegen.is_written(exponent):  # which operation it is hangs on it
+        if not self.codegen.is_literal(exponent):  # the choice of operation depends on the value
             self.codegen.sources = None
-        measure = raised(part.measure, n, exponent.measure)
-        if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= LARGEST_POWER:
-            whole = self.codegen.apply("power", part, argument=int(abs(n)))
-            result = whole if n > 0.0 else self.codegen.apply("div", self.codegen.number(1.0), whole)
+        measure = power_dimension(part.measure, n, exponent.measure)
+        if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= MAX_WHOLE_POWER:
+            whole = self.codegen.make_operation("power", part, argument=int(abs(n)))
+            result = whole if n > 0.0 else self.codegen.make_operation("div", self.codegen.make_number(1.0), whole)
         else:
-            result = self.codegen.apply("pow", part, exponent)
+            result = self.codegen.make_operation("pow", part, exponent)
         return result._replace(measure=measure)
 
-    def operand(self) -> Part:
+    def parse_operand(self) -> Part:
         kind, token = self.kind, self.token
         if kind == "number":
-            self.at += 1
-            return self.number(token)
+            self.position += 1
+            return self.parse_number(token)
         if kind == "name" and token not in WORDS:
-            self.at += 1
-            if self.take("("):
-                return self.call(token)
-            if self.take("."):
-                return self.point() if token == POINTS and self.is_point() else self.coordinate(token)
-            return self.name(token)
-        if self.take("("):
-            part = self.expression()
-            self.expect(")", "to close a parenthesis")
+            self.position += 1
+            if self.take_token("("):
+                return self.parse_call(token)
+            if self.take_token("."):
+                return self.parse_point() if token == POINTS and self.is_point() else self.parse_coordinate(token)
+            return self.parse_name(token)
+        if self.take_token("("):
+            part = self.parse_expression()
+            self.expect_token(")", "to close a parenthesis")
             return part
-        raise self.unexpected()
+        raise self.unexpected_token_error()
 
-    def number(self, figure: str) -> Part:
-        """A number, in a condition perhaps with its unit."""
-        measure, value = of_literal(figure), float(figure)
-        has_unit = (self.kind == "name" and self.token not in WORDS) or self.token == "°" or self.is_per()
+    def parse_number(self, figure: str) -> Part:
+        """Parse a number, in a condition perhaps with its unit."""
+        measure, value = literal_dimension(figure), float(figure)
+        has_unit = (self.kind == "name" and self.token not in WORDS) or self.token == "°" or self.is_reciprocal_unit()
         if has_unit and not self.scope.with_units:
-            raise self.unexpected()
+            raise self.unexpected_token_error()
         if has_unit:
-            size, dimension = self.unit(figure)
-            measure, value = known(dimension), value * size
+            size, dimension = self.parse_unit_name(figure)
+            measure, value = known_dimension(dimension), value * size
         if not math.isfinite(value):
             raise Finding("not-computable", f"{figure} is too large a number", "numbers go up to 1.8e308")
-        return self.codegen.number(value, measure)
+        return self.codegen.make_number(value, measure)
 
-    def is_per(self) -> bool:
-        """Whether 1/s stands here: behind a number it is a unit."""
-        ahead = [token for _, token, _ in self.tokens[self.at : self.at + 3]]
-        return len(ahead) == 3 and ahead[:2] == ["1", "/"] and spelling_of(ahead[2]) in UNITS
+    def is_reciprocal_unit(self) -> bool:
+        """Return whether 1/s stands here: after a number it is a unit."""
+        ahead = [token for _, token, _ in self.tokens[self.position : self.position + 3]]
+        return len(ahead) == 3 and ahead[:2] == ["1", "/"] and canonical_symbol(ahead[2]) in UNITS
 
-    def unit(self, figure: str) -> tuple[float, Dimension]:
-        """Size and dimension of the unit that stands here: names of units joined by * and /, with whole powers."""
-        begin = self.at
-        if spelling_of(self.token) not in UNITS and (self.token in self.scope.parameters or self.token in RESERVED):
-            raise self.unexpected()
-        self.at += 1
-        while self.at < len(self.tokens):
-            mark, after = [token for _, token, _ in (*self.tokens[self.at : self.at + 2], ("", "", 0))][:2]
+    def parse_unit_name(self, figure: str) -> tuple[float, Dimension]:
+        """Parse the unit that stands here, and return its size and dimension: names joined by * and /, with whole
+        powers.
+        """
+        begin = self.position
+        if canonical_symbol(self.token) not in UNITS and (
+            self.token in self.scope.parameters or self.token in RESERVED
+        ):
+            raise self.unexpected_token_error()
+        self.position += 1
+        while self.position < len(self.tokens):
+            mark, after = [token for _, token, _ in (*self.tokens[self.position : self.position + 2], ("", "", 0))][:2]
             if mark in ("^", "**") and after.isdecimal():
-                self.at += 2
-            elif mark in ("*", "/") and spelling_of(after) in UNITS:
-                self.require_no_parameter(f"{figure} {self.written(begin)}", mark, after)
-                self.at += 2
-            elif self.kind == "name" and spelling_of(mark) in UNITS:
-                self.at += 1
+                self.position += 2
+            elif mark in ("*", "/") and canonical_symbol(after) in UNITS:
+                self.require_no_parameter(f"{figure} {self.text_since(begin)}", mark, after)
+                self.position += 2
+            elif self.kind == "name" and canonical_symbol(mark) in UNITS:
+                self.position += 1
             else:
                 break
-        return parse_unit(self.written(begin))
+        return parse_unit(self.text_since(begin))
 
     def require_no_parameter(self, quantity: str, mark: str, name: str) -> None:
-        """Refuse 2 m/s where s is a parameter, too. Raises Finding."""
+        """Raise Finding for 2 m/s if s is a parameter, too."""
         if name in self.scope.parameters:
             message = f"'{quantity}{mark}{name}': {name} is a unit, and a parameter of this scene"
             hint = f"for the parameter write ({quantity}){mark}{name}; for the unit give the parameter another name"
             raise Finding("expression-syntax", message, hint)
 
-    def call(self, name: str) -> Part:
-        begin = self.at - 2
+    def parse_call(self, name: str) -> Part:
+        begin = self.position - 2
         if name in self.scope.parameters or name in ("t", *CONSTANTS):
             raise Finding("unknown-name", f"'{name}' is not a function", f"for a product write {name}*(...)")
         if name in self.scope.tables:
             raise Finding("unknown-name", f"'{name}' is a table, not a function", f"write table({name}, ...)")
         if name not in ARITY:
-            raise self.unknown(name, "function")
+            raise self.unknown_name_finding(name, "function")
         if name == "table":
-            return self.table()
+            return self.parse_table()
         parts: list[Part] = []
         decimal = None
-        while not self.take(")"):
+        while not self.take_token(")"):
             if parts:
-                decimal = decimal or self.decimal(self.at)
-                self.expect(",", f"or ')' in {name}(...)")
-            parts.append(self.expression())
+                decimal = decimal or self.suggest_decimal_point(self.position)
+                self.expect_token(",", f"or ')' in {name}(...)")
+            parts.append(self.parse_expression())
         least, most = ARITY[name]
         if not least <= len(parts) <= most:
             count = f"{least}" if least == most else f"{least} or more"
@@ -468,118 +489,128 @@ class _Parser:
             if name == "log":
                 hint = "log is the natural logarithm; to the base b: log(x)/log(b)"
             raise Finding("function-arguments", message, hint)
-        text = self.written(begin)
-        part = self.codegen.apply(name, *parts[:2], text=text)
+        text = self.text_since(begin)
+        part = self.codegen.make_operation(name, *parts[:2], text=text)
         for other in parts[2:]:
-            part = self.codegen.apply(name, part, other, text=text)
+            part = self.codegen.make_operation(name, part, other, text=text)
         return part
 
-    def table(self) -> Part:
-        """table(name, x), the name of an entry of `tables:`."""
-        begin, name = self.at - 2, self.token if self.kind == "name" else ""
-        self.at += 1
-        if not name or not self.take(","):
-            quoted = self.tokens[self.at - 1][1] in ("'", '"')
+    def parse_table(self) -> Part:
+        """Parse table(name, x), with the name of an entry of `tables:`."""
+        begin, name = self.position - 2, self.token if self.kind == "name" else ""
+        self.position += 1
+        if not name or not self.take_token(","):
+            quoted = self.tokens[self.position - 1][1] in ("'", '"')
             hint = "the name without quotes" if quoted else "inside { } and [ ] an expression with a comma needs quotes"
             message = "table() takes a table's name and a value: table(gas, shaft.angle)"
             raise Finding("function-arguments", message, hint)
-        argument = self.expression()
-        self.expect(")", "to close table(...)")
+        argument = self.parse_expression()
+        self.expect_token(")", "to close table(...)")
         if not self.scope.in_time:
-            raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)", FIXED)
+            raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)", FIXED_VALUE_HINT)
         if name not in self.scope.tables:
-            hint = did_you_mean(name, self.scope.tables, "tables")
+            hint = suggest(name, self.scope.tables, "tables")
             raise Finding("unknown-table", f"'{name}' is not a table", hint)
         table = self.scope.tables[name]
         if table is None:
-            raise Follows
-        return self.codegen.look_up(table, argument, self.written(begin))
+            raise DependentError
+        return self.codegen.make_lookup(table, argument, self.text_since(begin))
 
-    def coordinate(self, joint: str) -> Part:
-        """joint.quantity, of a joint of one freedom."""
+    def parse_coordinate(self, joint: str) -> Part:
+        """Parse joint.quantity, of a joint with one coordinate."""
         quantity = self.token
         if self.kind != "name":
-            raise self.unexpected()
-        self.at += 1
+            raise self.unexpected_token_error()
+        self.position += 1
         joints = self.scope.joints
-        if quantity in REACTIONS or (joint in LOADS and joint not in joints):
+        if quantity in REACTIONS or (joint in RESULT_BLOCKS and joint not in joints):
             message = (
                 f"'{joint}.{quantity}': reactions cannot enter laws or other expressions, they follow from the motion"
             )
-            raise Finding("unknown-name", message, LAWS)
+            raise Finding("unknown-name", message, LAW_HINT)
         if not self.scope.in_time:
             message = f"{joint}.{quantity} may stand only in a value in time (forces, drives)"
-            raise Finding("not-in-time", message, FIXED)
+            raise Finding("not-in-time", message, FIXED_VALUE_HINT)
         if joint not in joints:
-            hint = f"write {quantity}" if joint in LIBRARIES else did_you_mean(joint, joints, "joints")
+            hint = f"write {quantity}" if joint in LIBRARIES else suggest(joint, joints, "joints")
             if joint in self.scope.points:
-                hint = f"a point is {POINTS}.{joint}.{quantity}.x" if quantity in self.scope.points[joint] else FORM
+                hint = (
+                    f"a point is {POINTS}.{joint}.{quantity}.x"
+                    if quantity in self.scope.points[joint]
+                    else POINT_FORM_HINT
+                )
             if joint in REPORT_OF:
                 hint = "paths of results stand in {of: joints.NAME.force.z, below: 0}; in expressions NAME.angle"
             raise Finding("unknown-name", f"'{joint}.{quantity}': '{joint}' is not a joint", hint)
-        words = COORDINATES.get(joints[joint], ())
+        words = COORDINATES_BY_TYPE.get(joints[joint], ())
         if quantity not in words:
-            known = "; ".join(f"{kind}: {', '.join(w)}" for kind, w in COORDINATES.items())
+            known = "; ".join(f"{kind}: {', '.join(w)}" for kind, w in COORDINATES_BY_TYPE.items())
             has = f"has {' and '.join(words)}" if words else "has no coordinate of its own"
             message = f"'{joint}.{quantity}': a joint of type {joints[joint]} {has}, not '{quantity}'"
             raise Finding("unknown-coordinate", message, f"coordinates of joints: {known}")
-        return self.codegen.coordinate(joint, quantity)
+        return self.codegen.make_coordinate(joint, quantity)
 
     def is_point(self) -> bool:
-        """Whether a point stands here, and not a coordinate of a joint that is called points."""
-        ahead = [token for _, token, _ in self.tokens[self.at + 1 : self.at + 2]]
+        """Return whether a point stands here, and not a coordinate of a joint that is named points."""
+        ahead = [token for _, token, _ in self.tokens[self.position + 1 : self.position + 2]]
         return POINTS not in self.scope.joints or ahead == ["."]
 
-    def point(self) -> Part:
-        """points.BODY.POINT.quantity; points.POINT.quantity where one body alone has a point of that name."""
+    def parse_point(self) -> Part:
+        """Parse points.BODY.POINT.quantity, or points.POINT.quantity if only one body has a point of that name."""
         words = [self.token]
-        self.at += 1
-        while self.take("."):
+        self.position += 1
+        while self.take_token("."):
             words.append(self.token)
-            self.at += 1
-        written = ".".join((POINTS, *words))
+            self.position += 1
+        text = ".".join((POINTS, *words))
         if not self.scope.in_time:
-            raise Finding("not-in-time", f"{written} may stand only in a value in time (forces, conditions)", FIXED)
-        body, point, quantity = point_meant(written, words, self.scope.points)
-        return self.codegen.coordinate(f"{POINTS}.{body}.{point}", quantity)
+            raise Finding(
+                "not-in-time", f"{text} may stand only in a value in time (forces, conditions)", FIXED_VALUE_HINT
+            )
+        body, point, quantity = resolve_point(text, words, self.scope.points)
+        return self.codegen.make_coordinate(f"{POINTS}.{body}.{point}", quantity)
 
-    def name(self, name: str) -> Part:
+    def parse_name(self, name: str) -> Part:
         if name in self.scope.own:
             if name in self.scope.parameters:
                 message = f"'{name}' is a parameter, and here what the load itself stands between"
                 raise Finding("unknown-name", message, "give the parameter another name")
-            return self.codegen.coordinate(OWN, self.scope.own[name])
+            return self.codegen.make_coordinate(OWN, self.scope.own[name])
         if name in self.scope.parameters:
             value = self.scope.parameters[name]
             if value is None:
-                raise Follows
-            given = self.scope.given.get(name)
-            return self.codegen.number(value, known(given.dimension) if given is not None else FREE, name)
+                raise DependentError
+            dimensioned = self.scope.given.get(name)
+            return self.codegen.make_number(
+                value, known_dimension(dimensioned.dimension) if dimensioned is not None else FREE, name
+            )
         if name in CONSTANTS:
-            return self.codegen.number(CONSTANTS[name], loose(RATE) if name == "rpm" else FACTOR)
+            return self.codegen.make_number(CONSTANTS[name], coordinate_dimension(RATE) if name == "rpm" else FACTOR)
         if name == "t":
             if not self.scope.in_time:
-                raise Finding("not-in-time", "the time t may stand only in a value in time (forces, drives)", FIXED)
-            return self.codegen.time()
+                raise Finding(
+                    "not-in-time", "the time t may stand only in a value in time (forces, drives)", FIXED_VALUE_HINT
+                )
+            return self.codegen.make_time()
         if name in ARITY:
             arguments = "a, b" if ARITY[name][0] > 1 else "t"
             raise Finding("function-arguments", f"{name} is a function", f"write {name}(...), as {name}({arguments})")
-        raise self.unknown(name, "parameter")
+        raise self.unknown_name_finding(name, "parameter")
 
-    def unknown(self, name: str, kind: str) -> Finding:
+    def unknown_name_finding(self, name: str, kind: str) -> Finding:
         if name in OTHER_NAMES:
             return Finding("unknown-name", f"'{name}' is not a {kind}", f"write {OTHER_NAMES[name]}")
         if kind == "parameter" and name in self.scope.joints:
-            words = COORDINATES.get(self.scope.joints[name])
-            hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else NO_COORDINATE
+            words = COORDINATES_BY_TYPE.get(self.scope.joints[name])
+            hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else NO_COORDINATE_HINT
             return Finding("unknown-name", f"'{name}' is a joint, not a number", hint)
         known = (self.scope.parameters, RESERVED) if kind == "parameter" else (ARITY,)
-        message, near = f"'{name}' is not a {kind}", nearest(name, *known)
-        is_near = near is not None and near.lower() == name.lower()
-        if not is_near and kind == "parameter" and (unit := in_si("", name)) is not None:
+        message, suggestion = f"'{name}' is not a {kind}", find_similar(name, *known)
+        is_near = suggestion is not None and suggestion.lower() == name.lower()
+        if not is_near and kind == "parameter" and (unit := si_expression_hint("", name)) is not None:
             return Finding("unknown-name", message, f"as in 20 {name}" if self.scope.with_units else unit)
-        if kind == "parameter" and self.scope.own and near is None:
+        if kind == "parameter" and self.scope.own and suggestion is None:
             return Finding("unknown-name", message, f"of the load itself: {', '.join(self.scope.own)}")
         listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
-        hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
+        hint = f"did you mean {suggestion}?" if suggestion else suggest(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

@@ -1,9 +1,9 @@
-"""Paths in space: a point over a parameter, piece by piece a cubic in each coordinate.
+"""Represent paths in space: a point as a function of a parameter, piece by piece a cubic in each coordinate.
 
     r(s) = c0 + c1 h + c2 h² + c3 h³,   h = s - s_k        in the piece from s_k on, each c a vector
-The tables of the coordinates may have knots of their own: a piece of the path ends where one of any of them does.
-Beyond open ends the last piece goes on, and a closed path round again. Beside a path in a plane the centre of a roller
-may run, which is the place that is asked for then (beside.py); the path itself is its track.
+The tables of the coordinates may have different knots: a piece of the path ends where a piece of any of them does.
+Beyond an open end the last piece continues, and a closed path repeats. The centre of a roller may run along a path in a
+plane; then its place is what `evaluate` returns (roller_path.py), and the path itself is the track.
 """
 
 from __future__ import annotations
@@ -15,25 +15,30 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.results.results import Array
-from heuncli.scene.expressions.beside import bounds, centre, flat
+from heuncli.scene.expressions.beside import bound_derivatives, project_to_plane, roller_centre
 from heuncli.scene.expressions.programs import TableFunction
 
 PERIODIC = 2  # a table's kind (scene/expressions/programs.py)
-LOOKS = 8  # places in a piece at which a path is looked at
-AT_ONCE = 2**18  # distances that are looked at together
-NEWTON = 32  # steps to the nearest place
-TRIED = 4  # of the places looked at, those from which the nearest is sought
-BEYOND = 0.01  # of a path, by which it goes on behind a stop at its end: what is at the stop is there to rounding
-AROUND = 64  # directions that are tried
+SAMPLES_PER_PIECE = 8  # samples of each piece
+MAX_DISTANCES_AT_ONCE = 2**18  # distances computed together
+NEWTON_STEPS = 32  # most steps of Newton's method
+NEWTON_STARTS = 4  # number of nearest samples from which Newton's method starts
+END_EXTENSION = 0.01  # of the path's length: extension behind an end stop, where a body stands only up to rounding
+DIRECTION_COUNT = 64  # number of directions that are tried
 NO_PLANE = np.zeros(3)
 NO_PLANE.setflags(write=False)
 
 
 @record
 class Path:
-    """A path: knots (n + 1,), coefficients (n, 4, 3) [m]; period: of the parameter where it is closed, else 0.
+    """A path in space, or the path of a roller's centre along it.
 
-    radius: of a roller [m] whose centre is to the left of the path, seen so that its plane's normal (3,) points here.
+    knots: (n + 1,)
+    coefficients: (n, 4, 3) [m]
+    period: of the parameter if the path is closed, else 0
+    radius: of a roller [m] whose centre is to the left of the path, seen from the side to which the normal points; 0:
+    no roller
+    normal: of the path's plane, (3,)
     """
 
     knots: Array
@@ -44,245 +49,263 @@ class Path:
 
     @property
     def first(self) -> float:
-        """Where the parameter begins."""
+        """The parameter at the start."""
         return float(self.knots[0])
 
     @property
     def last(self) -> float:
-        """Where it ends."""
+        """The parameter at the end."""
         return float(self.knots[-1])
 
-    def turned(self, R: Array) -> Path:
-        """The path seen in other axes: R takes components in its own to those."""
+    def rotate(self, R: Array) -> Path:
+        """Return the path in other axes; R takes components in its own axes to those."""
         return replace(self, coefficients=self.coefficients @ R.T, normal=R @ self.normal)
 
-    def later(self, phase: float) -> Path:
-        """The path with every place at a parameter that is greater by the phase."""
+    def shift_parameter(self, phase: float) -> Path:
+        """Return the path with its parameter increased by the phase."""
         return replace(self, knots=self.knots + phase) if phase else self
 
-    def beyond(self, first: bool, last: bool) -> Path:
-        """The path with its end pieces gone on a little, at its first end, its last, or both; a closed one as it is."""
+    def extend(self, first: bool, last: bool) -> Path:
+        """Return the path slightly extended at its first end, its last, or both; a closed path stays as it is."""
         if self.period or not (first or last):
             return self
-        more = BEYOND * (self.last - self.first)
+        extension = END_EXTENSION * (self.last - self.first)
         knots, pieces = self.knots.copy(), self.coefficients.copy()
         if first:
-            knots[0] -= more
-            r, slope, bend, twist = self.track(self.first)
-            r, slope, bend = (
-                r - more * (slope - more * (bend / 2.0 - more * twist / 6.0)),
-                slope - more * (bend - more * twist / 2.0), bend - more * twist,
+            knots[0] -= extension
+            r, slope, second, third = self.evaluate_track(self.first)
+            r, slope, second = (
+                r - extension * (slope - extension * (second / 2.0 - extension * third / 6.0)),
+                slope - extension * (second - extension * third / 2.0), second - extension * third,
             )  # fmt: skip
-            pieces[0] = r, slope, bend / 2.0, twist / 6.0
+            pieces[0] = r, slope, second / 2.0, third / 6.0
         if last:
-            knots[-1] += more
+            knots[-1] += extension
         return replace(self, knots=knots, coefficients=pieces)
 
-    def at(self, s: Array | float) -> tuple[Array, Array, Array]:
-        """Place, slope and bend of what runs along the path, or beside it, (..., 3) each; s of any shape."""
-        return self.course(s)[:3]
+    def evaluate(self, s: Array | float) -> tuple[Array, Array, Array]:
+        """Return place, first and second derivative of the path, or of the roller's centre, (..., 3) each; s of any
+        shape.
+        """
+        return self.evaluate_with_third(s)[:3]
 
-    def course(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
-        """The same with the third derivative."""
-        track = self.track(s)
-        return centre(self.radius, self.normal, track) if self.radius else track
+    def evaluate_with_third(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
+        """Return place and the first three derivatives of the path, or of the roller's centre, (..., 3) each."""
+        track = self.evaluate_track(s)
+        return roller_centre(self.radius, self.normal, track) if self.radius else track
 
-    def track(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
-        """Place r of the path itself and its derivatives r', r'', r''', (..., 3) each; s of any shape."""
+    def evaluate_track(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
+        """Return the place r of the path itself and its derivatives r', r'', r''', (..., 3) each; s of any shape."""
         s = np.asarray(s, dtype=float)
         inside = self.first + np.mod(s - self.first, self.period) if self.period else s
         k = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, len(self.knots) - 2)
         h = (inside - self.knots[k])[..., None]
         c0, c1, c2, c3 = np.moveaxis(self.coefficients[k], -2, 0)
-        slope, bend = (3.0 * c3 * h + 2.0 * c2) * h + c1, 6.0 * c3 * h + 2.0 * c2
-        return ((c3 * h + c2) * h + c1) * h + c0, slope, bend, np.broadcast_to(6.0 * c3, bend.shape)
+        slope, second = (3.0 * c3 * h + 2.0 * c2) * h + c1, 6.0 * c3 * h + 2.0 * c2
+        return ((c3 * h + c2) * h + c1) * h + c0, slope, second, np.broadcast_to(6.0 * c3, second.shape)
 
     @property
-    def looked_at(self) -> Array:
-        """Parameters that show the path, a number in each piece, (m,)."""
-        steps = np.arange(LOOKS) / LOOKS
+    def sample_parameters(self) -> Array:
+        """Parameters that sample the path, several in each piece, (m,)."""
+        steps = np.arange(SAMPLES_PER_PIECE) / SAMPLES_PER_PIECE
         inner = (self.knots[:-1, None] + np.diff(self.knots)[:, None] * steps).ravel()
         return np.append(inner, self.last)
 
-    def nearest(self, points: Array) -> Array:
-        """The parameter of the path's place nearest to each point, (...); points (..., 3), in the path's axes.
+    def find_nearest(self, points: Array) -> Array:
+        """Find the parameter of the place nearest to each point, (...); points (..., 3), in the path's axes.
 
-        By Newton's method on (r - x) . r' = 0 from each of the nearest places looked at, for one of another part of the
-        path may lie nearer than those about the place that is sought.
+        Newton's method on (r - x) . r' = 0 starts from several of the nearest samples, as another part of the path may
+        lie nearer than the nearest sample's.
         """
-        flat = np.reshape(points, (-1, 3))
-        s = self.looked_at
-        r = self.at(s)[0]
-        room = max(1, AT_ONCE // len(s))
-        found = [self._nearest(flat[i : i + room], s, r) for i in range(0, len(flat), room)]
+        point_rows = np.reshape(points, (-1, 3))
+        s = self.sample_parameters
+        r = self.evaluate(s)[0]
+        chunk = max(1, MAX_DISTANCES_AT_ONCE // len(s))
+        found = [self._find_nearest(point_rows[i : i + chunk], s, r) for i in range(0, len(point_rows), chunk)]
         return np.concatenate(found).reshape(points.shape[:-1]) if found else np.zeros(points.shape[:-1])
 
     @property
-    def off_all_slopes(self) -> Array:
-        """A direction (3,) from which all slopes stand off well; of a path in a plane across that."""
-        t = self.at(self.looked_at)[1]
-        t = t / np.sqrt(np.sum(t * t, axis=-1))[:, None]
-        off: Array = np.linalg.eigh(t.T @ t)[1].T
-        z = 1.0 - (np.arange(AROUND) + 0.5) / AROUND  # a hemisphere, evenly
-        turns = np.arange(AROUND) * np.pi * (3.0 - np.sqrt(5.0))
+    def direction_off_slopes(self) -> Array:
+        """A direction (3,) that is far from all tangents; for a plane path it is the plane's normal."""
+        tangents = self.evaluate(self.sample_parameters)[1]
+        tangents = tangents / np.sqrt(np.sum(tangents * tangents, axis=-1))[:, None]
+        directions: Array = np.linalg.eigh(tangents.T @ tangents)[1].T
+        z = 1.0 - (np.arange(DIRECTION_COUNT) + 0.5) / DIRECTION_COUNT  # evenly spread over a hemisphere
+        angles = np.arange(DIRECTION_COUNT) * np.pi * (3.0 - np.sqrt(5.0))
         ring = np.sqrt(1.0 - z * z)
-        off = np.vstack([off, np.stack([ring * np.cos(turns), ring * np.sin(turns), z], axis=-1)])
-        nearest = np.max(np.abs(off @ t.T), axis=1)
-        nearest[0] -= 0.5  # the plane's normal, if the path is not far from one
-        return np.asarray(off[np.argmin(nearest)])
+        directions = np.vstack([directions, np.stack([ring * np.cos(angles), ring * np.sin(angles), z], axis=-1)])
+        nearest = np.max(np.abs(directions @ tangents.T), axis=1)
+        nearest[0] -= 0.5  # prefer the plane's normal if the path is nearly plane
+        return np.asarray(directions[np.argmin(nearest)])
 
-    def along(self, points: Array, counted: Array) -> Array:
-        """The parameters of the places beside points (n, 3), each on the branch about one that is counted, (n,)."""
-        room = self.last - self.first
-        low, high = counted - room, counted + room
+    def track_parameters(self, points: Array, previous: Array) -> Array:
+        """Find the parameters of the places nearest to points (n, 3), each on the branch around its previous parameter,
+        (n,).
+        """
+        length = self.last - self.first
+        low, high = previous - length, previous + length
         if not self.period:
             low, high = np.maximum(low, self.first), np.minimum(high, self.last)
-        return self._descended(points, counted, low, high)
+        return self._refine_parameters(points, previous, low, high)
 
-    def near(self, point: Array, s: float) -> float:
-        """The parameter of the place nearest to a point (3,) on the branch about a parameter: others may be nearer."""
+    def find_nearby(self, point: Array, s: float) -> float:
+        """Find the parameter of the nearest place to a point (3,) on the branch around s; other branches may be
+        nearer.
+        """
         inside = self.first + (s - self.first) % self.period if self.period else s
-        steps = np.diff(self.looked_at)
-        room = float(steps[np.clip(np.searchsorted(self.looked_at, inside) - 1, 0, len(steps) - 1)])
-        low, high = (s - room, s + room) if self.period else (max(s - room, self.first), min(s + room, self.last))
-        return float(self._descended(point, np.array(s), np.array(low), np.array(high)))
+        steps = np.diff(self.sample_parameters)
+        sample_step = float(steps[np.clip(np.searchsorted(self.sample_parameters, inside) - 1, 0, len(steps) - 1)])
+        low, high = (
+            (s - sample_step, s + sample_step)
+            if self.period
+            else (max(s - sample_step, self.first), min(s + sample_step, self.last))
+        )
+        return float(self._refine_parameters(point, np.array(s), np.array(low), np.array(high)))
 
-    def branches(self, point: Array, within: float) -> list[float]:
-        """The parameters of all places about a point (3,) where the path comes as near as within, each branch once."""
-        s = self.looked_at
+    def find_branches(self, point: Array, max_distance: float) -> list[float]:
+        """Find the parameters of all locally nearest places within max_distance of a point (3,), one for each
+        branch.
+        """
+        s = self.sample_parameters
         low, high = np.append(s[0], s[:-1]), np.append(s[1:], s[-1])
-        found = self._descended(point, s, low, high)
-        off = np.sqrt(np.sum(np.square(self.at(found)[0] - point), axis=-1))
+        found = self._refine_parameters(point, s, low, high)
+        distance = np.sqrt(np.sum(np.square(self.evaluate(found)[0] - point), axis=-1))
         same = 0.5 * float(np.min(np.diff(s)))
-        told: list[float] = []
-        for here in np.sort(found[off <= within]).tolist():
-            around = self.period and told and here > told[0] + self.period - same
-            if not around and all(here > other + same for other in told):
-                told.append(here)
-        return told
+        distinct: list[float] = []
+        for here in np.sort(found[distance <= max_distance]).tolist():
+            wraps = self.period and distinct and here > distinct[0] + self.period - same
+            if not wraps and all(here > other + same for other in distinct):
+                distinct.append(here)
+        return distinct
 
-    def _nearest(self, points: Array, s: Array, r: Array) -> Array:
-        """The same of a few points (k, 3); s, r: the places looked at."""
+    def _find_nearest(self, points: Array, s: Array, r: Array) -> Array:
+        """Find the nearest places of a few points (k, 3). s, r: the samples of the path."""
         low, high = np.append(s[0], s[:-1]), np.append(s[1:], s[-1])
         if self.period:
             low[0], high[-1] = s[0] - (s[-1] - s[-2]), s[-1] + (s[1] - s[0])
-        away = np.sum(r * r, axis=1) - 2.0 * (points @ r.T)  # but for the point's own square
-        falls = away[:, 1:] <= away[:, :-1]
-        least = np.ones(away.shape, dtype=bool)
-        least[:, 1:] &= falls
-        least[:, :-1] &= ~falls | (away[:, 1:] == away[:, :-1])
-        away[~least] = np.inf
-        begun = np.argpartition(away, min(TRIED, len(s)) - 1, axis=1)[:, :TRIED]
-        found = self._descended(points[:, None, :], s[begun], low[begun], high[begun])
-        left = np.sum(np.square(points[:, None, :] - self.at(found)[0]), axis=-1)
-        return np.asarray(np.take_along_axis(found, np.argmin(left, axis=1)[:, None], axis=1)[:, 0])
+        distance = np.sum(r * r, axis=1) - 2.0 * (points @ r.T)  # without the point's square, a constant
+        is_falling = distance[:, 1:] <= distance[:, :-1]
+        is_minimum = np.ones(distance.shape, dtype=bool)
+        is_minimum[:, 1:] &= is_falling
+        is_minimum[:, :-1] &= ~is_falling | (distance[:, 1:] == distance[:, :-1])
+        distance[~is_minimum] = np.inf
+        starts = np.argpartition(distance, min(NEWTON_STARTS, len(s)) - 1, axis=1)[:, :NEWTON_STARTS]
+        found = self._refine_parameters(points[:, None, :], s[starts], low[starts], high[starts])
+        remaining = np.sum(np.square(points[:, None, :] - self.evaluate(found)[0]), axis=-1)
+        return np.asarray(np.take_along_axis(found, np.argmin(remaining, axis=1)[:, None], axis=1)[:, 0])
 
-    def _descended(self, points: Array, begun: Array, low: Array, high: Array) -> Array:
-        """Where Newton's method leads from parameters, held between others."""
-        found = begun
-        for _ in range(NEWTON):
-            place, slope, bend = self.at(found)
-            off = place - points
+    def _refine_parameters(self, points: Array, start: Array, low: Array, high: Array) -> Array:
+        """Refine parameters by Newton's method, each limited to [low, high]."""
+        found = start
+        for _ in range(NEWTON_STEPS):
+            place, slope, bend = self.evaluate(found)
+            offset = place - points
             square = np.sum(slope * slope, axis=-1)
-            curved = square + np.sum(off * bend, axis=-1)
-            to = np.clip(found - np.sum(off * slope, axis=-1) / np.where(curved > 0.0, curved, square), low, high)
-            if np.all(np.abs(to - found) <= np.finfo(float).eps * (abs(self.first) + abs(self.last))):
-                return np.asarray(to)
-            found = to
+            second_derivative = square + np.sum(offset * bend, axis=-1)
+            next_parameter = np.clip(
+                found - np.sum(offset * slope, axis=-1) / np.where(second_derivative > 0.0, second_derivative, square),
+                low,
+                high,
+            )
+            if np.all(np.abs(next_parameter - found) <= np.finfo(float).eps * (abs(self.first) + abs(self.last))):
+                return np.asarray(next_parameter)
+            found = next_parameter
         nearest: Array = found
         return nearest
 
     @property
-    def greatest(self) -> tuple[float, float, float]:
-        """Bounds of place, slope and bend of what runs along the path, or beside it."""
-        r, slope, bend = self.track_greatest
-        return (r + self.radius, *bounds(self)) if self.radius else (r, slope, bend)
+    def bounds(self) -> tuple[float, float, float]:
+        """Bounds of place, first and second derivative of the path, or of the roller's centre."""
+        r, slope, bend = self.track_bounds
+        return (r + self.radius, *bound_derivatives(self)) if self.radius else (r, slope, bend)
 
     @property
-    def track_greatest(self) -> tuple[float, float, float]:
-        """Bounds of |r|, |r'| and |r''| over all of it: no coordinate of a cubic exceeds its Bernstein coefficients."""
+    def track_bounds(self) -> tuple[float, float, float]:
+        """Bounds of |r|, |r'| and |r''| over the whole path: no coordinate of a cubic exceeds its Bernstein
+        coefficients.
+        """
         h = np.diff(self.knots)[:, None]
         c0, c1, c2, c3 = np.moveaxis(self.coefficients, 1, 0)
         a, b, c = c1 * h, c2 * h * h, c3 * h * h * h
         places = np.stack([c0, c0 + a / 3.0, c0 + (2.0 * a + b) / 3.0, c0 + a + b + c])
         slopes = np.stack([a, a + b, a + 2.0 * b + 3.0 * c]) / h
         bends = np.stack([2.0 * b, 2.0 * b + 6.0 * c]) / (h * h)
-        r, slope, bend = (float(np.sqrt(np.max(np.sum(x * x, axis=-1)))) for x in (places, slopes, bends))
-        return r, slope, bend
+        r, slope, second = (float(np.sqrt(np.max(np.sum(x * x, axis=-1)))) for x in (places, slopes, bends))
+        return r, slope, second
 
 
-def path_beside(path: Path, radius: float, normal: Sequence[float]) -> Path:
-    """What the centre of a roller runs along beside a path, which lies across the normal to the digits typed."""
+def make_roller_path(path: Path, radius: float, normal: Sequence[float]) -> Path:
+    """Make the path of a roller's centre along a path, which lies in the plane across the normal up to typed digits."""
     N = np.asarray(normal, dtype=float)
     N = N / np.sqrt(N @ N)
-    return replace(path, coefficients=flat(path.coefficients, N), radius=radius, normal=N)
+    return replace(path, coefficients=project_to_plane(path.coefficients, N), radius=radius, normal=N)
 
 
-def path_of(parts: Sequence[TableFunction | float]) -> Path:
-    """The path whose three coordinates are tables, or numbers that stay; one at least is a table."""
+def make_path(parts: Sequence[TableFunction | float]) -> Path:
+    """Make the path whose three coordinates are tables or constants; at least one is a table."""
     tables = [part for part in parts if isinstance(part, TableFunction)]
-    open_ones = [table for table in tables if table.kind != PERIODIC] or tables[:1]
-    first, last = (f(knots_of(table)[i] for table in open_ones) for f, i in ((max, 0), (min, -1)))
-    cuts = [knot for table in tables for knot in repeated(table, first, last)]
-    knots = merged(np.unique([first, last, *cuts]), last - first)
+    open_tables = [table for table in tables if table.kind != PERIODIC] or tables[:1]
+    first, last = (f(table_knots(table)[i] for table in open_tables) for f, i in ((max, 0), (min, -1)))
+    inner_knots = [knot for table in tables for knot in iter_knots(table, first, last)]
+    knots = merge_knots(np.unique([first, last, *inner_knots]), last - first)
     middles = 0.5 * (knots[1:] + knots[:-1])
-    columns = [shifted(part, knots[:-1], middles) for part in parts]
+    columns = [shift_cubics(part, knots[:-1], middles) for part in parts]
     closed = all(table.kind == PERIODIC for table in tables)
     return Path(knots, np.stack(columns, axis=-1), last - first if closed else 0.0)
 
 
-def knots_of(table: TableFunction) -> Array:
-    """The points of the parameter at which a table's pieces begin, and its end."""
+def table_knots(table: TableFunction) -> Array:
+    """Return the parameters at which a table's pieces begin, and its end."""
     return np.asarray(np.frombuffer(table.numbers)[1 : table.pieces + 2])
 
 
-def repeated(table: TableFunction, first: float, last: float) -> Iterator[float]:
-    """The knots of a table between two parameters, of all its turns where it is periodic."""
-    knots, period = knots_of(table), table.numbers[0]
-    turns = range(1)
+def iter_knots(table: TableFunction, first: float, last: float) -> Iterator[float]:
+    """Yield the knots of a table between two parameters, in all its periods."""
+    knots, period = table_knots(table), table.numbers[0]
+    periods = range(1)
     if table.kind == PERIODIC:
-        turns = range(int(np.floor((first - knots[0]) / period)), int(np.floor((last - knots[0]) / period)) + 1)
-    for turn in turns:
-        own = knots + turn * period
-        yield from own[(own > first) & (own < last)].tolist()
+        periods = range(int(np.floor((first - knots[0]) / period)), int(np.floor((last - knots[0]) / period)) + 1)
+    for period_number in periods:
+        shifted = knots + period_number * period
+        yield from shifted[(shifted > first) & (shifted < last)].tolist()
 
 
-def merged(knots: Array, span: float) -> Array:
-    """Knots without those that only rounding tells apart; the ends stay."""
-    apart = np.diff(knots) > tolerances.SAME_VALUE * span
-    kept: Array = knots[np.append(True, apart)]
-    kept[-1] = knots[-1]
-    return kept
+def merge_knots(knots: Array, span: float) -> Array:
+    """Drop knots that differ from others only by rounding; the ends stay."""
+    is_separate = np.diff(knots) > tolerances.SAME_VALUE * span
+    separate: Array = knots[np.append(True, is_separate)]
+    separate[-1] = knots[-1]
+    return separate
 
 
-def shifted(part: TableFunction | float, begins: Array, middles: Array) -> Array:
-    """The cubics (n, 4) of a coordinate in pieces from `begins` on, each a part of one of its own round the middle."""
+def shift_cubics(part: TableFunction | float, begins: Array, middles: Array) -> Array:
+    """Return the cubics (n, 4) of a coordinate for pieces starting at `begins`, each part of one of its own pieces."""
     if not isinstance(part, TableFunction):
         return np.array([[part, 0.0, 0.0, 0.0]] * len(begins))
     numbers = np.frombuffer(part.numbers)
-    knots = knots_of(part)
-    own = numbers[part.pieces + 2 :].reshape(-1, 4)
-    turns = np.floor((middles - knots[0]) / numbers[0]) * numbers[0] if part.kind == PERIODIC else 0.0
-    k = np.clip(np.searchsorted(knots, middles - turns, side="right") - 1, 0, part.pieces - 1)
-    h = begins - turns - knots[k]
-    c0, c1, c2, c3 = own[k].T
+    knots = table_knots(part)
+    coefficients = numbers[part.pieces + 2 :].reshape(-1, 4)
+    offsets = np.floor((middles - knots[0]) / numbers[0]) * numbers[0] if part.kind == PERIODIC else 0.0
+    k = np.clip(np.searchsorted(knots, middles - offsets, side="right") - 1, 0, part.pieces - 1)
+    h = begins - offsets - knots[k]
+    c0, c1, c2, c3 = coefficients[k].T
     return np.stack(
         [((c3 * h + c2) * h + c1) * h + c0, (3.0 * c3 * h + 2.0 * c2) * h + c1, 3.0 * c3 * h + c2, c3], axis=-1
     )
 
 
-def cusp(path: Path) -> float | None:
-    """The parameter at which the path stands still, so that it has no direction there; None where it has one all along.
+def find_cusp(path: Path) -> float | None:
+    """Find the parameter at which the path has no direction, as its slope vanishes; None if it has one everywhere.
 
-    The square of the slope is of degree 4 in a piece: where it nearly vanishes it is looked at closely.
+    The square of the slope is of degree 4 in a piece; where it nearly vanishes, it is sampled more finely.
     """
-    s = path.looked_at
+    s = path.sample_parameters
     for _ in range(3):
-        slope = path.track(s)[1]
-        size = np.sqrt(np.sum(slope * slope, axis=-1))
-        i = int(np.argmin(size))
-        if size[i] < tolerances.STANDS_STILL * path.track_greatest[1]:
+        slope = path.evaluate_track(s)[1]
+        speed = np.sqrt(np.sum(slope * slope, axis=-1))
+        i = int(np.argmin(speed))
+        if speed[i] < tolerances.STANDS_STILL * path.track_bounds[1]:
             return float(s[i])
         low, high = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)]
-        s = np.linspace(low, high, 4 * LOOKS + 1)
+        s = np.linspace(low, high, 4 * SAMPLES_PER_PIECE + 1)
     return None

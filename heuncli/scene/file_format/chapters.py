@@ -1,4 +1,4 @@
-"""Which part of the manual's page on the format tells of which model: its table has a row for each of the keys."""
+"""Map each model to the chapter of the manual's page on the format whose table describes its keys."""
 
 from collections.abc import Mapping
 

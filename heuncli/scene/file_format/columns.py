@@ -1,9 +1,9 @@
-"""Columns of numbers out of a CSV text, as programs write it.
+"""Read columns of numbers from a CSV text as programs write it.
 
-Commas, semicolons (then with decimal commas, too), tabs or spaces separate; empty lines and lines that begin with #
-do not count. A file has one decimal mark: where commas are, a point may as well mark thousands. The text is taken in
-pieces of some lines: NumPy reads those that hold nothing but plain numbers, all others are read cell by cell, by the
-same rules, and so are those in which something is wrong, to say what and where.
+Commas, semicolons (which also allow decimal commas), tabs or blanks separate cells; empty lines and lines that begin
+with # are skipped. A file has one decimal mark: where decimal commas occur, a point may be a thousands separator. The
+text is read in pieces of many lines: NumPy reads those with only plain numbers. All others are read cell by cell under
+the same rules, and so are those with an error, to report what is wrong and where.
 """
 
 from __future__ import annotations
@@ -19,30 +19,30 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import LONGEST, listed, nearest
-from heuncli.results.results_schema import counted
+from heuncli.base.nearest import MAX_WORD_LENGTH, find_similar, list_words
+from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.headings import name_in_heading
 
 MOST_ROWS = 2_000_000
-PIECE = 1 << 20  # characters: NumPy's start is nothing beside reading them, and what they take in between is little
-LOOKED_THROUGH = 1000  # rows by which a file is taken for a table of numbers, where something is wrong
-LONGEST_NUMBER = 24  # characters; a double has 24 at most
-PLAIN = b"0123456789+-.eE \t\r\n"
-NUMERIC = frozenset("0123456789+-.,eE_% ")
+PIECE = 1 << 20  # characters: large enough to make NumPy's overhead negligible, small enough to save memory
+MAX_EXAMINED_ROWS = 1000  # rows examined before a message may quote a file's headings
+MAX_NUMBER_LENGTH = 24  # characters; a double needs 24 at most
+PLAIN_CHARACTERS = b"0123456789+-.eE \t\r\n"
+NUMERIC_CHARACTERS = frozenset("0123456789+-.,eE_% ")
 NOT_FINITE = frozenset({"nan", "inf", "infinity"})
 BEGINS_AS_NUMBER = re.compile(r"[-+]?[.,]?[0-9]")
-# what to do about it
-ROWS = "each row has its numbers between commas, as 0.5, 12"
-FEWER = "keep the points that matter: between them the table interpolates"
-NUMBERS = "one number a cell, with a point; lines of words begin with #"
-QUOTES = "quotes come in pairs; plain numbers need none"
-ONE_MARK = "write all numbers of the file with one decimal mark, and thousands without any"
+# hints
+ROWS_HINT = "each row has its numbers between commas, as 0.5, 12"
+FEWER_ROWS_HINT = "keep the points that matter: between them the table interpolates"
+NUMBERS_HINT = "one number a cell, with a point; lines of words begin with #"
+QUOTES_HINT = "quotes come in pairs; plain numbers need none"
+ONE_MARK_HINT = "write all numbers of the file with one decimal mark, and thousands without any"
 
 Columns = list["array[float]"]
 
 
-class NoColumn(Exception):
-    """A column that the file does not have: which of those wanted, and the finding."""
+class MissingColumnError(Exception):
+    """A requested column does not exist: its index among the requested ones, and the finding."""
 
     def __init__(self, number: int, finding: Finding) -> None:
         super().__init__(finding.message)
@@ -50,7 +50,7 @@ class NoColumn(Exception):
 
 
 class CsvError(Exception):
-    """Line and column in a CSV file, and what is wrong there."""
+    """An error in a CSV file: line, column and finding."""
 
     def __init__(self, line: int, column: int, finding: Finding) -> None:
         super().__init__(finding.message)
@@ -58,7 +58,7 @@ class CsvError(Exception):
 
 
 class Heading(NamedTuple):
-    """What stands above a column, and on which line; the column's number counts from 1."""
+    """The heading of a column, the line it is on, and the column's number from 1."""
 
     text: str
     line: int
@@ -66,8 +66,13 @@ class Heading(NamedTuple):
 
 
 class ColumnLayout(NamedTuple):
-    """How a file is written: what separates cells, the names in its first row, how many cells that has, and how many
-    lines stand before the numbers."""
+    """Layout of a file.
+
+    mark: the cell separator; None: blanks
+    names: the cells of the first row if they are headings, else empty
+    width: number of cells in the first row
+    before: number of lines before the numbers
+    """
 
     mark: str | None
     names: list[str]
@@ -75,40 +80,42 @@ class ColumnLayout(NamedTuple):
     before: int
 
 
-def columns_of(text: str, *wanted: object) -> Columns:
-    """Columns of a text, by their names in the first row or their numbers from 1. Raises CsvError, NoColumn."""
-    return read_columns(text, *wanted)[0]
+def read_column_numbers(text: str, *keys: object) -> Columns:
+    """Read columns by name or by number from 1, without their headings. Raises CsvError, MissingColumnError."""
+    return read_columns(text, *keys)[0]
 
 
-def read_columns(text: str, *wanted: object) -> tuple[Columns, list[Heading | None]]:
-    """Columns of a text, and what stands above each of them (None where the first row is a point).
+def read_columns(text: str, *keys: object) -> tuple[Columns, list[Heading | None]]:
+    """Read columns and their headings (None where the first row holds numbers).
 
-    wanted: names in the first row, with their unit or without, or numbers from 1. Raises CsvError, NoColumn.
+    keys: names in the first row, with or without their unit, or numbers from 1. Raises CsvError, MissingColumnError.
     """
-    layout = layout_of(text)
-    indices = [column(number, key, layout, text) for number, key in enumerate(wanted)]
-    if all(counted(str(key)) is not None for key in wanted) and begins_at_once(layout, indices, text):
-        layout = ColumnLayout(layout.mark, [], layout.width, layout.before - 1)
-    columns: Columns = [array("d") for _ in wanted]
-    for line, lines in numbered(text, layout.before):
-        if not read_plain(lines, layout.mark, indices, columns):
-            read_rows(lines, line, layout.mark, indices, columns)
+    layout = detect_layout(text)
+    indices = [find_column(number, key, layout, text) for number, key in enumerate(keys)]
+    if all(parse_index(str(key)) is not None for key in keys) and is_first_row_a_point(layout, indices, text):
+        layout = ColumnLayout(layout.separator, [], layout.width, layout.header_lines - 1)
+    columns: Columns = [array("d") for _ in keys]
+    for line, lines in iter_line_pieces(text, layout.header_lines):
+        if not read_plain(lines, layout.separator, indices, columns):
+            read_rows(lines, line, layout.separator, indices, columns)
         if len(columns[0]) > MOST_ROWS:
-            raise CsvError(1, 1, Finding("too-large", f"more than {MOST_ROWS} rows; at most so many are read", FEWER))
-    if layout.mark == ";" and "," in text and "." in text:
+            raise CsvError(
+                1, 1, Finding("too-large", f"more than {MOST_ROWS} rows; at most so many are read", FEWER_ROWS_HINT)
+            )
+    if layout.separator == ";" and "," in text and "." in text:
         require_one_decimal_mark(text, layout, indices)
-    headings = [Heading(layout.names[i], layout.before, i + 1) if layout.names else None for i in indices]
+    headings = [Heading(layout.names[i], layout.header_lines, i + 1) if layout.names else None for i in indices]
     return columns, headings
 
 
 def require_one_decimal_mark(text: str, layout: ColumnLayout, indices: Sequence[int]) -> None:
     """Refuse columns with decimal commas in some cells and points in others. Raises CsvError."""
-    first: tuple[str, str, int] | None = None  # a mark, the first cell with it, its line
-    for begin, lines in numbered(text, layout.before):
+    first: tuple[str, str, int] | None = None  # decimal mark, first cell with it, its line
+    for begin, lines in iter_line_pieces(text, layout.header_lines):
         for n, line in enumerate(lines, begin):
             if not is_row(line):
                 continue
-            row = cells(n, line, layout.mark)
+            row = split_cells(n, line, layout.separator)
             for index in indices:
                 cell = row[index].strip()
                 mark = next((one for one in ",." if one in cell), None)
@@ -119,116 +126,117 @@ def require_one_decimal_mark(text: str, layout: ColumnLayout, indices: Sequence[
                     message = (
                         f"'{cell}' in column {index + 1} beside '{first[1]}' on line {first[2]}: two decimal marks"
                     )
-                    raise CsvError(n, 1, Finding("table-file", message, ONE_MARK))
+                    raise CsvError(n, 1, Finding("table-file", message, ONE_MARK_HINT))
 
 
-def numbered(text: str, before: int = 0) -> Iterator[tuple[int, list[str]]]:
-    """The lines of a text behind the first `before`, many at a time, and the number of the first of them, from 1."""
+def iter_line_pieces(text: str, header_lines: int = 0) -> Iterator[tuple[int, list[str]]]:
+    """Yield the lines after the header in pieces of many lines, each with the number, from 1, of its first line."""
     begin, line = 0, 1
     while begin < len(text):
         end = text.find("\n", begin + PIECE) + 1 or len(text)
         lines = text[begin:end].splitlines()
-        left_out = max(before + 1 - line, 0)
-        yield line + left_out, lines[left_out:]
+        skipped = max(header_lines + 1 - line, 0)
+        yield line + skipped, lines[skipped:]
         begin, line = end, line + len(lines)
 
 
-def rows_of(text: str) -> Iterator[tuple[int, str]]:
-    """The lines that count, with their numbers."""
-    for first, lines in numbered(text):
+def iter_rows(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines that hold a row, with their line numbers."""
+    for first, lines in iter_line_pieces(text):
         yield from ((n, line) for n, line in enumerate(lines, first) if is_row(line))
 
 
 def is_row(line: str) -> bool:
-    """Whether a line counts."""
-    shown = line.lstrip()
-    return shown != "" and not shown.startswith("#")
+    """Whether a line holds a row: neither empty nor a comment."""
+    stripped = line.lstrip()
+    return stripped != "" and not stripped.startswith("#")
 
 
-def layout_of(text: str) -> ColumnLayout:
-    """How a text is written, by its first row. Raises CsvError."""
-    n, line = next(rows_of(text), (0, ""))
+def detect_layout(text: str) -> ColumnLayout:
+    """Detect the layout of a text from its first row. Raises CsvError."""
+    n, line = next(iter_rows(text), (0, ""))
     if not n:
-        raise CsvError(1, 1, Finding("table-file", "the file holds no rows", ROWS))
-    mark = next((m for m in (";", "\t", ",") if m in line), None)
-    first = [cell.strip() for cell in cells(n, line, mark)]
-    if all(as_number(cell, mark) is not None for cell in first):
-        return ColumnLayout(mark, [], len(first), n - 1)
-    return ColumnLayout(mark, first, len(first), n)
+        raise CsvError(1, 1, Finding("table-file", "the file holds no rows", ROWS_HINT))
+    separator = next((m for m in (";", "\t", ",") if m in line), None)
+    first = [cell.strip() for cell in split_cells(n, line, separator)]
+    if all(parse_number(cell, separator) is not None for cell in first):
+        return ColumnLayout(separator, [], len(first), n - 1)
+    return ColumnLayout(separator, first, len(first), n)
 
 
-def begins_at_once(layout: ColumnLayout, indices: Sequence[int], text: str) -> bool:
-    """Whether what was taken for names is the first point of columns named by number: "0,1,start", "0,1,", "0,NaN".
+def is_first_row_a_point(layout: ColumnLayout, indices: Sequence[int], text: str) -> bool:
+    """Whether the row taken for headings is the first point of columns requested by number: "0,1,start", "0,1,",
+    "0,NaN".
 
-    Its x is a number then, or all that is wanted begins as one: "0 s,1 N", which is no point, and no names either.
-    Numbers do serve as names, beside a name or an empty cell where the rows have numbers, too.
+    It is if its x is a number, or if all requested cells begin like one ("0 s,1 N": not a point, but no headings
+    either). Numbers still count as headings if they stand next to a word or an empty cell whose column holds numbers.
     """
     first = layout.names
     if not first or not first[0]:
         return False
-    if not is_like_number(first[indices[0]], layout.mark):
+    if not is_like_number(first[indices[0]], layout.separator):
         return all(BEGINS_AS_NUMBER.match(first[i]) for i in indices)
-    words = {i for i, cell in enumerate(first) if cell and not is_like_number(cell, layout.mark)} - set(indices)
-    n, line = next(islice(rows_of(text), 1, 2), (0, ""))
-    second = cells(n, line, layout.mark) if n else []
-    return not any(as_number(cell, layout.mark) is not None for i, cell in enumerate(second) if i in words)
+    words = {i for i, cell in enumerate(first) if cell and not is_like_number(cell, layout.separator)} - set(indices)
+    n, line = next(islice(iter_rows(text), 1, 2), (0, ""))
+    second = split_cells(n, line, layout.separator) if n else []
+    return not any(parse_number(cell, layout.separator) is not None for i, cell in enumerate(second) if i in words)
 
 
-def read_plain(lines: list[str], mark: str | None, indices: Sequence[int], columns: Columns) -> bool:
-    """Add lines of nothing but plain numbers to the columns; False: they are something else, and nothing is added."""
+def read_plain(lines: list[str], separator: str | None, indices: Sequence[int], columns: Columns) -> bool:
+    """Append lines of plain numbers to the columns. Returns False, and appends nothing, if a line is not plain."""
     text = "\n".join(lines)
     if not text.isascii():
         return False
-    others = set(text.encode().translate(None, PLAIN).decode()) - {mark}
-    if others == {","} and mark == ";" and "." not in text:  # decimal commas
+    others = set(text.encode().translate(None, PLAIN_CHARACTERS).decode()) - {separator}
+    if others == {","} and separator == ";" and "." not in text:  # decimal commas
         lines = text.replace(",", ".").split("\n")
     elif others:
         return False
     if not text.strip():
         return True
     try:
-        values = np.loadtxt(lines, delimiter=mark, comments=None, usecols=indices, ndmin=2, encoding=None)
+        values = np.loadtxt(lines, delimiter=separator, comments=None, usecols=indices, ndmin=2, encoding=None)
     except ValueError:
         return False
     if not np.isfinite(values).all():
         return False
-    for found, numbers in zip(values.T, columns, strict=True):
-        numbers.frombytes(found.tobytes())
+    for column_values, numbers in zip(values.T, columns, strict=True):
+        numbers.frombytes(column_values.tobytes())
     return True
 
 
-def read_rows(lines: list[str], first: int, mark: str | None, indices: Sequence[int], columns: Columns) -> None:
-    """Add lines to the columns, cell by cell. Raises CsvError."""
+def read_rows(lines: list[str], first: int, separator: str | None, indices: Sequence[int], columns: Columns) -> None:
+    """Append lines to the columns, cell by cell. Raises CsvError."""
     for n, line in enumerate(lines, first):
         if not is_row(line):
             continue
-        row = cells(n, line, mark)
+        row = split_cells(n, line, separator)
         for index, numbers in zip(indices, columns, strict=True):
             if index >= len(row):
                 message = f"the row has {len(row)} cells, column {index + 1} is missing"
-                raise CsvError(n, 1, Finding("table-file", message, ROWS))
-            value = as_number(row[index], mark)
+                raise CsvError(n, 1, Finding("table-file", message, ROWS_HINT))
+            value = parse_number(row[index], separator)
             if value is None:
-                shown = quoted(row[index].strip(), among_numbers=bool(numbers))
-                message = f"{shown} in column {index + 1} is not a number"
-                raise CsvError(n, 1, Finding("table-file", message, hint_for(row[index], mark)))
+                cell_text = quote_cell(row[index].strip(), among_numbers=bool(numbers))
+                message = f"{cell_text} in column {index + 1} is not a number"
+                raise CsvError(n, 1, Finding("table-file", message, cell_hint(row[index], separator)))
             numbers.append(value)
 
 
-def cells(n: int, line: str, mark: str | None) -> list[str]:
-    """The cells of a row. Raises CsvError."""
-    if mark is None or '"' not in line:
-        return line.split(mark)
+def split_cells(n: int, line: str, separator: str | None) -> list[str]:
+    """Split a row into its cells. Raises CsvError."""
+    if separator is None or '"' not in line:
+        return line.split(separator)
     try:
-        return next(csv.reader([line], delimiter=mark, strict=True))
+        return next(csv.reader([line], delimiter=separator, strict=True))
     except csv.Error as error:
-        raise CsvError(n, 1, Finding("table-file", f"the row cannot be read: {error}", QUOTES)) from None
+        raise CsvError(n, 1, Finding("table-file", f"the row cannot be read: {error}", QUOTES_HINT)) from None
 
 
-def as_number(cell: str, mark: str | None) -> float | None:
-    """The finite number in a cell, if there is one."""
+def parse_number(cell: str, separator: str | None) -> float | None:
+    """Return the finite number in a cell, or None."""
     cell = cell.strip()
-    if mark == ";" and "." not in cell:
+    if separator == ";" and "." not in cell:
         cell = cell.replace(",", ".")
     try:
         value = float(cell)
@@ -237,74 +245,83 @@ def as_number(cell: str, mark: str | None) -> float | None:
     return value if math.isfinite(value) and "_" not in cell else None
 
 
-def is_like_number(cell: str, mark: str | None) -> bool:
-    """Whether a cell was written as a number, be it one that is not read: nan, 1e400."""
+def is_like_number(cell: str, separator: str | None) -> bool:
+    """Whether a cell is written as a number, even one that is refused: nan, 1e400."""
     try:
-        float(cell.replace(",", ".") if mark == ";" else cell)
+        float(cell.replace(",", ".") if separator == ";" else cell)
     except ValueError:
         return False
     return True
 
 
-def quoted(cell: str, among_numbers: bool) -> str:
-    """A cell as it may be told: not where the file may be no table at all, and hold what is nobody's business."""
+def quote_cell(cell: str, among_numbers: bool) -> str:
+    """Quote a cell for a message, but only if it looks like a number: the file may be private and not a table at
+    all.
+    """
     if not cell:
         return "an empty cell"
-    is_numeric = set(cell) <= NUMERIC or cell.lower().lstrip("+-") in NOT_FINITE
-    if (is_numeric or among_numbers) and len(cell) <= LONGEST_NUMBER:
+    is_numeric = set(cell) <= NUMERIC_CHARACTERS or cell.lower().lstrip("+-") in NOT_FINITE
+    if (is_numeric or among_numbers) and len(cell) <= MAX_NUMBER_LENGTH:
         return f"'{cell}'"
     return "what stands"
 
 
-def hint_for(cell: str, mark: str | None) -> str:
-    """What a cell should hold."""
-    if mark != ";" and "," in cell:
+def cell_hint(cell: str, separator: str | None) -> str:
+    """Return a hint on what a cell should hold."""
+    if separator != ";" and "," in cell:
         return "a decimal is written with a point, as 1.5; with commas where semicolons separate"
-    return NUMBERS
+    return NUMBERS_HINT
 
 
-def column(number: int, key: object, layout: ColumnLayout, text: str) -> int:
-    """Index of a column, from 0; number: which of those wanted. Raises NoColumn."""
-    place = counted(str(key)) if isinstance(key, int | str) else None
-    if isinstance(key, str) and place is None:
-        found = [i for i, name in enumerate(layout.names) if name == key.strip()]
-        found = found or [i for i, name in enumerate(layout.names) if name_in_heading(name) == key.strip()]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            places = " or ".join(str(i + 1) for i in found)
-            message = f"there are {len(found)} columns '{key}'"
-            raise NoColumn(number, Finding("table-file", message, f"name it by its number: {places}"))
-        raise NoColumn(number, Finding("table-file", f"there is no column '{key}'", known_columns(key, layout, text)))
-    if place is None or not 1 <= place <= layout.width:
+def find_column(number: int, key: object, layout: ColumnLayout, text: str) -> int:
+    """Return the index, from 0, of a requested column.
+
+    number: index of the request, for the error. Raises MissingColumnError.
+    """
+    column_number = parse_index(str(key)) if isinstance(key, int | str) else None
+    if isinstance(key, str) and column_number is None:
+        matches = [i for i, name in enumerate(layout.names) if name == key.strip()]
+        matches = matches or [i for i, name in enumerate(layout.names) if name_in_heading(name) == key.strip()]
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
+            number_list = " or ".join(str(i + 1) for i in matches)
+            message = f"there are {len(matches)} columns '{key}'"
+            raise MissingColumnError(number, Finding("table-file", message, f"name it by its number: {number_list}"))
+        raise MissingColumnError(
+            number, Finding("table-file", f"there is no column '{key}'", known_columns_hint(key, layout, text))
+        )
+    if column_number is None or not 1 <= column_number <= layout.width:
         finding = Finding("table-file", f"there is no column {key}", f"columns are counted from 1 to {layout.width}")
-        raise NoColumn(number, finding)
-    return place - 1
+        raise MissingColumnError(number, finding)
+    return column_number - 1
 
 
-def known_columns(key: str, layout: ColumnLayout, text: str) -> str:
-    """A hint for a column that is not there."""
+def known_columns_hint(key: str, layout: ColumnLayout, text: str) -> str:
+    """Return a hint for a missing column."""
     by_number = "columns may be named by 1, 2, ..., too"
     if not layout.names:
         return f"the first row holds numbers; {by_number}"
-    names = names_of_numbers(layout, text)
+    names = find_numeric_columns(layout, text)
     if not names:
         return f"its rows are no numbers under names; {by_number}"
-    near = nearest(key, names)
-    hint = f"columns are: {listed(names)}"
+    near = find_similar(key, names)
+    hint = f"columns are: {list_words(names)}"
     return f"did you mean {near}? {hint}" if near else f"{hint}; {by_number}"
 
 
-def names_of_numbers(layout: ColumnLayout, text: str) -> list[str]:
-    """The names in the first row, if the others are numbers. Of a file that is no table of numbers nothing is told: it
-    may be any file, and its first row anything."""
-    rows = [cells(n, line, layout.mark) for n, line in islice(rows_of(text), 1, LOOKED_THROUGH + 1)]
-    if not rows or not all(len(row) == layout.width and is_of_numbers(row, layout.mark) for row in rows):
+def find_numeric_columns(layout: ColumnLayout, text: str) -> list[str]:
+    """Return the headings if all examined rows below hold numbers.
+
+    Otherwise the result is empty: the file may be any file, and messages must not reveal its content.
+    """
+    rows = [split_cells(n, line, layout.separator) for n, line in islice(iter_rows(text), 1, MAX_EXAMINED_ROWS + 1)]
+    if not rows or not all(len(row) == layout.width and holds_only_numbers(row, layout.separator) for row in rows):
         return []
-    return [name for name in layout.names if name and len(name) <= LONGEST]
+    return [name for name in layout.names if name and len(name) <= MAX_WORD_LENGTH]
 
 
-def is_of_numbers(row: list[str], mark: str | None) -> bool:
-    """Whether a row holds numbers alone, in some of its cells."""
+def holds_only_numbers(row: list[str], mark: str | None) -> bool:
+    """Whether a row holds at least one cell and only numbers."""
     filled = [cell for cell in row if cell.strip()]
-    return bool(filled) and all(as_number(cell, mark) is not None for cell in filled)
+    return bool(filled) and all(parse_number(cell, mark) is not None for cell in filled)

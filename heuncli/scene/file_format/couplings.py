@@ -1,6 +1,6 @@
-"""Couplings as they are meant: what stands under `couplings` and `rolling`, SI, references followed.
+"""Validated couplings: the entries of `couplings` and `rolling` in SI with their references resolved.
 
-One class a type; joints and bodies by their names. As in scene/file_format/models.py, None is what was left out.
+One class per type; joints and bodies by name. As in scene/file_format/models.py, None marks what the spec leaves out.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from heuncli.scene.file_format.ends import End, Vec
 
 
 class Term(NamedTuple):
-    """A joint's coordinate and how many times it is taken."""
+    """A joint's coordinate and its factor in a sum."""
 
     joint: str
     quantity: Literal["angle", "travel"]
@@ -21,12 +21,12 @@ class Term(NamedTuple):
 
 
 def joints_of(terms: tuple[Term, ...]) -> tuple[str, ...]:
-    """Those whose coordinates are terms."""
+    """Return the joints of the terms."""
     return tuple(term.joint for term in terms)
 
 
 class Ratio(NamedTuple):
-    """A linear relation: the sum of the terms stays what it is at the start, or is `is_`."""
+    """A linear relation: the sum of the terms keeps its start value, or equals `is_`."""
 
     terms: tuple[Term, ...]
     is_: float | None = None
@@ -41,9 +41,13 @@ class Ratio(NamedTuple):
 class RollingWheel(NamedTuple):
     """A wheel that rolls on a plane.
 
-    wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
-    wheel, in the axes of the body that has the plane. friction: the coefficient from which on it slips, None: never.
-    slides: it does not roll along its track, and only does not slip aside. held: the plane can pull it, too.
+    wheel: its centre
+    axis: its axle, in its own axes; None: a sphere
+    on: a point of the plane
+    normal: towards the wheel, in the axes of the plane's body
+    friction: coefficient of friction, above which it slips; None: it never slips
+    slides: it may slide along its track and is only held sideways
+    held: the plane can also pull it
     """
 
     wheel: End
@@ -58,14 +62,16 @@ class RollingWheel(NamedTuple):
 
     @property
     def joints(self) -> tuple[str, ...]:
-        """None: a wheel counts by no coordinate."""
+        """Empty: a wheel couples bodies, not joint coordinates."""
         return ()
 
 
 class Gear(NamedTuple):
-    """Two gears, or a gear and a rack, by their joints: those of the terms, whose factors are 1.
+    """Two gears, or a gear and a rack, given by their joints: those of the terms, whose factors are 1.
 
-    ratio: of the first coordinate by the second; teeth: of both; None where not given. at: the pitch point.
+    ratio: first coordinate over second, or None
+    teeth: numbers of teeth, or None
+    at: the pitch point
     """
 
     terms: tuple[Term, ...]
@@ -84,9 +90,9 @@ class Gear(NamedTuple):
 
 
 class ThreadFriction(NamedTuple):
-    """What rubs in a thread: coefficient of its flanks as in a square thread, at the mean radius [m].
+    """Friction in a screw thread: coefficient of the flanks as in a square thread, at the mean radius [m].
 
-    Full where the spindle turns faster than `speed` [rad/s], times tanh(rate/speed).
+    Scaled by tanh(rate/speed): full where the spindle turns faster than `speed` [rad/s].
     """
 
     coefficient: float
@@ -95,9 +101,9 @@ class ThreadFriction(NamedTuple):
 
 
 class Screw(NamedTuple):
-    """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
+    """A thread between a turning and a sliding coordinate: both of a cylinder, or those of a pin and a slide.
 
-    lead: travel a turn [m], in the coordinates as they are written.
+    lead: travel per turn [m], in the coordinates as written
     """
 
     terms: tuple[Term, ...]
@@ -112,7 +118,11 @@ class Screw(NamedTuple):
 
 
 class Belt(NamedTuple):
-    """A belt over two pulleys of some radii [m]; pretension [N]: of each strand at rest without load; crossed."""
+    """A belt over two pulleys of the given radii [m].
+
+    crossed: the strands cross, so the pulleys turn in opposite directions
+    pretension: of each strand at rest without load [N]
+    """
 
     terms: tuple[Term, ...]
     radii: tuple[float, float]
@@ -140,11 +150,14 @@ class Differential(NamedTuple):
 
 
 class Cam(NamedTuple):
-    """A disc on the pin `shaft` that moves the follower of another joint: its coordinate is the lift over the angle.
+    """A disc on the pin `shaft` that moves the follower, another joint, whose coordinate is the lift at the disc's
+    angle.
 
-    at: the point of the follower, its axes; its roller has that centre and a radius [m], its flat face that point and a
-    normal. phase: the disc's angle at which the lift's own zero stands [rad]. restitution: of one that lifts off and
-    strikes again; None: the run ends where it would lift, or, with `both`, the follower is guided on both sides.
+    at: the point of the follower, in its axes: centre of a roller of `radius` [m], or a point of the flat face with a
+    normal
+    phase: angle of the disc at which the lift table has its zero [rad]
+    both: the follower is guided on both sides
+    restitution: of a follower that lifts off and hits the disc again; None: the run ends where it would lift
     """
 
     shaft: str
@@ -165,11 +178,12 @@ class Cam(NamedTuple):
         return self.shaft, self.follower
 
 
-class Passage(NamedTuple):
-    """Where a rope passes: a point of a body, radius 0, or a sheave about it.
+class RopePassage(NamedTuple):
+    """A place that a rope passes: a point of a body (radius 0), or a sheave around it.
 
-    axis: of the sheave, body axes, None: that of the pin there; side: past which the rope runs, None: the shortest way;
-    grips: the rope does not slip on the sheave.
+    axis: of the sheave, body axes; None: that of the pin there
+    side: on which the rope passes the sheave; None: the shortest path
+    grips: the rope does not slip on the sheave
     """
 
     end: End
@@ -180,14 +194,15 @@ class Passage(NamedTuple):
 
 
 class Rope(NamedTuple):
-    """A rope without mass through points and over sheaves; length [m], None: as assembled, or by the law in time.
+    """A massless rope through points and over sheaves.
 
-    tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
-    stiffness [N/m], damping [N s/m]: of one that stretches, at its length without load, by a law at the start; such a
-    one that pulls alone goes slack.
+    length: [m]; None: as assembled, or given by `law` in time
+    tension_only: the run ends where it would push; with restitution it goes slack instead and catches again
+    stiffness, damping: of an elastic rope [N/m], [N s/m]; its length without load is `length`, with a law that at the
+    start; with tension_only it goes slack
     """
 
-    through: tuple[Passage, ...]
+    through: tuple[RopePassage, ...]
     length: float | None = None
     tension_only: bool = False
     restitution: float | None = None
@@ -197,18 +212,18 @@ class Rope(NamedTuple):
     type: Literal["rope"] = "rope"
 
     @property
-    def stretches(self) -> bool:
-        """Whether its length is no condition."""
+    def is_elastic(self) -> bool:
+        """Whether the rope is elastic, so that its length is not a constraint."""
         return self.stiffness is not None
 
     @property
     def joints(self) -> tuple[str, ...]:
-        """None: it couples bodies."""
+        """Empty: a rope couples bodies."""
         return ()
 
     @property
-    def gripped(self) -> frozenset[str]:
-        """The bodies with sheaves on which it does not slip."""
+    def gripped_bodies(self) -> frozenset[str]:
+        """The bodies with sheaves on which the rope does not slip."""
         return frozenset(x.end.body for x in self.through if x.grips)
 
 

@@ -1,6 +1,6 @@
-"""The digest of a text, by which results name the spec that they are of.
+"""Digest of a text, by which results name the spec they belong to.
 
-Of hashlib's own part alone, as Python's `random` takes it: hashlib itself loads OpenSSL first, 3 ms.
+Imports SHA-256 from Python's own C module, as `random` does, because hashlib loads OpenSSL first, which takes 3 ms.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ try:
 except ImportError:
     try:
         from _sha256 import sha256  # type: ignore[import-not-found] # before Python 3.12
-    except ImportError:  # built without
+    except ImportError:  # Python built without it
         from hashlib import sha256
 
 
 def digest(content: bytes | bytearray) -> str:
-    """SHA-256, in hexadecimal digits."""
-    found: str = sha256(content).hexdigest()
-    return found
+    """Return the SHA-256 digest in hexadecimal digits."""
+    digits: str = sha256(content).hexdigest()
+    return digits

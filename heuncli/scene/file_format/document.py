@@ -1,4 +1,4 @@
-"""Plain data -> Document: every entry read by its model, every violation reported with its path."""
+"""Read plain data into a Document: each entry is validated by its model, each violation is reported with its path."""
 
 from __future__ import annotations
 
@@ -7,118 +7,128 @@ from typing import Any
 
 from pydantic_core import ValidationError
 
-from heuncli.base.nearest import misspelt
+from heuncli.base.nearest import match_misspelt_keys
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import Entry, fields_of, keys_of
-from heuncli.scene.file_format.fields import Context
-from heuncli.scene.file_format.judging import judged
-from heuncli.scene.file_format.quantity import kind_of
+from heuncli.scene.file_format.fields import ReadContext
+from heuncli.scene.file_format.judging import validate_entry
+from heuncli.scene.file_format.quantity import describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
-from heuncli.scene.file_format.verdicts import unknown_key, unknown_type, verdicts
-from heuncli.scene.file_format.words import FORMS
+from heuncli.scene.file_format.verdicts import translate_errors, unknown_key_error, unknown_type_error
+from heuncli.scene.file_format.words import FORM_HINTS
 
 Report = Callable[[str, Violation], None]
 
 
-class Reader:
-    """Reads the blocks of one spec; reports what is wrong in an entry and goes on with the next."""
+class DocumentReader:
+    """Reads the blocks of one spec; reports what is wrong in an entry and continues with the next."""
 
-    def __init__(self, data: dict[str, Any], context: Context, report: Report) -> None:
+    def __init__(self, data: dict[str, Any], context: ReadContext, report: Report) -> None:
         self.data, self.context, self.report = data, context, report
-        self.partial: dict[Path_, frozenset[str]] = {}  # entries read without some keys in error, with those left
+        self.partial: dict[Path_, frozenset[str]] = {}  # partly read entries -> keys read
 
-    def document(self) -> f.Document:
-        """All that can be read."""
-        blocks = {block: self.entries(block, models) for block, models in f.ENTRIES.items()}
-        single = {key: self.single(key, model) for key, model in f.SINGLE.items()}
-        return f.Document(head=self.head(), expect=self.expectations(), **blocks, **single)  # type: ignore[arg-type]
+    def read_document(self) -> f.Document:
+        """Read every block that can be read."""
+        blocks = {block: self.read_entries(block, models) for block, models in f.ENTRY_BLOCKS.items()}
+        single = {key: self.read_single(key, model) for key, model in f.SINGLE_BLOCKS.items()}
+        return f.Document(head=self.read_head(), expect=self.read_expectations(), **blocks, **single)  # type: ignore[arg-type]
 
-    def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
-        """One model; what is wrong in it is reported and the rest read; None where the rest is not enough."""
+    def read_model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
+        """Validate data against one model and report its violations.
+
+        If keys are wrong, the remaining keys are read. Returns None if they are not sufficient.
+        """
         try:
-            return judged(model, data, self.context)
+            return validate_entry(model, data, self.context)
         except ValidationError as error:
-            for code, violation in verdicts(error, data, model):
+            for code, violation in translate_errors(error, data, model):
                 self.report(code, violation._replace(path=(*path, *violation.path)))
-            return self.rest(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
+            return self.read_remainder(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
 
-    def rest(self, path: Path_, data: Any, model: type[Entry], wrong: set[str]) -> Any:
-        """The model without the keys in error, so that its other values are checked, too; None where it needs these."""
+    def read_remainder(self, path: Path_, data: Any, model: type[Entry], wrong: set[str]) -> Any:
+        """Read a model without its wrong keys, so that its other values are checked too. Returns None if it needs these
+        keys.
+        """
         if not wrong or type(data) is not dict:
             return None
         right = {key: value for key, value in data.items() if key not in wrong}
         try:
-            entry = judged(model, {**misspelt(data, keys_of(model)), **right}, self.context)
+            entry = validate_entry(model, {**match_misspelt_keys(data, keys_of(model)), **right}, self.context)
         except ValidationError:
             return None
         self.partial[path] = frozenset(right)
         return entry
 
-    def follows(self, path: Path_) -> bool:
-        """Whether a violation at this path may be a mere consequence of keys that were left out as wrong."""
+    def is_consequence(self, path: Path_) -> bool:
+        """Whether a violation at this path may only be a consequence of keys that were left out as wrong."""
         for depth in range(1, len(path) + 1):
-            kept = self.partial.get(path[:depth])
-            if kept is not None and (depth == len(path) or path[depth] not in kept):
+            read_keys = self.partial.get(path[:depth])
+            if read_keys is not None and (depth == len(path) or path[depth] not in read_keys):
                 return True
         return False
 
-    def typed(self, path: Path_, data: Any, models: Mapping[str, type[Entry]], block: str) -> Any:
-        """One model of those that the key `type` chooses from."""
+    def read_typed(self, path: Path_, data: Any, models: Mapping[str, type[Entry]], block: str) -> Any:
+        """Read the model that the key `type` selects. Returns None after reporting an unknown type."""
         tag = data.get("type") if type(data) is dict else None
         model = models.get(tag) if type(tag) is str else None
         if model is not None:
-            return self.model(path, data, model)
-        code, violation = unknown_type(data, block, list(models))
+            return self.read_model(path, data, model)
+        code, violation = unknown_type_error(data, block, list(models))
         self.report(code, violation._replace(path=(*path, *violation.path)))
         return None
 
-    def head(self) -> f.HeadEntry:
-        """The keys that are no blocks."""
-        blocks = {*f.ENTRIES, *f.SINGLE, *f.READ_BEFORE, "expect"}
-        own = {key: value for key, value in self.data.items() if key not in blocks}
-        known = [*fields_of(f.HeadEntry), *f.SINGLE, *f.READ_BEFORE, *f.ENTRIES, "expect"]
-        for key in [key for key in own if key not in fields_of(f.HeadEntry)]:
-            del own[key]
-            self.report(*unknown_key((key,), known))
-        return self.model((), own, f.HeadEntry) or f.HeadEntry.model_construct(heun=1)
+    def read_head(self) -> f.HeadEntry:
+        """Read the keys at the top level that are not blocks."""
+        blocks = {*f.ENTRY_BLOCKS, *f.SINGLE_BLOCKS, *f.BLOCKS_READ_FIRST, "expect"}
+        head_data = {key: value for key, value in self.data.items() if key not in blocks}
+        known = [*fields_of(f.HeadEntry), *f.SINGLE_BLOCKS, *f.BLOCKS_READ_FIRST, *f.ENTRY_BLOCKS, "expect"]
+        for key in [key for key in head_data if key not in fields_of(f.HeadEntry)]:
+            del head_data[key]
+            self.report(*unknown_key_error((key,), known))
+        return self.read_model((), head_data, f.HeadEntry) or f.HeadEntry.model_construct(heun=1)
 
-    def single(self, key: str, model: type[Entry]) -> Any:
-        """A block that is one entry; its defaults where it is left out or in error."""
+    def read_single(self, key: str, model: type[Entry]) -> Any:
+        """Read a block that is one entry; its defaults if it is absent or wrong."""
         data = self.data.get(key, {})
-        return (self.model((key,), data, model) if data != {} else None) or model.model_construct()
+        return (self.read_model((key,), data, model) if data != {} else None) or model.model_construct()
 
-    def entries(self, block: str, models: type[Entry] | Mapping[str, type[Entry]]) -> dict[str, Any]:
-        """A block of named entries."""
+    def read_entries(self, block: str, models: type[Entry] | Mapping[str, type[Entry]]) -> dict[str, Any]:
+        """Read a block of named entries; wrong entries are left out."""
         entries = self.data.get(block, {})
         if type(entries) is not dict:
             hint = f"each under a name of its own: {block}: {{NAME: {{...}}}}"
-            self.report("wrong-kind", Violation((block,), f"expected a mapping, found {kind_of(entries)}", hint))
+            self.report("wrong-kind", Violation((block,), f"expected a mapping, found {describe_kind(entries)}", hint))
             return {}
-        read = {name: self.entry(block, name, data, models) for name, data in entries.items()}
-        return {name: entry for name, entry in read.items() if entry is not None}
+        read_by_name = {name: self.read_entry(block, name, data, models) for name, data in entries.items()}
+        return {name: entry for name, entry in read_by_name.items() if entry is not None}
 
-    def entry(self, block: str, name: str, data: Any, models: type[Entry] | Mapping[str, type[Entry]]) -> Any:
-        """An entry of a block; None where it is in error."""
+    def read_entry(self, block: str, name: str, data: Any, models: type[Entry] | Mapping[str, type[Entry]]) -> Any:
+        """Read one entry of a block. Returns None if it is wrong."""
         path = (block, name)
-        entry = self.typed(path, data, models, block) if isinstance(models, Mapping) else self.model(path, data, models)
+        entry = (
+            self.read_typed(path, data, models, block)
+            if isinstance(models, Mapping)
+            else self.read_model(path, data, models)
+        )
         if entry is not None and getattr(entry, "shapes", None) is not None:
-            entry = self.with_shapes(path, entry)
+            entry = self.read_shapes(path, entry)
         return entry
 
-    def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
-        """A body with its shapes read; None where one is in error."""
+    def read_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
+        """Return the body with its shapes read. Returns None if a shape is wrong."""
         shapes = [
-            self.typed((*path, "shapes", i), shape, fs.SHAPES, "shapes") for i, shape in enumerate(body.shapes or [])
+            self.read_typed((*path, "shapes", i), shape, fs.SHAPES, "shapes")
+            for i, shape in enumerate(body.shapes or [])
         ]
         return None if None in shapes else body.model_copy(update={"shapes": shapes})
 
-    def expectations(self) -> dict[int, f.ExpectEntry]:
-        """The list of expectations, by their indices in it."""
+    def read_expectations(self) -> dict[int, f.ExpectEntry]:
+        """Read the list of expectations, keyed by their index in it."""
         items = self.data.get("expect", [])
         if type(items) is not list:
-            message = f"expected a list, found {kind_of(items)}"
-            self.report("wrong-kind", Violation(("expect",), message, FORMS["expect"]))
+            message = f"expected a list, found {describe_kind(items)}"
+            self.report("wrong-kind", Violation(("expect",), message, FORM_HINTS["expect"]))
             return {}
-        read = {i: self.model(("expect", i), item, f.ExpectEntry) for i, item in enumerate(items)}
-        return {i: item for i, item in read.items() if item is not None}
+        read_by_index = {i: self.read_model(("expect", i), item, f.ExpectEntry) for i, item in enumerate(items)}
+        return {i: item for i, item in read_by_index.items() if item is not None}

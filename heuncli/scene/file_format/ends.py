@@ -1,4 +1,4 @@
-"""Points of bodies, as joints, loads, couplings and sections name them."""
+"""Points of bodies, as joints, loads, couplings and sections refer to them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ Vec = tuple[float, float, float]
 
 
 class End(NamedTuple):
-    """A point of a body ("ground" or a body's name), in its axes; name is None for one given by coordinates."""
+    """A point of a body ("ground" or a body's name), in the body's axes; name is None for a point given by
+    coordinates.
+    """
 
     body: str
     point: Vec

@@ -1,4 +1,4 @@
-"""The reading of a spec that writes down what everything hangs on (variants.py), and what is kept of it.
+"""Load a spec and record what each part of it depends on (variants.py), with the parts themselves.
 
 Impure: reads the spec's tables.
 """
@@ -13,76 +13,80 @@ from typing import Any, cast
 from heuncli.base.errors import SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.scene.expressions.calculations import Calculations
-from heuncli.scene.expressions.grammar import GivenParameter
+from heuncli.scene.expressions.calculations import CalculationCache
+from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format.document import Reader
+from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.entries import Entry
-from heuncli.scene.file_format.fields import Context
-from heuncli.scene.file_format.load import Loading
-from heuncli.scene.file_format.lookups import Log, Lookup, Watched, WatchedDocument
+from heuncli.scene.file_format.fields import ReadContext
+from heuncli.scene.file_format.load import SpecLoader
+from heuncli.scene.file_format.lookups import Lookup, LookupLog, WatchedDocument, WatchedMapping
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
-from heuncli.scene.file_format.names import Names
+from heuncli.scene.file_format.names import SceneNames
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
 from heuncli.scene.file_format.quantity import Scope
-from heuncli.scene.file_format.resolve import Meaning, Resolver, resolve
+from heuncli.scene.file_format.resolve import ResolveInputs, Resolver, resolve
 from heuncli.scene.file_format.rules.every import DraftDocument, Rule, Violation
-from heuncli.scene.file_format.sharing import same
+from heuncli.scene.file_format.sharing import is_same
 from heuncli.scene.file_format.source import Path_, SourceFile
-from heuncli.scene.file_format.tables import Wrong
+from heuncli.scene.file_format.tables import TableProblem
 
-MOST_PLANS = 1024  # of what is done again, by what differs
+MAX_PLANS = 1024  # cached plans, by the set of differing lookups
 
 
-class KeptEntry(NamedTuple):
-    """An entry, what it was read from, and what was looked up for it."""
+class EntryRecord(NamedTuple):
+    """An entry, the data it was read from, and the lookups made for it."""
 
     entry: Any
     data: Any
     lookups: frozenset[Lookup]
 
 
-class KeptTable(NamedTuple):
-    """A table, the entry it was built of, what was looked up for it, and the findings that were made with it."""
+class TableRecord(NamedTuple):
+    """A table, the entry it was built from, the lookups made for it, and its findings."""
 
     table: TableFunction | None
     entry: f.TableEntry
     lookups: frozenset[Lookup]
-    findings: list[Wrong]
+    findings: list[TableProblem]
 
 
-class KeptVerdict(NamedTuple):
-    """What a rule found, and what it looked at; None: that is not known."""
+class VerdictRecord(NamedTuple):
+    """The violations that a rule found, and its lookups; None: unknown."""
 
     violations: tuple[Violation, ...]
     lookups: frozenset[Lookup] | None
 
 
-class StandingParts(NamedTuple):
-    """Parts of a scene that mean what they meant, by block and name; and the blocks of which all entries do."""
+class UnchangedParts(NamedTuple):
+    """Parts of a scene whose meaning is unchanged, by block and name; and the blocks whose entries are all
+    unchanged.
+    """
 
     parts: frozenset[tuple[str, Any]]
     blocks: frozenset[str]
 
 
 class VerdictPlan(NamedTuple):
-    """Rules with what they found, None where that may be something else; and what paths into the results lead to."""
+    """Rules with the violations they found, None where the rule must be applied again; and the unchanged targets of
+    result paths.
+    """
 
     verdicts: list[tuple[Rule, tuple[Violation, ...] | None]]
     reached: dict[str, Any]
 
 
-class KeptMeaning(NamedTuple):
-    """What a part of the document means, and what of it was looked at."""
+class MeaningRecord(NamedTuple):
+    """The meaning of a part of the document, and the lookups made for it."""
 
     value: Any
     lookups: frozenset[Lookup]
 
 
-class FirstReading(Loading):
-    """The reading that writes down what everything hangs on."""
+class RecordingLoader(SpecLoader):
+    """Loads a spec and records what each part of it depends on."""
 
     def __init__(
         self,
@@ -94,209 +98,234 @@ class FirstReading(Loading):
         files: NamedFiles | None,
     ) -> None:
         super().__init__(path, source, overrides, checking, case, files)
-        self.log = Log()
-        self.entries: dict[Path_, KeptEntry] = {}
+        self.log = LookupLog()
+        self.entry_records: dict[Path_, EntryRecord] = {}
         self.document: f.Document
-        self.with_shapes: dict[Path_, tuple[f.BodyEntry, f.BodyEntry]] = {}  # as read, and with its shapes
-        self.built: dict[str, KeptTable] = {}
-        self.contexts: dict[bool, Context] = {}  # by whether values in time may be read by it
-        self.verdicts: list[KeptVerdict] = []
-        self.calculations = Calculations()
-        self.meanings: dict[tuple[str, Any], KeptMeaning] = {}
-        self.reached: dict[str, KeptMeaning] = {}
-        self.below: dict[frozenset[Path_], list[Path_]] = {}
+        self.shaped_bodies: dict[Path_, tuple[f.BodyEntry, f.BodyEntry]] = {}  # body as read, and with its shapes
+        self.table_records: dict[str, TableRecord] = {}
+        self.contexts: dict[bool, ReadContext] = {}  # by whether the context allows functions of time
+        self.verdict_records: list[VerdictRecord] = []
+        self.calculations = CalculationCache()
+        self.meaning_records: dict[tuple[str, Any], MeaningRecord] = {}
+        self.path_target_records: dict[str, MeaningRecord] = {}
+        self.paths_below: dict[frozenset[Path_], list[Path_]] = {}
         self.plans: dict[frozenset[Lookup], VerdictPlan] = {}
-        self.meant_still: dict[frozenset[Lookup], StandingParts] = {}
-        self.readings: dict[frozenset[Lookup], list[tuple[str, Any]]] = {}
+        self.unchanged_parts: dict[frozenset[Lookup], UnchangedParts] = {}
+        self.rereads: dict[frozenset[Lookup], list[tuple[str, Any]]] = {}
 
-    def spec(self) -> Spec:
-        """The scene. Raises SpecError."""
+    def load_spec(self) -> Spec:
+        """Load the scene. Raises SpecError."""
         self.resolved = super().spec()
         return self.resolved
 
-    def meant(self, document: f.Document, meaning: Meaning) -> Spec:
-        """The scene that the document means, of which every part is kept."""
-        self.curved, self.surfaced = meaning.curves, meaning.surfaces
-        return resolve(document, meaning, FirstResolver(self, document, meaning))
+    def resolve_document(self, document: f.Document, meaning: ResolveInputs) -> Spec:
+        """Resolve the document into a scene, and record the meaning of every part."""
+        self.first_curves, self.first_meshes = meaning.curves, meaning.surfaces
+        return resolve(document, meaning, RecordingResolver(self, document, meaning))
 
-    def names(self) -> Names:
-        """What is named in the spec."""
-        self.named = super().names()
-        return self.named
+    def collect_names(self) -> SceneNames:
+        """Collect everything that the spec names."""
+        self.first_names = super().names()
+        return self.first_names
 
-    def evaluated(self) -> Parameters:
-        """The parameters, which are kept with what each of them uses."""
-        self.given_parameters = self.block("parameters")
-        self.known = evaluate_parameters(self.given_parameters)
-        return self.known
+    def evaluate_parameter_block(self) -> Parameters:
+        """Evaluate the parameters; they are recorded with the names that each of them uses."""
+        self.given_parameters = self.get_block("parameters")
+        self.evaluated_parameters = evaluate_parameters(self.given_parameters)
+        return self.evaluated_parameters
 
-    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
-        """The names that a number may use that is read once; how it is calculated is kept."""
-        return replace(super().scope(parameters, given), calculations=self.calculations)
+    def make_scope(
+        self, parameters: Mapping[str, float | None], given_parameters: Mapping[str, DimensionedParameter]
+    ) -> Scope:
+        """Make the scope of names that a constant number may use; the calculations are recorded."""
+        return replace(super().scope(parameters, given_parameters), calculations=self.calculations)
 
-    def reader(self, context: Context) -> Reader:
-        """A reader that keeps what it reads."""
+    def make_reader(self, context: ReadContext) -> DocumentReader:
+        """Make a reader that records what it reads."""
         self.contexts[context.time.in_time] = context
-        points = Watched("points", context.points, self.log)
-        return FirstReader(self, Context(self._watched(context.load), self._watched(context.time), points))
+        points = WatchedMapping("points", context.points, self.log)
+        return RecordingReader(
+            self, ReadContext(self._watch_scope(context.load), self._watch_scope(context.time), points)
+        )
 
-    def _watched(self, scope: Scope) -> Scope:
-        """A scope that logs what is looked up in it."""
+    def _watch_scope(self, scope: Scope) -> Scope:
+        """Return a copy of a scope that logs the lookups made in it."""
         names = ("parameters", "joints", "tables", "given", "points")
-        return replace(scope, **{name: Watched(name, getattr(scope, name), self.log) for name in names})
+        return replace(scope, **{name: WatchedMapping(name, getattr(scope, name), self.log) for name in names})
 
-    def table(self, name: str, entry: f.TableEntry, scope: Scope) -> tuple[TableFunction | None, list[Wrong]]:
-        """The table of an entry, or what is wrong with it."""
-        self.log.taken()
-        table, wrong = super().table(name, entry, self._watched(scope))
-        self.built[name] = KeptTable(table, entry, self.log.taken(), wrong)
-        return table, wrong
+    def build_entry_table(
+        self, name: str, entry: f.TableEntry, scope: Scope
+    ) -> tuple[TableFunction | None, list[TableProblem]]:
+        """Build and record the table of an entry, and list what is wrong with it."""
+        self.log.take()
+        table, problems = super().table(name, entry, self._watch_scope(scope))
+        self.table_records[name] = TableRecord(table, entry, self.log.take(), problems)
+        return table, problems
 
-    def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
-        """What of the document breaks a rule."""
-        self.draft, self.watched = draft, cast(f.Document, WatchedDocument("document", draft.document, self.log))
-        unread = cast("frozenset[str]", Watched("unread", dict.fromkeys(draft.unread), self.log))
+    def iter_violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+        """Yield the violations of the active rules, and record each rule's verdict with its lookups."""
+        self.draft, self.watched_document = (
+            draft,
+            cast(f.Document, WatchedDocument("document", draft.document, self.log)),
+        )
+        unread = cast("frozenset[str]", WatchedMapping("unread", dict.fromkeys(draft.unread), self.log))
         entries, points, joints = (
-            cast("dict[str, Any]", Watched(f"names.{of}", getattr(draft.names, of), self.log, inner=of == "entries"))
+            cast(
+                "dict[str, Any]",
+                WatchedMapping(f"names.{of}", getattr(draft.names, of), self.log, inner=of == "entries"),
+            )
             for of in ("entries", "points", "joints")
         )
-        for rule in self.rules:
+        for rule in self.active_rules:
             found, lookups = tuple(rule.check(draft)), None
-            # what the names gather as they are asked is gathered for each rule: each looks up all that it hangs on
-            looking = DraftDocument(self.watched, Names(entries, points, joints, {}), unread, {})
-            self.log.taken()
-            with suppress(Exception):  # a rule that asks for more than is watched is not kept
-                lookups = self.log.taken() if tuple(rule.check(looking)) == found else None
-            self.verdicts.append(KeptVerdict(found, lookups))
+            # each rule gets new names with an empty key cache, so that it logs every lookup it depends on
+            watched_draft = DraftDocument(self.watched_document, SceneNames(entries, points, joints, {}), unread, {})
+            self.log.take()
+            with suppress(Exception):  # a rule that reads more than is watched is always applied again
+                lookups = self.log.take() if tuple(rule.check(watched_draft)) == found else None
+            self.verdict_records.append(VerdictRecord(found, lookups))
             yield from ((rule, violation) for violation in found)
-        for path, reached in draft.reached.items():
-            self._keep_reached(path, reached, Names(entries, points, joints, {}))
+        for path, target in draft.path_targets.items():
+            self._record_path_target(path, target, SceneNames(entries, points, joints, {}))
 
-    def _keep_reached(self, path: str, reached: Any, names: Names) -> None:
-        """Keep what a path into the results leads to."""
-        from heuncli.scene.file_format.rules.outcome import reached_in  # few specs have such paths
+    def _record_path_target(self, path: str, target: Any, names: SceneNames) -> None:
+        """Record what a path into the results leads to."""
+        from heuncli.scene.file_format.rules.outcome import find_path_target  # few specs have such paths
 
-        self.log.taken()
+        self.log.take()
         with suppress(Exception):
-            if same(reached_in(DraftDocument(self.watched, names, frozenset(), {}), path), reached):
-                self.reached[path] = KeptMeaning(reached, self.log.taken())
+            if is_same(find_path_target(DraftDocument(self.watched_document, names, frozenset(), {}), path), target):
+                self.path_target_records[path] = MeaningRecord(target, self.log.take())
 
-    def locations(self) -> dict[str, SourceLocation]:
-        """Locations for later stages."""
-        self.placed = self.places()
-        self.located = super().locations()
-        return self.located
+    def collect_locations(self) -> dict[str, SourceLocation]:
+        """Collect the locations for later stages."""
+        self.located_paths = self.list_located_paths()
+        self.first_locations = super().locations()
+        return self.first_locations
 
-    def fallen(self, changed: frozenset[Lookup]) -> list[tuple[str, Any]]:
-        """Where lookups give something else: what is to be read again, by block and name; of a single block by it."""
-        planned = self.readings.get(changed)
-        if planned is None:
-            forget_many(self.readings)
-            paths = [path for path, kept in self.entries.items() if not kept.lookups.isdisjoint(changed)]
+    def find_changed_entries(self, changed_lookups: frozenset[Lookup]) -> list[tuple[str, Any]]:
+        """Return the entries to read again after the changed lookups: block and name; of a single block, the block and
+        None.
+        """
+        changed_entries = self.rereads.get(changed_lookups)
+        if changed_entries is None:
+            limit_cache(self.rereads)
+            paths = [
+                path for path, record in self.entry_records.items() if not record.lookups.isdisjoint(changed_lookups)
+            ]
             found = [(str(path[0]), path[1] if len(path) > 1 else None) if path else ("head", None) for path in paths]
-            planned = self.readings[changed] = [one for one in dict.fromkeys(found) if one[0] in f.Document._fields]
-        return planned
+            changed_entries = self.rereads[changed_lookups] = [
+                one for one in dict.fromkeys(found) if one[0] in f.Document._fields
+            ]
+        return changed_entries
 
-    def standing(self, differing: frozenset[Lookup]) -> StandingParts:
-        """Which parts of the scene mean what they meant where something differs."""
-        found = self.meant_still.get(differing)
-        if found is None:
-            forget_many(self.meant_still)
-            parts = {key for key, kept in self.meanings.items() if kept.lookups.isdisjoint(differing)}
+    def find_unchanged_parts(self, differing: frozenset[Lookup]) -> UnchangedParts:
+        """Return the parts of the scene whose meaning does not depend on the differing lookups."""
+        unchanged = self.unchanged_parts.get(differing)
+        if unchanged is None:
+            limit_cache(self.unchanged_parts)
+            parts = {key for key, record in self.meaning_records.items() if record.lookups.isdisjoint(differing)}
             names = {block: getattr(self.draft.document, block) for block in f.Document._fields}
             blocks = {
                 block
                 for block, entries in names.items()
                 if isinstance(entries, dict) and all((block, name) in parts for name in entries)
             }
-            found = self.meant_still[differing] = StandingParts(frozenset(parts), frozenset(blocks))
-        return found
+            unchanged = self.unchanged_parts[differing] = UnchangedParts(frozenset(parts), frozenset(blocks))
+        return unchanged
 
-    def plan(self, differing: frozenset[Lookup]) -> VerdictPlan:
-        """What stands of the rules' verdicts where something differs."""
-        planned = self.plans.get(differing)
-        if planned is None:
-            forget_many(self.plans)
-            plan = [
-                (rule, kept.violations if kept.lookups is not None and kept.lookups.isdisjoint(differing) else None)
-                for rule, kept in zip(self.rules, self.verdicts, strict=True)
+    def plan_verdicts(self, differing: frozenset[Lookup]) -> VerdictPlan:
+        """Return which of the rules' verdicts remain valid for the differing lookups."""
+        plan = self.plans.get(differing)
+        if plan is None:
+            limit_cache(self.plans)
+            verdicts = [
+                (
+                    rule,
+                    record.violations if record.lookups is not None and record.lookups.isdisjoint(differing) else None,
+                )
+                for rule, record in zip(self.active_rules, self.verdict_records, strict=True)
             ]
-            told = [(rule, found) for rule, found in plan if found is None or found]
-            reached = {path: kept.value for path, kept in self.reached.items() if kept.lookups.isdisjoint(differing)}
-            planned = self.plans[differing] = VerdictPlan(told, reached)
-        return planned
+            relevant = [(rule, found) for rule, found in verdicts if found is None or found]
+            targets = {
+                path: record.value
+                for path, record in self.path_target_records.items()
+                if record.lookups.isdisjoint(differing)
+            }
+            plan = self.plans[differing] = VerdictPlan(relevant, targets)
+        return plan
 
-    def places_in(self, paths: frozenset[Path_]) -> list[Path_]:
-        """The places that stand at or below some paths."""
-        if paths not in self.below:
-            self.below[paths] = [p for p in self.placed if any(p[: len(each)] == each for each in paths)]
-        return self.below[paths]
+    def find_paths_below(self, paths: frozenset[Path_]) -> list[Path_]:
+        """Return the located paths at or below the given paths."""
+        if paths not in self.paths_below:
+            self.paths_below[paths] = [p for p in self.located_paths if any(p[: len(path)] == path for path in paths)]
+        return self.paths_below[paths]
 
 
-class FirstReader(Reader):
-    """Keeps every entry that it reads."""
+class RecordingReader(DocumentReader):
+    """Records every entry that it reads."""
 
-    def __init__(self, first: FirstReading, context: Context) -> None:
+    def __init__(self, first: RecordingLoader, context: ReadContext) -> None:
         super().__init__(first.data, context, first.report)
         self.first = first
 
-    def document(self) -> f.Document:
-        """All that can be read."""
+    def read_document(self) -> f.Document:
+        """Read every block that can be read."""
         self.first.document = super().document()
         return self.first.document
 
-    def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
-        """One model."""
-        self.first.log.taken()
+    def read_model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
+        """Read and record one model."""
+        self.first.log.take()
         entry = super().model(path, data, model)
         if entry is not None:
-            self.first.entries[path] = KeptEntry(entry, data, self.first.log.taken())
+            self.first.entry_records[path] = EntryRecord(entry, data, self.first.log.take())
         return entry
 
-    def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
-        """A body with its shapes read."""
+    def read_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
+        """Return the body with its shapes read, and record both."""
         whole = super().with_shapes(path, body)
         if whole is not None:
-            self.first.with_shapes[path] = body, whole
+            self.first.shaped_bodies[path] = body, whole
         return whole
 
 
-class FirstResolver(Resolver):
-    """Follows references, and keeps what each part of the scene hangs on."""
+class RecordingResolver(Resolver):
+    """Resolves references, and records what each part of the scene depends on."""
 
-    def __init__(self, first: FirstReading, document: f.Document, meaning: Meaning) -> None:
+    def __init__(self, first: RecordingLoader, document: f.Document, meaning: ResolveInputs) -> None:
         super().__init__(document, meaning.locations, meaning.curves, meaning.surfaces)
         self.first = first
         locations, curves, surfaces = (
-            Watched(of, getattr(meaning, of), first.log) for of in ("locations", "curves", "surfaces")
+            WatchedMapping(of, getattr(meaning, of), first.log) for of in ("locations", "curves", "surfaces")
         )
-        self.looking = Resolver(first.watched, locations, curves, surfaces)
+        self.watching_resolver = Resolver(first.watched_document, locations, curves, surfaces)
 
-    def entries(self, block: str, by: str) -> dict[Any, Any]:
-        """What the entries of a block mean."""
-        meant = super().entries(block, by)
-        for name, value in meant.items():
-            self._keep((block, name), value, partial(self._again, block, by, name))
-        return meant
+    def resolve_entries(self, block: str, method: str) -> dict[Any, Any]:
+        """Resolve and record the entries of a block."""
+        resolved = super().entries(block, method)
+        for name, value in resolved.items():
+            self._record((block, name), value, partial(self._resolve_watched, block, method, name))
+        return resolved
 
-    def _again(self, block: str, by: str, name: Any) -> Any:
-        """What an entry means, by one that looks at it."""
-        return getattr(self.looking, by)(name, getattr(self.first.watched, block)[name])
+    def _resolve_watched(self, block: str, method: str, name: Any) -> Any:
+        """Resolve an entry once more with the resolver whose lookups are logged."""
+        return getattr(self.watching_resolver, method)(name, getattr(self.first.watched_document, block)[name])
 
-    def single(self, by: str) -> Any:
-        """What the document as a whole means."""
-        value = super().single(by)
-        self._keep((by, None), value, lambda: self.looking.single(by))
+    def resolve_single(self, method: str) -> Any:
+        """Resolve and record a part that belongs to the document as a whole."""
+        value = super().single(method)
+        self._record((method, None), value, lambda: self.watching_resolver.resolve_single(method))
         return value
 
-    def _keep(self, key: tuple[str, Any], value: Any, again: Callable[[], Any]) -> None:
-        self.first.log.taken()
+    def _record(self, key: tuple[str, Any], value: Any, resolve_again: Callable[[], Any]) -> None:
+        self.first.log.take()
         with suppress(Exception):
-            if same(again(), value):
-                self.first.meanings[key] = KeptMeaning(value, self.first.log.taken())
+            if is_same(resolve_again(), value):
+                self.first.meaning_records[key] = MeaningRecord(value, self.first.log.take())
 
 
-def forget_many(kept: dict[Any, Any]) -> None:
-    """Forget what is kept where there is too much of it: most variants differ in the same."""
-    if len(kept) == MOST_PLANS:
-        kept.clear()
+def limit_cache(cache: dict[Any, Any]) -> None:
+    """Empty a cache that is full; most variants differ in the same lookups, so few plans are needed."""
+    if len(cache) == MAX_PLANS:
+        cache.clear()

@@ -1,8 +1,7 @@
-"""The file format, version 1: the whole of it as classes of entries, keys as users write them, values read to SI.
+"""The file format, version 1: one class of entries per kind; its keys as users write them, its values read to SI.
 
-What judges a kind is made when the first entry of it is read: a scene pays for what it has. Reading here looks
-at one value at a time; what concerns several of them together stands in `rules`, the meaning in `resolve`. Nothing
-outside `spec` sees these classes.
+The validator of a kind is built when its first entry is read. Reading checks single values; checks of several values
+are in `rules`, their meaning is in `resolve`. Only the package `file_format` uses these classes.
 """
 
 from __future__ import annotations
@@ -35,7 +34,6 @@ from heuncli.scene.file_format.fields import (
     FormatVersion,
     Impulse,
     Inertia,
-    InParts,
     Length,
     LengthInTime,
     LengthLimits,
@@ -47,6 +45,7 @@ from heuncli.scene.file_format.fields import (
     OwnDamperTorque,
     OwnSpringForce,
     OwnTurnTorque,
+    PartList,
     PathPart,
     PointOrName,
     Position,
@@ -68,7 +67,7 @@ from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry
 from heuncli.scene.file_format.format_elastic import BushingEntry, MotorEntry
 from heuncli.scene.file_format.format_rolling import RollingEntry
 from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
-from heuncli.scene.file_format.words import SEVERAL
+from heuncli.scene.file_format.words import AMBIGUOUS_WORDS
 
 Frame = Literal["world", "body"]
 Report = Literal[
@@ -122,7 +121,7 @@ class BodyEntry(Entry):
     center: Position | None = None
     inertia: InertiaForms | None = None
     deviation: tuple[Inertia, Inertia, Inertia] | None = None
-    shapes: Annotated[list[ShapeEntry], InParts()] | None = None
+    shapes: Annotated[list[ShapeEntry], PartList()] | None = None
     points: Points = key(default_factory=dict)
     position: Position | None = None
     orientation: Orientation | None = None
@@ -539,16 +538,18 @@ class ExpectEntry(Entry):
 
     @property
     def is_bounded(self) -> bool:
-        """Whether it is expected to stay below or above something, and not to be something."""
+        """Whether the expectation gives bounds instead of a value."""
         return self.below is not None or self.above is not None
 
     @classmethod
     def before(cls, data: Any) -> Any:
-        """It is something, stays below or above something, or follows a curve: null is something, too."""
+        """Require one of `is` (even null), `below`, `above` and `curve`. Raises Finding [missing-key]."""
         if type(data) is dict and not {"is", "below", "above", "curve"} & data.keys() and "of" in data:
-            other = next((key for key in data if {"is", "below", "above"} & {*SEVERAL.get(str(key), ())}), None)
+            synonym = next(
+                (key for key in data if {"is", "below", "above"} & {*AMBIGUOUS_WORDS.get(str(key), ())}), None
+            )
             hint = "is: a number, a list or null; below: and above: bounds; or curve: a file"
-            raise Finding("missing-key", "'is' is missing", f"{hint} ('{other}' means nothing)" if other else hint)
+            raise Finding("missing-key", "'is' is missing", f"{hint} ('{synonym}' means nothing)" if synonym else hint)
         return data
 
 
@@ -569,17 +570,21 @@ class HeadEntry(Entry):
     report: list[Report] | None = None
 
 
-ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
+ENTRY_BLOCKS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # named entries: model, or models by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
     "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
     "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
-SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
-READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
+SINGLE_BLOCKS: dict[str, type[Entry]] = {
+    "ground": GroundEntry,
+    "analysis": AnalysisEntry,
+    "foundation": FoundationEntry,
+}
+BLOCKS_READ_FIRST = ("parameters", "tables")  # the other blocks refer to them
 
 
 class Document(NamedTuple):
-    """A spec as it was read; entries in error are left out."""
+    """A spec as read; wrong entries are left out."""
 
     head: HeadEntry
     ground: GroundEntry

@@ -1,16 +1,15 @@
-"""The format's block `couplings`, a class a type: keys as users write them, values read to SI."""
+"""The format's block `couplings`, one class per type: keys as users write them, values read to SI."""
 
 from __future__ import annotations
 
 import math
 from typing import Annotated, Any, Literal
 
-from heuncli.scene.file_format.entries import Before, Entry, key
+from heuncli.scene.file_format.entries import Entry, Preprocessor, key
 from heuncli.scene.file_format.fields import (
     AnEnd,
     Angle,
     Anything,
-    AsText,
     Damping,
     Direction,
     Force,
@@ -21,6 +20,7 @@ from heuncli.scene.file_format.fields import (
     Rate,
     Stiffness,
     Switch,
+    TextOrMapping,
 )
 
 
@@ -62,7 +62,7 @@ class ScrewEntry(Entry):
     type: Literal["screw"]
     of: list[str]
     lead: Length
-    friction: Annotated[ThreadFrictionEntry, AsText()] | None = None
+    friction: Annotated[ThreadFrictionEntry, TextOrMapping()] | None = None
 
 
 class BeltEntry(Entry):
@@ -109,8 +109,8 @@ class PassageEntry(Entry):
     slip: Literal["free", "none"] = "free"
 
 
-def passage(value: Any, info: Any) -> Any:
-    """'cage.top', or {body: cage, at: [0, 0, 2]}, as {point: ...}."""
+def wrap_point(value: Any, info: Any) -> Any:
+    """Convert 'cage.top', or {body: cage, at: [0, 0, 2]}, to {point: ...}."""
     return {"point": value} if type(value) is str or (type(value) is dict and "body" in value) else value
 
 
@@ -118,7 +118,7 @@ class RopeEntry(Entry):
     """A rope through points and over sheaves."""
 
     type: Literal["rope"]
-    through: list[Annotated[PassageEntry, Before(passage), AsText()]]
+    through: list[Annotated[PassageEntry, Preprocessor(wrap_point), TextOrMapping()]]
     length: LengthInTime | None = None
     tension_only: Switch = False
     restitution: Number | None = None

@@ -1,4 +1,4 @@
-"""The format's block `rolling`: keys as users write them, values read to SI; what a wheel's centre and axle are."""
+"""The format's block `rolling`: keys as users write them, values read to SI; centre and axle of a wheel."""
 
 from __future__ import annotations
 
@@ -27,8 +27,10 @@ class RollingEntry(Entry):
     held: Switch = False
 
 
-def pin_end(entry: RollingEntry, joints: Mapping[str, Any]) -> tuple[EndEntry, tuple[float, float, float]] | None:
-    """Where the pin `axle` meets the wheel, and its axis there; None: there is no such pin on it."""
+def find_pin_end(entry: RollingEntry, joints: Mapping[str, Any]) -> tuple[EndEntry, tuple[float, float, float]] | None:
+    """Return the point where the pin `axle` meets the wheel, and the pin's axis there. None: the wheel has no such
+    pin.
+    """
     joint = joints.get(entry.axle or "")
     if joint is None or joint.type not in AXLES:
         return None
@@ -37,13 +39,13 @@ def pin_end(entry: RollingEntry, joints: Mapping[str, Any]) -> tuple[EndEntry, t
     return (joint.from_, joint.axis) if joint.from_.body == entry.body else None
 
 
-def centre(entry: RollingEntry, joints: Mapping[str, Any]) -> EndEntry | None:
-    """The wheel's centre, as it is named or by its axle."""
-    by_axle = pin_end(entry, joints) if entry.wheel is None else None
+def find_centre(entry: RollingEntry, joints: Mapping[str, Any]) -> EndEntry | None:
+    """Return the wheel's centre, as given or from its axle."""
+    by_axle = find_pin_end(entry, joints) if entry.wheel is None else None
     return entry.wheel if by_axle is None else by_axle[0]
 
 
-def axle(entry: RollingEntry, joints: Mapping[str, Any]) -> tuple[float, float, float] | None:
-    """The direction of a disc's axle in its own axes, as it is given or by its pin."""
-    by_axle = pin_end(entry, joints) if entry.axis is None else None
+def find_axle_direction(entry: RollingEntry, joints: Mapping[str, Any]) -> tuple[float, float, float] | None:
+    """Return the direction of a disc's axle in its own axes, as given or from its pin."""
+    by_axle = find_pin_end(entry, joints) if entry.axis is None else None
     return entry.axis if by_axle is None else by_axle[1]

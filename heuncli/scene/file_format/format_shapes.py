@@ -1,4 +1,4 @@
-"""The attitude of something, and the shapes of which a body's mass may be given: a part of the file format."""
+"""Orientations, and the shapes that may give a body its mass: a part of the file format."""
 
 from __future__ import annotations
 

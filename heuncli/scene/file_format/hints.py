@@ -1,4 +1,4 @@
-"""Hints for what newcomers write: a key in another place, by another name, or with a value of another form."""
+"""Hints for common mistakes: a key in the wrong place, under another name, or with a value of the wrong form."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ import re
 from collections.abc import Collection
 from typing import Any
 
-from heuncli.base.nearest import did_you_mean, nearest
+from heuncli.base.nearest import find_similar, suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.entries import keys_of
 from heuncli.scene.file_format.words import (
-    BY_KEYS,
-    ELSEWHERE,
-    FORMS,
-    FORMS_OF_KINDS,
-    JOINTS,
+    AMBIGUOUS_WORDS,
+    COORDINATE_KEYS,
+    FORM_HINTS,
+    HINTS_BY_KEYS,
+    JOINT_LIST_HINT,
     KEY_WORDS,
-    MISSING,
-    OF_THREADS,
-    PLACES,
-    SEVERAL,
-    WORDS,
+    KIND_HINTS,
+    MISPLACED_KEYS,
+    MISSING_KEY_HINTS,
+    THREAD_FRICTION_KEYS,
+    VALUE_WORDS,
 )
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
@@ -28,53 +28,53 @@ DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
 COORDINATES = frozenset({"angle", "rate", "travel", "speed"})
 
 
-def called(key: str, known: Collection[str]) -> str | None:
-    """What a key of another program is called here, if it is one of the known ones."""
+def find_native_key(key: str, known_keys: Collection[str]) -> str | None:
+    """Return heun's name for a key of another program, if it is among the known keys."""
     word = key.lower()
-    return next((name for name in (KEY_WORDS.get(word), *SEVERAL.get(word, ())) if name in known), None)
+    return next((name for name in (KEY_WORDS.get(word), *AMBIGUOUS_WORDS.get(word, ())) if name in known_keys), None)
 
 
-def of_key(key: str, known: Collection[str]) -> str:
-    """What to write in place of an unknown key."""
+def unknown_key_hint(key: str, known_keys: Collection[str]) -> str:
+    """Return a hint on what to write instead of an unknown key."""
     if key[:1].isdigit():
         return "a decimal is written with a point, as 1.5; a comma ends the value"
     if key.count(")") > key.count("("):
         return "inside { } an expression with a comma is written in quotes"
-    word = called(key, known)
+    word = find_native_key(key, known_keys)
     if word is not None:
         return f"it is called {word} here"
-    return belonging(key, known) or elsewhere(key) or did_you_mean(key, known, "keys here")
+    return misplaced_key_hint(key, known_keys) or misplaced_word_hint(key) or suggest(key, known_keys, "keys here")
 
 
-def stands_for(key: str, known: Collection[str]) -> str | None:
-    """Which of the known keys an unknown one is told to be: by the name of another program, or misspelt."""
-    word = called(key, known)
-    if word is not None or key[:1].isdigit() or belonging(key, known) or elsewhere(key):
+def find_intended_key(key: str, known_keys: Collection[str]) -> str | None:
+    """Return the known key that the hint for an unknown key names: a synonym or a misspelling."""
+    word = find_native_key(key, known_keys)
+    if word is not None or key[:1].isdigit() or misplaced_key_hint(key, known_keys) or misplaced_word_hint(key):
         return word
-    return nearest(key, known)
+    return find_similar(key, known_keys)
 
 
-def belonging(key: str, known: Collection[str]) -> str | None:
-    """Where a key of the format belongs that stands in a wrong place."""
-    if "heun" in known:
-        for block, model in f.SINGLE.items():
-            word = key if key in keys_of(model) else called(key, keys_of(model))
+def misplaced_key_hint(key: str, known_keys: Collection[str]) -> str | None:
+    """Return a hint on where a key of the format belongs, if it is in the wrong place."""
+    if "heun" in known_keys:
+        for block, model in f.SINGLE_BLOCKS.items():
+            word = key if key in keys_of(model) else find_native_key(key, keys_of(model))
             if word is not None and (block == "analysis" or word == key):
                 return f"it belongs under {block}: {block}: {{{word}: ...}}"
         if key in keys_of(f.BodyEntry):
             return f"it belongs to a body: bodies: {{NAME: {{{key}: ...}}}}"
-    if key in COORDINATES and "initial" in known:
+    if key in COORDINATES and "initial" in known_keys:
         return f"the start of a coordinate is initial: {{{key}: ...}}"
-    if "lead" in known and key in OF_THREADS:
+    if "lead" in known_keys and key in THREAD_FRICTION_KEYS:
         return (
             "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
         )
-    for keys, words in BY_KEYS:
-        if key.lower() in words and set(keys) <= set(known):
+    for keys, words in HINTS_BY_KEYS:
+        if key.lower() in words and set(keys) <= set(known_keys):
             return words[key.lower()]
-    if key == "initial" and "length" in known:
+    if key == "initial" and "length" in known_keys:
         return "a rod starts as it is assembled, or with its length: ..."
-    if key == "initial" and {"from", "to"} <= set(known):
+    if key == "initial" and {"from", "to"} <= set(known_keys):
         return (
             "only a pin, slide or cylinder has coordinates; else the start is the body's: "
             "bodies: {NAME: {orientation: ..., angular_velocity: [0, 0, 1]}}"
@@ -82,39 +82,44 @@ def belonging(key: str, known: Collection[str]) -> str | None:
     return None
 
 
-def elsewhere(word: str) -> str | None:
-    """Where what a word means is written, if not where it was."""
+def misplaced_word_hint(word: str) -> str | None:
+    """Return a hint on where or how the format expresses a word, if not where it was written."""
     word = word.lower()
-    return ELSEWHERE.get(word) or (ELSEWHERE["stops"] if KEY_WORDS.get(word) == "stops" else None)
+    return MISPLACED_KEYS.get(word) or (MISPLACED_KEYS["stops"] if KEY_WORDS.get(word) == "stops" else None)
 
 
-def of_missing(key: str, present: Collection[str]) -> str:
-    """What a missing key is, or which one stands for it."""
-    other = next((name for name in present if called(name, [key])), None)
-    if other is not None:
-        return f"'{other}' is called {key} here"
-    return JOINTS if key == "of" and "type" in present else MISSING.get(key, f"add {key}: ...")
+def missing_key_hint(key: str, present: Collection[str]) -> str:
+    """Return a hint on a missing key: what it is, or which present key stands for it."""
+    synonym = next((name for name in present if find_native_key(name, [key])), None)
+    if synonym is not None:
+        return f"'{synonym}' is called {key} here"
+    return JOINT_LIST_HINT if key == "of" and "type" in present else MISSING_KEY_HINTS.get(key, f"add {key}: ...")
 
 
-def of_form(key: str, found: Any, wanted: str) -> str:
-    """What a value should look like; wanted: "a list", "a mapping", ... as it is told."""
-    if wanted == "a list" and (key == "of" or key in FORMS):
-        return JOINTS if key == "of" else FORMS[key]
-    if wanted == "a list" and isinstance(found, str) and re.fullmatch(r"[+-]?[xyzXYZ]", found.strip()):
-        axis = AXES[found.strip()[-1].lower()]
-        return f"the {found.strip()[-1].lower()} axis is {axis.replace('1', '-1') if found.strip()[0] == '-' else axis}"
+def form_hint(key: str, value: Any, expected_kind: str) -> str:
+    """Return a hint on what a value should look like.
+
+    expected_kind: "a list", "a mapping", ... as in the message
+    """
+    if expected_kind == "a list" and (key == "of" or key in FORM_HINTS):
+        return JOINT_LIST_HINT if key == "of" else FORM_HINTS[key]
+    if expected_kind == "a list" and isinstance(value, str) and re.fullmatch(r"[+-]?[xyzXYZ]", value.strip()):
+        axis = AXES[value.strip()[-1].lower()]
+        return f"the {value.strip()[-1].lower()} axis is {axis.replace('1', '-1') if value.strip()[0] == '-' else axis}"
     if key in DIRECTIONS:
         return "a direction, as [0, 0, 1]"
-    if wanted == "a list" and isinstance(found, dict):
+    if expected_kind == "a list" and isinstance(value, dict):
         return "a list has a dash before each of its entries, or [ ] around them"
-    if wanted == "a list" and key in PLACES:
+    if expected_kind == "a list" and key in COORDINATE_KEYS:
         return "three coordinates [x, y, z], as [0.5, 0, 0]"
-    if wanted == "a list":
-        return "three components, as [0, 0, 1]" if not isinstance(found, str) else f"a list is [{found}, ...]"
-    return FORMS.get(key) or FORMS_OF_KINDS.get(wanted) or f"write {wanted} behind {key or 'it'}:"
+    if expected_kind == "a list":
+        return "three components, as [0, 0, 1]" if not isinstance(value, str) else f"a list is [{value}, ...]"
+    return FORM_HINTS.get(key) or KIND_HINTS.get(expected_kind) or f"write {expected_kind} behind {key or 'it'}:"
 
 
-def of_word(word: str, known: Collection[str]) -> str:
-    """Which of the allowed words was meant."""
-    near = next((name for name in WORDS.get(word.lower(), ()) if name in known), None) or nearest(word, known)
-    return f"did you mean {near}?" if near is not None else f"write one of them, as {next(iter(known))}"
+def word_hint(word: str, allowed: Collection[str]) -> str:
+    """Return a hint on which of the allowed words was meant."""
+    suggestion = next((name for name in VALUE_WORDS.get(word.lower(), ()) if name in allowed), None) or find_similar(
+        word, allowed
+    )
+    return f"did you mean {suggestion}?" if suggestion is not None else f"write one of them, as {next(iter(allowed))}"

@@ -1,4 +1,4 @@
-"""Plain data -> entries, judged by pydantic_core: a schema for each kind, made when the first entry of it is read."""
+"""Validate plain data into entries with pydantic_core; the schema of a kind is built when its first entry is read."""
 
 from __future__ import annotations
 
@@ -7,46 +7,49 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic_core import SchemaValidator, core_schema
 
-from heuncli.scene.file_format.entries import Entry, Field, fields_of, once
+from heuncli.scene.file_format.entries import Entry, Field, cached_by_model, fields_of
 
 E = TypeVar("E", bound=Entry)
 Schemas = dict[Any, core_schema.CoreSchema]
 
 
-def judged(model: type[E], data: Any, context: Any) -> E:
-    """An entry of data as a spec has it; context: what its values may refer to. Raises pydantic's ValidationError."""
-    entry: E = validator_of(model).validate_python(data, context=context)
+def validate_entry(model: type[E], data: Any, context: Any) -> E:
+    """Validate data as an entry. Raises pydantic's ValidationError.
+
+    context: what its values may refer to
+    """
+    entry: E = make_validator(model).validate_python(data, context=context)
     return entry
 
 
-@once
-def validator_of(model: type[Entry]) -> SchemaValidator:
-    """What judges the entries of a kind."""
-    return SchemaValidator(schema_of_entry(model))
+@cached_by_model
+def make_validator(model: type[Entry]) -> SchemaValidator:
+    """Make the validator of a kind of entries."""
+    return SchemaValidator(build_entry_schema(model))
 
 
-class SchemaOf:
-    """The schema of an annotation, made once: to markers what pydantic's handler is to them."""
+class SchemaBuilder:
+    """Builds the schema of an annotation, once; plays the part of pydantic's handler for the markers."""
 
     def __init__(self) -> None:
-        self.known: Schemas = {  # of all other types the markers tell how they are read
+        self.schemas: Schemas = {  # markers define the schemas of all other types
             Any: core_schema.any_schema(), str: core_schema.str_schema(), int: core_schema.int_schema()
         }  # fmt: skip
 
     def __call__(self, annotation: Any) -> core_schema.CoreSchema:
-        if annotation not in self.known:
-            self.known[annotation] = self.made(annotation)
-        return self.known[annotation]
+        if annotation not in self.schemas:
+            self.schemas[annotation] = self.build_schema(annotation)
+        return self.schemas[annotation]
 
     generate_schema = __call__
 
-    def made(self, annotation: Any) -> core_schema.CoreSchema:
-        """The schema of what no schema is known of. Raises TypeError for a type that values in a spec do not have."""
+    def build_schema(self, annotation: Any) -> core_schema.CoreSchema:
+        """Build the schema of a new annotation. Raises TypeError for a type that values of a spec do not have."""
         origin, parts = get_origin(annotation), get_args(annotation)
         if origin is Annotated:
-            return marked(parts[0], parts[1:])
+            return build_marked_schema(parts[0], parts[1:])
         if origin in (Union, types.UnionType):
-            return self.union(parts)
+            return self.build_union_schema(parts)
         if origin is Literal:
             return core_schema.literal_schema([*parts])
         if origin is tuple:
@@ -56,22 +59,22 @@ class SchemaOf:
         if origin is dict:
             return core_schema.dict_schema(*map(self, parts))
         if isinstance(annotation, type) and issubclass(annotation, Entry):
-            return schema_of_entry(annotation)
+            return build_entry_schema(annotation)
         raise TypeError(f"{annotation}: a type that the format has no reading for")
 
-    def union(self, parts: tuple[Any, ...]) -> core_schema.CoreSchema:
-        """One of several types, or null."""
-        given = [self(part) for part in parts if part is not types.NoneType]
-        either = given[0] if len(given) == 1 else core_schema.union_schema([*given])
-        return core_schema.nullable_schema(either) if len(given) < len(parts) else either
+    def build_union_schema(self, parts: tuple[Any, ...]) -> core_schema.CoreSchema:
+        """Build the schema of one of several types, or null."""
+        schemas = [self(part) for part in parts if part is not types.NoneType]
+        combined = schemas[0] if len(schemas) == 1 else core_schema.union_schema([*schemas])
+        return core_schema.nullable_schema(combined) if len(schemas) < len(parts) else combined
 
 
-schema_of = SchemaOf()
+schema_of = SchemaBuilder()
 
 
-def marked(annotation: Any, marks: tuple[Any, ...]) -> core_schema.CoreSchema:
-    """The schema of a type as the one of its markers that reads has it."""
-    readers = [mark for mark in marks if hasattr(mark, "__get_pydantic_core_schema__")]
+def build_marked_schema(annotation: Any, markers: tuple[Any, ...]) -> core_schema.CoreSchema:
+    """Build the schema of a type by its one marker that defines a schema, if any."""
+    readers = [mark for mark in markers if hasattr(mark, "__get_pydantic_core_schema__")]
     if not readers:
         return schema_of(annotation)
     (reader,) = readers
@@ -79,9 +82,9 @@ def marked(annotation: Any, marks: tuple[Any, ...]) -> core_schema.CoreSchema:
     return schema
 
 
-def schema_of_entry(model: type[Entry]) -> core_schema.CoreSchema:
-    """The schema of an entry: its keys and no others."""
-    keys = {name: schema_of_field(field) for name, field in fields_of(model).items()}
+def build_entry_schema(model: type[Entry]) -> core_schema.CoreSchema:
+    """Build the schema of an entry: its keys and no others."""
+    keys = {name: build_field_schema(field) for name, field in fields_of(model).items()}
     inner: core_schema.CoreSchema = core_schema.model_fields_schema(keys, model_name=model.__name__)
     if model.before.__func__ is not Entry.before.__func__:  # type: ignore[attr-defined]
         inner = core_schema.no_info_before_validator_function(model.before, inner)
@@ -89,8 +92,8 @@ def schema_of_entry(model: type[Entry]) -> core_schema.CoreSchema:
     return core_schema.model_schema(model, inner, config=config)
 
 
-def schema_of_field(field: Field) -> core_schema.ModelField:
-    """The schema of a key with its default."""
+def build_field_schema(field: Field) -> core_schema.ModelField:
+    """Build the schema of a key with its default."""
     schema = schema_of(field.annotation)
     if field.default_factory is not None:
         schema = core_schema.with_default_schema(schema, default_factory=field.default_factory)

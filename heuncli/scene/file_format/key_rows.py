@@ -1,4 +1,4 @@
-"""What the manual's page on the format says of each key: unit, default, meaning, by its chapter. Impure: reads it."""
+"""Read the manual's page on the format: unit, default and meaning of each key, by chapter. Impure: reads the page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 
 
 class KeyRow(NamedTuple):
-    """A row of a chapter: the keys, the types that have them (none: all), unit, default and meaning."""
+    """A row of a chapter's table: the keys, the types that have them (empty: all), unit, default and meaning."""
 
     keys: tuple[str, ...]
     of: tuple[str, ...]
@@ -24,22 +24,22 @@ class KeyRow(NamedTuple):
 
     @property
     def description(self) -> str:
-        """All of it in a line."""
-        parts = [plain(self.meaning)]
-        parts += [f"[{plain(self.unit)}]"] if self.unit else []
-        parts += [f"default: {plain(self.default)}"] if self.default not in ("", "required", "none") else []
+        """Meaning, unit and default in one line."""
+        parts = [strip_markup(self.meaning)]
+        parts += [f"[{strip_markup(self.unit)}]"] if self.unit else []
+        parts += [f"default: {strip_markup(self.default)}"] if self.default not in ("", "required", "none") else []
         return "; ".join(part for part in parts if part)
 
 
-def rows_by_chapter() -> dict[str, list[KeyRow]]:
-    """The rows of the tables of keys, by the headings above them."""
+def read_rows_by_chapter() -> dict[str, list[KeyRow]]:
+    """Read the rows of the key tables, by the heading above each table."""
     text = PAGE.read_text(encoding="utf-8")
     _, *parts = HEADING.split(text)
-    return {heading: [*_rows(body)] for heading, body in zip(parts[::2], parts[1::2], strict=True)}
+    return {heading: [*_iter_rows(body)] for heading, body in zip(parts[::2], parts[1::2], strict=True)}
 
 
-def _rows(body: str) -> Iterator[KeyRow]:
-    """The rows of the first table of keys."""
+def _iter_rows(body: str) -> Iterator[KeyRow]:
+    """Yield the rows of the first key table."""
     heads: list[str] = []
     for line in body.splitlines():
         cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
@@ -49,15 +49,17 @@ def _rows(body: str) -> Iterator[KeyRow]:
             return
         elif heads and not set(line) <= set("|-"):
             row = dict(zip(heads, cells, strict=True))
-            of = () if row.get("of", "all") == "all" else words(row["of"])
-            yield KeyRow(words(row["key"]), of, row.get("unit", ""), row.get("default", ""), row.get("meaning", ""))
+            types = () if row.get("of", "all") == "all" else find_code_words(row["of"])
+            yield KeyRow(
+                find_code_words(row["key"]), types, row.get("unit", ""), row.get("default", ""), row.get("meaning", "")
+            )
 
 
-def words(cell: str) -> tuple[str, ...]:
-    """What stands as code in a cell."""
+def find_code_words(cell: str) -> tuple[str, ...]:
+    """Return the words in a cell that are marked as code."""
     return tuple(re.findall(r"`([^`]*)`", cell))
 
 
-def plain(cell: str) -> str:
-    """A cell without marks of the manual."""
+def strip_markup(cell: str) -> str:
+    """Return a cell without markup."""
     return LINK.sub(r"\1", cell).replace("`", "")

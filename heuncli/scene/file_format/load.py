@@ -1,4 +1,6 @@
-"""A file -> Spec, or every error in it at once. Impure: reads the spec's file and those of its tables."""
+"""Load a file into a Spec, or report every error in it at once. Impure: reads the spec's file and those of its
+tables.
+"""
 
 from __future__ import annotations
 
@@ -6,143 +8,160 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from heuncli.base.errors import Problem, SourceLocation, SpecError
-from heuncli.base.nearest import begin_file, did_you_mean
+from heuncli.base.nearest import reset_effort, suggest
 from heuncli.base.records import replace
-from heuncli.scene.expressions.grammar import GivenParameter
+from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format.cases import CASES, faults, settings_of
-from heuncli.scene.file_format.document import Reader
-from heuncli.scene.file_format.fields import Context
+from heuncli.scene.file_format.cases import CASES, iter_case_problems, list_case_settings
+from heuncli.scene.file_format.document import DocumentReader
+from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.format_shapes import MeshShape
 from heuncli.scene.file_format.models import Curve, Spec
-from heuncli.scene.file_format.names import NAMED, Names, mapping
-from heuncli.scene.file_format.overrides import Setting, of_words, override, taken_in_si
+from heuncli.scene.file_format.names import NAMED_BLOCKS, SceneNames, as_mapping
+from heuncli.scene.file_format.overrides import Setting, apply_settings, iter_si_warnings, parse_settings
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
-from heuncli.scene.file_format.planar import in_the_plane
-from heuncli.scene.file_format.quantity import Scope, kind_of
-from heuncli.scene.file_format.resolve import Meaning, resolve
-from heuncli.scene.file_format.rules.every import RULES, DraftDocument, Rule, Violation, violations
-from heuncli.scene.file_format.semantics import instants_of
-from heuncli.scene.file_format.source import Path_, SourceFile, dotted, read
+from heuncli.scene.file_format.planar import complete_planar_scene
+from heuncli.scene.file_format.quantity import Scope, describe_kind
+from heuncli.scene.file_format.resolve import ResolveInputs, resolve
+from heuncli.scene.file_format.rules.every import RULES, DraftDocument, Rule, Violation, iter_violations
+from heuncli.scene.file_format.semantics import list_instants
+from heuncli.scene.file_format.source import Path_, SourceFile, format_path, read_source
 from heuncli.scene.file_format.verdicts import is_primary
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from heuncli.scene.file_format.named_files import NamedFiles
-    from heuncli.scene.file_format.tables import Wrong
+    from heuncli.scene.file_format.tables import TableProblem
     from heuncli.scene.meshes.model import TriangleMesh
 
-HOW_IMPORTED = "heun import makes a spec of a robot in URDF, or a model of MuJoCo's"
-PLACED = ("analysis", "couplings", "drives", "expect", "forces")  # blocks of which later stages can locate every value
+IMPORT_HINT = "heun import makes a spec of a robot in URDF, or a model of MuJoCo's"
+LOCATED_BLOCKS = (
+    "analysis",
+    "couplings",
+    "drives",
+    "expect",
+    "forces",
+)  # blocks in which later stages can locate every value
 
 
-Given = Mapping[str, str] | Sequence[Setting]
+Overrides = Mapping[str, str] | Sequence[Setting]
 
 
 def load(
     path: str | Path,
     text: str | SourceFile | None = None,
-    overrides: Given | None = None,
+    overrides: Overrides | None = None,
     checking: bool = True,
     case: str | None = None,
 ) -> Spec:
-    """The scene in a file ("-" is standard input), or in what stands for it: a text, or what was read already.
+    """Load the scene of a file ("-" is standard input), of a text, or of a source that was read already.
 
-    overrides are parameters or dotted keys with their new values, as text or as they are; case: a load case, whose
-    values they go on top of. Files of tables are looked for beside the spec, for standard input in the working
-    directory. Without `checking` expectations need not fit the instants asked for, which may have been overridden.
-    Raises SpecError with all problems, in the order of the lines.
+    overrides: parameters or dotted keys with new values, as text or as values; they are applied after those of the load
+    case
+    checking: whether expectations must fit the output instants, which may have been overridden
+    case: the load case to apply
+
+    Table files are looked up next to the spec; for standard input in the working directory. Raises SpecError with all
+    problems, sorted by line.
     """
     path = str(path)
-    begin_file()
-    return Loading(path, _source(path, text), overrides or {}, checking, case).spec()
+    reset_effort()
+    return SpecLoader(path, _get_source(path, text), overrides or {}, checking, case).load_spec()
 
 
-def _source(path: str, text: str | SourceFile | None) -> SourceFile:
-    return text if isinstance(text, SourceFile) else read(path, text)
+def _get_source(path: str, text: str | SourceFile | None) -> SourceFile:
+    return text if isinstance(text, SourceFile) else read_source(path, text)
 
 
 def load_with_cases(
     path: str,
-    overrides: Given | None = None,
+    overrides: Overrides | None = None,
     checking: bool = True,
     text: str | SourceFile | None = None,
     files: NamedFiles | None = None,
 ) -> tuple[Spec, dict[str, Spec]]:
-    """The scene, and each of its load cases by its name, of one reading of the file, or of a text that stands for it.
+    """Load the scene and each of its load cases, by name, from one reading of a file or of a text in its place.
 
-    files: those that the spec names; None: they stand beside it.
+    files: the files that the spec names; None: they are next to the spec
 
-    Raises SpecError with all problems of the scene, else with those of all cases, which are named in them.
+    Raises SpecError with all problems of the scene, or else with those of all cases, each naming its case.
     """
-    begin_file()
-    source = _source(path, text)
-    spec = Loading(path, source, overrides or {}, checking, None, files).spec()
+    reset_effort()
+    source = _get_source(path, text)
+    spec = SpecLoader(path, source, overrides or {}, checking, None, files).load_spec()
     cases: dict[str, Spec] = {}
     problems: list[Problem] = []
     for name in spec.cases:
         try:
-            cases[name] = Loading(path, source, overrides or {}, checking, name, files).spec()
+            cases[name] = SpecLoader(path, source, overrides or {}, checking, name, files).load_spec()
         except SpecError as error:
-            problems += [each._replace(message=f"in case {name}: {each.message}") for each in error.problems]
+            problems += [problem._replace(message=f"in case {name}: {problem.message}") for problem in error.problems]
     if problems:
         raise SpecError(*problems)
     return spec, cases
 
 
-class Loading:
-    """One spec on its way; gathers problems as it goes."""
+class SpecLoader:
+    """Loads one spec and collects its problems on the way."""
 
     def __init__(
         self,
         path: str,
         source: SourceFile,
-        overrides: Given,
+        overrides: Overrides,
         checking: bool,
         case: str | None,
         files: NamedFiles | None = None,
     ) -> None:
-        """files: those that the spec names; None: they stand beside it."""
+        """files: the files that the spec names; None: they are next to the spec"""
         self.path, self.source, self.checking, self.case, self.files = path, source, checking, case, files
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
         self.unread: set[str] = set()
         if type(source.data) is not dict:
-            kind = kind_of(source.data) if type(source.data) is not str else "a text"  # of whatever file: not told
+            kind = (
+                describe_kind(source.data) if type(source.data) is not str else "a text"
+            )  # do not quote an unknown file
             message = f"a spec is a mapping, this is {kind}"
             is_xml = type(source.data) is str and source.data.startswith("<")
-            hint = HOW_IMPORTED if is_xml else "it starts with 'heun: 1'"
+            hint = IMPORT_HINT if is_xml else "it starts with 'heun: 1'"
             raise SpecError(*self.problems, Problem("not-a-scene", message, source.location(()), hint))
-        without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
-        settings, problems = of_words(overrides) if isinstance(overrides, Mapping) else ([*overrides], [])
-        settings = [*(settings_of(case, source) if case is not None else ()), *settings]
-        given, self.set, unset = override(without_empty, settings)
-        self.warnings += taken_in_si(without_empty, given, self.set) if self.set else ()
+        without_empty = {k: {} if v is None and k in (*NAMED_BLOCKS, "ground") else v for k, v in source.data.items()}
+        settings, problems = parse_settings(overrides) if isinstance(overrides, Mapping) else ([*overrides], [])
+        settings = [*(list_case_settings(case, source) if case is not None else ()), *settings]
+        overridden, self.override_locations, unset = apply_settings(without_empty, settings)
+        self.warnings += (
+            iter_si_warnings(without_empty, overridden, self.override_locations) if self.override_locations else ()
+        )
         problems += unset
-        problems += faults(without_empty, source) if CASES in source.data else ()
-        self.data = self.completed(given)
+        problems += iter_case_problems(without_empty, source) if CASES in source.data else ()
+        self.data = self.complete_data(overridden)
         self.problems += problems
 
     @property
-    def rules(self) -> list[Rule]:
-        """The rules that are asked."""
+    def active_rules(self) -> list[Rule]:
+        """The rules that are applied."""
         return [rule for rule in RULES if self.checking or not rule.for_check]
 
-    def completed(self, given: dict[str, Any]) -> dict[str, Any]:
-        """The data as they are read: those of a planar scene as of one in space."""
-        return in_the_plane(given) if given.get("space") == "planar" else given
+    def complete_data(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Return the data to read; a planar scene is completed to one in space."""
+        return complete_planar_scene(data) if data.get("space") == "planar" else data
 
-    def location(self, path: Path_, key: bool = False) -> SourceLocation:
-        """Where the value of a path stands: in the file, or on the command line."""
+    def find_location(self, path: Path_, key: bool = False) -> SourceLocation:
+        """Return the location of the value at a path: in the file or on the command line."""
         for depth in range(len(path), 0, -1):
-            given = self.set.get(path[:depth])
-            if given is not None:
-                return SourceLocation(given.file, given.line, given.column, dotted(path))
-        made = [location for given, location in self.set.items() if given[: len(path)] == path]
-        if made and path not in self.source.values:  # a key that exists only because a key below it was set
-            return SourceLocation(made[0].file, made[0].line, made[0].column, dotted(path))
+            set_location = self.override_locations.get(path[:depth])
+            if set_location is not None:
+                return SourceLocation(set_location.file, set_location.line, set_location.column, format_path(path))
+        locations_below = [
+            location for set_location, location in self.override_locations.items() if set_location[: len(path)] == path
+        ]
+        if locations_below and path not in self.source.values:  # a key that exists only because a key below it was set
+            return SourceLocation(
+                locations_below[0].file, locations_below[0].line, locations_below[0].column, format_path(path)
+            )
         return self.source.location(path, key)
 
     def report(self, code: str, violation: Violation) -> None:
@@ -150,153 +169,169 @@ class Loading:
         self.unread.update(map(str, violation.path[:1]))
         if is_primary(code):
             self.problems.append(
-                Problem(code, violation.message, self.location(violation.path, violation.key), violation.hint)
+                Problem(code, violation.message, self.find_location(violation.path, violation.key), violation.hint)
             )
 
-    def spec(self) -> Spec:
-        """The scene. Raises SpecError."""
-        parameters, given = self.parameters()
-        names = self.names()
-        scope = self.scope(parameters, given)
-        tables = self.tables(scope)
-        in_time = replace(scope, joints=names.joints, tables=tables, in_time=True, points=names.points)
-        context = Context(scope, in_time, names.points)
-        reader = self.reader(context)
-        document = reader.document()
-        expected = dict(self.expected(document))
-        draft = DraftDocument(document._replace(expect=expected), names, frozenset(self.unread), {})
-        self.judge(draft, reader.follows)
-        curves, surfaces = self.curves(draft), self.surfaces(document)
+    def load_spec(self) -> Spec:
+        """Load the scene. Raises SpecError."""
+        parameters, given_parameters = self.load_parameters()
+        names = self.collect_names()
+        scope = self.make_scope(parameters, given_parameters)
+        tables = self.load_tables(scope)
+        time_scope = replace(scope, joints=names.joints, tables=tables, in_time=True, points=names.points)
+        context = ReadContext(scope, time_scope, names.points)
+        reader = self.make_reader(context)
+        document = reader.read_document()
+        expectations = dict(self.iter_expectations(document))
+        draft = DraftDocument(document._replace(expect=expectations), names, frozenset(self.unread), {})
+        self.apply_rules(draft, reader.is_consequence)
+        curves, surfaces = self.load_curves(draft), self.load_meshes(document)
         if self.problems:
-            raise SpecError(*in_order(self.problems))
+            raise SpecError(*sort_problems(self.problems))
         values = {name: value for name, value in parameters.items() if value is not None}
-        built = {name: table for name, table in tables.items() if table is not None}
-        warnings = tuple(in_order(self.warnings))
+        built_tables = {name: table for name, table in tables.items() if table is not None}
+        warnings = tuple(sort_problems(self.warnings))
         source = self.source
-        places = self.locations()
-        meaning = Meaning(source.file, source.sha256, values, built, warnings, places, curves, surfaces, self.case)
-        return self.meant(draft.document, meaning)
+        locations = self.collect_locations()
+        meaning = ResolveInputs(
+            source.file, source.sha256, values, built_tables, warnings, locations, curves, surfaces, self.case
+        )
+        return self.resolve_document(draft.document, meaning)
 
-    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
-        """The names that a number may use that is read once."""
-        return Scope(parameters, given=given)
+    def make_scope(
+        self, parameters: Mapping[str, float | None], given_parameters: Mapping[str, DimensionedParameter]
+    ) -> Scope:
+        """Make the scope of names that a constant number may use."""
+        return Scope(parameters, given=given_parameters)
 
-    def meant(self, document: f.Document, meaning: Meaning) -> Spec:
-        """The scene that the document means."""
+    def resolve_document(self, document: f.Document, meaning: ResolveInputs) -> Spec:
+        """Resolve the document into a scene."""
         return resolve(document, meaning)
 
-    def reader(self, context: Context) -> Reader:
-        """What reads the entries, whose values may refer to the context."""
-        return Reader(self.data, context, self.report)
+    def make_reader(self, context: ReadContext) -> DocumentReader:
+        """Make the reader of entries whose values may refer to the context."""
+        return DocumentReader(self.data, context, self.report)
 
-    def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
-        """What of the document breaks a rule."""
-        return violations(self.rules, draft)
+    def iter_violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+        """Yield the violations of the active rules."""
+        return iter_violations(self.active_rules, draft)
 
-    def names(self) -> Names:
-        """What is named in the spec."""
-        return Names.of(self.data)
+    def collect_names(self) -> SceneNames:
+        """Collect everything that the spec names."""
+        return SceneNames.from_data(self.data)
 
-    def evaluated(self) -> Parameters:
-        """The parameters of the spec."""
-        return evaluate_parameters(self.block("parameters"))
+    def evaluate_parameter_block(self) -> Parameters:
+        """Evaluate the parameters of the spec."""
+        return evaluate_parameters(self.get_block("parameters"))
 
-    def table(self, name: str, entry: f.TableEntry, scope: Scope) -> tuple[TableFunction | None, list[Wrong]]:
-        """The table of an entry, or what is wrong with it."""
+    def build_entry_table(
+        self, name: str, entry: f.TableEntry, scope: Scope
+    ) -> tuple[TableFunction | None, list[TableProblem]]:
+        """Build the table of an entry, and list what is wrong with it."""
         from heuncli.scene.file_format.tables import build_table  # with csv 2 ms that few scenes need
 
-        return build_table(name, entry, scope, self.named_files())
+        return build_table(name, entry, scope, self.get_named_files())
 
-    def parameters(self) -> tuple[dict[str, float | None], dict[str, GivenParameter]]:
-        """Values of the parameters, None for those in error; and those that have a dimension."""
-        parameters = self.evaluated()
+    def load_parameters(self) -> tuple[dict[str, float | None], dict[str, DimensionedParameter]]:
+        """Return the values of the parameters (None for wrong ones), and those that have a dimension."""
+        parameters = self.evaluate_parameter_block()
         for name, finding in parameters.findings:
             self.report(finding.code, Violation(("parameters", name), finding.message, finding.hint))
-        return parameters.values, parameters.given
+        return parameters.values, parameters.given_quantities
 
-    def tables(self, scope: Scope) -> dict[str, TableFunction | None]:
-        """The tables; None for those in error."""
-        entries = self.block("tables")
+    def load_tables(self, scope: Scope) -> dict[str, TableFunction | None]:
+        """Load the tables; None for wrong ones."""
+        entries = self.get_block("tables")
         if not entries:
             return {}
-        reader = self.reader(Context(scope, scope))
+        reader = self.make_reader(ReadContext(scope, scope))
         tables: dict[str, TableFunction | None] = {}
         for name, data in entries.items():
             path = ("tables", name)
-            entry = reader.model(path, data, f.TableEntry)
-            tables[name], wrong = self.table(name, entry, scope) if entry is not None else (None, [])
-            if entry is not None and entry.file is not None and (told := self.named_files().outside(entry.file)):
-                self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
-            self.report_read(path, wrong)
+            entry = reader.read_model(path, data, f.TableEntry)
+            tables[name], problems = self.build_entry_table(name, entry, scope) if entry is not None else (None, [])
+            if (
+                entry is not None
+                and entry.file is not None
+                and (warning := self.get_named_files().find_outside_warning(entry.file))
+            ):
+                self.warnings.append(
+                    Problem(warning.code, warning.message, self.find_location((*path, "file")), warning.hint)
+                )
+            self.report_file_problems(path, problems)
         return tables
 
-    def curves(self, draft: DraftDocument) -> dict[int, Curve]:
-        """The curves of expectations, by their places in the list; those in error are left out."""
-        asked = {i: item for i, item in draft.document.expect.items() if item.curve is not None}
-        if not asked:
+    def load_curves(self, draft: DraftDocument) -> dict[int, Curve]:
+        """Load the curves of expectations, by their index in the list; wrong ones are left out."""
+        curve_items = {i: item for i, item in draft.document.expect.items() if item.curve is not None}
+        if not curve_items:
             return {}
         from heuncli.base.units import TIME
         from heuncli.scene.file_format.measured import build_curve  # as for tables
-        from heuncli.scene.file_format.rules.curves import abscissa
-        from heuncli.scene.file_format.rules.expect import outcomes
+        from heuncli.scene.file_format.rules.curves import find_x_quantity
+        from heuncli.scene.file_format.rules.expect import iter_expected_quantities
 
-        instants = instants_of(draft.document) if self.checking else ()
+        instants = list_instants(draft.document) if self.checking else ()
         run = (min(instants), max(instants)) if len(instants) > 1 else None
         curves: dict[int, Curve] = {}
-        kinds = {path[1]: quantity for path, _, quantity in outcomes(draft)}
-        for i, item in asked.items():
+        kinds = {path[1]: quantity for path, _, quantity in iter_expected_quantities(draft)}
+        for i, item in curve_items.items():
             path = ("expect", i)
-            across, quantity = abscissa(item, draft), kinds.get(i)
-            known = (
-                (TIME,) if across is None else across.dimensions,
+            x_quantity, quantity = find_x_quantity(item, draft), kinds.get(i)
+            dimensions = (
+                (TIME,) if x_quantity is None else x_quantity.dimensions,
                 () if quantity is None else quantity.dimensions,
             )
-            x_of = None if across is None else str(item.x)
-            curve, wrong = build_curve(item, x_of, run, known, self.named_files())
+            x_of = None if x_quantity is None else str(item.x)
+            curve, problems = build_curve(item, x_of, run, dimensions, self.get_named_files())
             if curve is not None:
                 curves[i] = curve
-            if told := self.named_files().outside(str(item.curve)):
-                self.warnings.append(Problem(told.code, told.message, self.location((*path, "curve")), told.hint))
-            self.report_read(path, wrong)
+            if warning := self.get_named_files().find_outside_warning(str(item.curve)):
+                self.warnings.append(
+                    Problem(warning.code, warning.message, self.find_location((*path, "curve")), warning.hint)
+                )
+            self.report_file_problems(path, problems)
         return curves
 
-    def surfaces(self, document: f.Document) -> dict[str, TriangleMesh]:
-        """The meshes of shapes, by the names of their files; those in error are left out."""
+    def load_meshes(self, document: f.Document) -> dict[str, TriangleMesh]:
+        """Load the meshes of shapes, by file name; wrong ones are left out."""
         shapes = [
             (("bodies", name, "shapes", i), shape)
             for name, body in document.bodies.items()
             for i, shape in enumerate(body.shapes or ())
             if isinstance(shape, MeshShape)
         ]
-        found: dict[str, tuple[TriangleMesh | None, list[Wrong]]] = {}
+        meshes: dict[str, tuple[TriangleMesh | None, list[TableProblem]]] = {}
         for path, shape in shapes:
-            from heuncli.scene.file_format.surfaces import judged, noted  # few scenes have them
+            from heuncli.scene.file_format.surfaces import check_mesh_mass, iter_mesh_warnings  # few scenes have them
 
-            if shape.file not in found:
-                found[shape.file] = self.surface(shape.file)
-            surface, wrong = found[shape.file]
-            self.report_read(path, wrong if surface is None else [*judged(shape, surface)])
-            for told in noted(shape, surface, self.named_files()):
-                self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
-        return {file: surface for file, (surface, _) in found.items() if surface is not None}
+            if shape.file not in meshes:
+                meshes[shape.file] = self.load_mesh(shape.file)
+            mesh, problems = meshes[shape.file]
+            self.report_file_problems(path, problems if mesh is None else [*check_mesh_mass(shape, mesh)])
+            for warning in iter_mesh_warnings(shape, mesh, self.get_named_files()):
+                self.warnings.append(
+                    Problem(warning.code, warning.message, self.find_location((*path, "file")), warning.hint)
+                )
+        return {file: mesh for file, (mesh, _) in meshes.items() if mesh is not None}
 
-    def surface(self, file: str) -> tuple[TriangleMesh | None, list[Wrong]]:
-        """The mesh in a file, or what is wrong with it."""
-        from heuncli.scene.file_format.surfaces import surface_of  # few scenes have them
+    def load_mesh(self, file: str) -> tuple[TriangleMesh | None, list[TableProblem]]:
+        """Load the mesh of a file, and list what is wrong with it."""
+        from heuncli.scene.file_format.surfaces import read_mesh  # few scenes have them
 
-        return surface_of(file, self.named_files())
+        return read_mesh(file, self.get_named_files())
 
-    def named_files(self) -> NamedFiles:
-        """The files that the spec names."""
+    def get_named_files(self) -> NamedFiles:
+        """Return the files that the spec names."""
         if self.files is None:
             from heuncli.scene.file_format.named_files import NamedFiles  # with pathlib 3 ms that few scenes need
 
             self.files = NamedFiles(self.path)
         return self.files
 
-    def report_read(self, path: Path_, wrong: Sequence[Wrong]) -> None:
-        """Add what is wrong with an entry that names a file: at its keys, or in the file."""
-        for item in wrong:
+    def report_file_problems(self, path: Path_, problems: Sequence[TableProblem]) -> None:
+        """Report what is wrong with an entry that names a file: at its keys, or at a location in the file."""
+        for item in problems:
             finding = item.finding
             if item.location is not None:
                 problem = Problem(finding.code, finding.message, item.location, finding.hint)
@@ -304,52 +339,55 @@ class Loading:
             else:
                 self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))
 
-    def expected(self, document: f.Document) -> Iterator[tuple[int, f.ExpectEntry]]:
-        """What is expected in the case at hand, by its place in the list; cases that are none are reported."""
-        known = mapping(self.data.get(CASES))
+    def iter_expectations(self, document: f.Document) -> Iterator[tuple[int, f.ExpectEntry]]:
+        """Yield the expectations that apply to the current load case, by their index in the list; report unknown
+        cases.
+        """
+        cases = as_mapping(self.data.get(CASES))
         for i, item in document.expect.items():
-            if item.case is not None and item.case not in known:
-                hint = did_you_mean(item.case, known, "cases") if known else "cases: {NAME: {set: {...}}}"
+            if item.case is not None and item.case not in cases:
+                hint = suggest(item.case, cases, "cases") if cases else "cases: {NAME: {set: {...}}}"
                 violation = Violation(("expect", i, "case"), f"there is no load case '{item.case}'", hint)
                 self.report("unknown-case", violation)
             elif item.case is None or item.case == self.case:
                 yield i, item
 
-    def block(self, name: str) -> dict[str, Any]:
-        """A block of named values; empty where it is none."""
+    def get_block(self, name: str) -> dict[str, Any]:
+        """Return a block of named values; empty, and reported, if it is not a mapping."""
         value = self.data.get(name, {})
         if type(value) is not dict:
             self.report(
-                "wrong-kind", Violation((name,), f"expected a mapping, found {kind_of(value)}", "its keys are names")
+                "wrong-kind",
+                Violation((name,), f"expected a mapping, found {describe_kind(value)}", "its keys are names"),
             )
-        return mapping(value)
+        return as_mapping(value)
 
-    def judge(self, draft: DraftDocument, follows: Callable[[Path_], bool]) -> None:
-        """Apply the rules; what may be the consequence of another error is not reported."""
-        for rule, violation in self.violations(draft):
-            if rule.follows and follows(violation.path):
+    def apply_rules(self, draft: DraftDocument, is_consequence: Callable[[Path_], bool]) -> None:
+        """Apply the rules and report their violations, except those that may be consequences of another error."""
+        for rule, violation in self.iter_violations(draft):
+            if rule.may_be_consequence and is_consequence(violation.path):
                 continue
             problem = Problem(
-                rule.code, violation.message, self.location(violation.path, violation.key), violation.hint
+                rule.code, violation.message, self.find_location(violation.path, violation.key), violation.hint
             )
             (self.warnings if rule.is_warning else self.problems).append(problem)
 
-    def locations(self) -> dict[str, SourceLocation]:
-        """Locations for later stages: of every entry, and of every value that may fail during the run."""
-        return self.locations_of((*self.places(), *self.set))
+    def collect_locations(self) -> dict[str, SourceLocation]:
+        """Collect the locations for later stages: of every entry, and of every value that may fail during the run."""
+        return self.locate_paths((*self.list_located_paths(), *self.override_locations))
 
-    def places(self) -> list[Path_]:
-        """The paths of the file of which later stages may ask for the location."""
+    def list_located_paths(self) -> list[Path_]:
+        """List the paths of the file whose location later stages may need."""
         values = self.source.values
-        return [path for path in values if 0 < len(path) <= 2 or (path and path[0] in PLACED)]
+        return [path for path in values if 0 < len(path) <= 2 or (path and path[0] in LOCATED_BLOCKS)]
 
-    def locations_of(self, paths: Iterable[Path_]) -> dict[str, SourceLocation]:
-        """The locations of some paths, by the words that users write for them."""
-        return {dotted(path): self.location(path, key=len(path) <= 2) for path in paths}
+    def locate_paths(self, paths: Iterable[Path_]) -> dict[str, SourceLocation]:
+        """Return the locations of paths, by the dotted form that users write."""
+        return {format_path(path): self.find_location(path, key=len(path) <= 2) for path in paths}
 
 
-def in_order(problems: list[Problem]) -> list[Problem]:
-    """By file, line and column; each once."""
+def sort_problems(problems: list[Problem]) -> list[Problem]:
+    """Sort problems by file, line and column, and remove duplicates."""
     locations = [p.location or SourceLocation("", 0, 0) for p in problems]
     order = sorted(range(len(problems)), key=lambda i: (locations[i].file, locations[i].line, locations[i].column))
     return list(dict.fromkeys(problems[i] for i in order))

@@ -1,7 +1,7 @@
-"""Which values were looked up while something was made: what it hangs on, computed and not guessed.
+"""Record which values were looked up while something was computed: its dependencies, observed rather than guessed.
 
-A mapping that is handed on is wrapped, and writes down what is asked of it: the values under single keys, or, where it
-is asked which keys there are, KEYS. So is a document: of its entries the fields are written down that are looked at.
+A mapping is wrapped and logs every lookup: values under single keys, or KEYS where code asks which keys there are. A
+document is wrapped too: the fields of its entries that are read are logged.
 """
 
 from __future__ import annotations
@@ -10,88 +10,88 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.entries import Entry, fields_of, once
-from heuncli.scene.file_format.sharing import same
+from heuncli.scene.file_format.entries import Entry, cached_by_model, fields_of
+from heuncli.scene.file_format.sharing import is_same
 
-KEYS = "*"  # no name of a user's
-KIND = "()"  # nor this: of which kind an entry is
-GIVEN = "="  # nor this: which of its fields were given
+KEYS = "*"  # not a possible name: the keys of a mapping
+KIND = "()"  # the class of an entry
+GIVEN_FIELDS = "="  # the fields that the spec gave
 
 
 class Lookup(NamedTuple):
-    """A key whose value was asked for, and of which mapping; KEYS: which keys there are, in which order."""
+    """A key that was looked up, and the name of the mapping; KEYS: which keys there are, in which order."""
 
     of: str
     key: str
 
 
-class Log:
-    """What has been looked up since it was emptied."""
+class LookupLog:
+    """The lookups made since the log was emptied."""
 
     def __init__(self) -> None:
         self.lookups: set[Lookup] = set()
 
-    def taken(self) -> frozenset[Lookup]:
-        """All lookups so far; the next ones are counted from here."""
-        found = frozenset(self.lookups)
+    def take(self) -> frozenset[Lookup]:
+        """Return all lookups so far and empty the log."""
+        lookups = frozenset(self.lookups)
         self.lookups.clear()
-        return found
+        return lookups
 
 
-class Watched(Mapping[Any, Any]):
-    """A mapping that writes into a log what is looked up in it; inner: its values are mappings that do so themselves.
+class WatchedMapping(Mapping[Any, Any]):
+    """A mapping that logs the lookups made in it; with `inner`, its values are mappings that log their own.
 
-    What goes through it meets its keys and, where it wants them, one value after another.
+    Iterating logs the keys and then each value that is read.
     """
 
-    def __init__(self, of: str, values: Mapping[Any, Any], log: Log, inner: bool = False) -> None:
-        self.of, self.log = of, log
-        self.inside = {k: Watched(f"{of}.{k}", v, log) for k, v in values.items()} if inner else values
+    def __init__(self, name: str, values: Mapping[Any, Any], log: LookupLog, inner: bool = False) -> None:
+        self.name, self.log = name, log
+        self.values_by_key = {k: WatchedMapping(f"{name}.{k}", v, log) for k, v in values.items()} if inner else values
         self.inner = inner
 
     def __getitem__(self, key: str) -> Any:
         if not self.inner:
-            self.log.lookups.add(Lookup(self.of, key))
-        return self.inside[key]
+            self.log.lookups.add(Lookup(self.name, key))
+        return self.values_by_key[key]
 
     def __contains__(self, key: object) -> bool:
-        self.log.lookups.add(Lookup(self.of, KEYS))
-        return key in self.inside
+        self.log.lookups.add(Lookup(self.name, KEYS))
+        return key in self.values_by_key
 
     def __iter__(self) -> Iterator[str]:
-        self.log.lookups.add(Lookup(self.of, KEYS))
-        return iter(self.inside)
+        self.log.lookups.add(Lookup(self.name, KEYS))
+        return iter(self.values_by_key)
 
     def __len__(self) -> int:
-        self.log.lookups.add(Lookup(self.of, KEYS))
-        return len(self.inside)
+        self.log.lookups.add(Lookup(self.name, KEYS))
+        return len(self.values_by_key)
 
 
 class WatchedDocument:
-    """Stands for a document, and writes into a log which fields of which entries are looked at."""
+    """Stands for a document and logs which fields of which entries are read."""
 
-    def __init__(self, of: str, document: Any, log: Log) -> None:
-        self._of, self._document, self._log = of, document, log
+    def __init__(self, name: str, document: Any, log: LookupLog) -> None:
+        self._of, self._document, self._log = name, document, log
         self._watched: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
         if name not in self._watched:
-            value, of = getattr(self._document, name), f"{self._of}.{name}"
+            value, path = getattr(self._document, name), f"{self._of}.{name}"
             self._watched[name] = (
-                WatchedBlock(of, value, self._log) if isinstance(value, dict) else watched_entry(of, value, self._log)
+                WatchedBlock(path, value, self._log) if isinstance(value, dict) else watch_entry(path, value, self._log)
             )
         return self._watched[name]
 
 
 class WatchedBlock(Mapping[Any, Any]):
-    """A block of entries that write into a log which of their fields are looked at."""
+    """A block of entries that log which of their fields are read."""
 
-    def __init__(self, of: str, entries: Mapping[Any, Entry], log: Log) -> None:
-        self._of, self._log = of, log
-        self._entries = {name: watched_entry(f"{of}.{name}", entry, log) for name, entry in entries.items()}
+    def __init__(self, path: str, entries: Mapping[Any, Entry], log: LookupLog) -> None:
+        self._of, self._log = path, log
+        self._entries = {name: watch_entry(f"{path}.{name}", entry, log) for name, entry in entries.items()}
 
     def __getitem__(self, name: Any) -> Any:
-        self._log.lookups.add(Lookup(self._of, str(name)))  # whether it is there
+        self._log.lookups.add(Lookup(self._of, str(name)))  # logs whether the entry exists
         found = self._entries[name]
         self._log.lookups.add(Lookup(f"{self._of}.{name}", KIND))
         return found
@@ -105,15 +105,15 @@ class WatchedBlock(Mapping[Any, Any]):
         return len(self._entries)
 
 
-def watched_entry(of: str, entry: Any, log: Log) -> Any:
-    """What stands for an entry, is of its kind, and writes into a log which of its fields are looked at."""
-    made: Any = object.__new__(_watched_kind(type(entry)))
-    made.__dict__.update(_of=of, _entry=entry, _log=log)
-    return made
+def watch_entry(path: str, entry: Any, log: LookupLog) -> Any:
+    """Make a stand-in for an entry, of the same class, that logs which of its fields are read."""
+    watched: Any = object.__new__(_make_watched_class(type(entry)))
+    watched.__dict__.update(_of=path, _entry=entry, _log=log)
+    return watched
 
 
-@once
-def _watched_kind(kind: type[Entry]) -> type[Entry]:
+@cached_by_model
+def _make_watched_class(kind: type[Entry]) -> type[Entry]:
     names = frozenset(fields_of(kind))
 
     def read(self: Any, name: str) -> Any:
@@ -122,64 +122,64 @@ def _watched_kind(kind: type[Entry]) -> type[Entry]:
             own["_log"].lookups.add(Lookup(own["_of"], name))
             return getattr(own["_entry"], name)
         if name in ("__dict__", "__pydantic_fields_set__") and "_entry" in own:
-            own["_log"].lookups.add(Lookup(own["_of"], KEYS if name == "__dict__" else GIVEN))
+            own["_log"].lookups.add(Lookup(own["_of"], KEYS if name == "__dict__" else GIVEN_FIELDS))
             return getattr(own["_entry"], name)
         return object.__getattribute__(self, name)
 
     return type(kind.__name__, (kind,), {"__getattribute__": read})
 
 
-def changed(of: str, new: Mapping[Any, Any], old: Mapping[Any, Any]) -> Iterator[Lookup]:
-    """The lookups of a mapping that do not give now what they gave; a value is the same if it is the same object."""
+def iter_changed(name: str, new: Mapping[Any, Any], old: Mapping[Any, Any]) -> Iterator[Lookup]:
+    """Yield the lookups of a mapping that now give another value; values are compared by identity."""
     if new is old:
         return
     for key in new.keys() | old.keys():
         if key not in new or key not in old or new[key] is not old[key]:
-            yield Lookup(of, key)
+            yield Lookup(name, key)
     if [*new] != [*old]:
-        yield Lookup(of, KEYS)
+        yield Lookup(name, KEYS)
 
 
-def changed_in_document(of: str, new: Any, old: Any) -> Iterator[Lookup]:
-    """The lookups of a document that do not give now what they gave."""
+def iter_changed_in_document(document_name: str, new: Any, old: Any) -> Iterator[Lookup]:
+    """Yield the lookups of a document that now give another value."""
     for name in old._fields:
-        now, before = getattr(new, name), getattr(old, name)
-        if now is before:
+        new_block, old_block = getattr(new, name), getattr(old, name)
+        if new_block is old_block:
             continue
-        path = f"{of}.{name}"
-        if not isinstance(before, dict):
-            yield from changed_in_entry(path, now, before)
+        path = f"{document_name}.{name}"
+        if not isinstance(old_block, dict):
+            yield from iter_changed_in_entry(path, new_block, old_block)
             continue
-        for key in now.keys() | before.keys():
-            if key not in now or key not in before:
+        for key in new_block.keys() | old_block.keys():
+            if key not in new_block or key not in old_block:
                 yield Lookup(path, str(key))
-            elif now[key] is not before[key]:
-                yield from changed_in_entry(f"{path}.{key}", now[key], before[key])
-        if [*now] != [*before]:
+            elif new_block[key] is not old_block[key]:
+                yield from iter_changed_in_entry(f"{path}.{key}", new_block[key], old_block[key])
+        if [*new_block] != [*old_block]:
             yield Lookup(path, KEYS)
 
 
-def changed_in_entry(of: str, new: Entry, old: Entry) -> Iterator[Lookup]:
-    """The lookups of an entry that do not give now what they gave."""
+def iter_changed_in_entry(entry_path: str, new: Entry, old: Entry) -> Iterator[Lookup]:
+    """Yield the lookups of an entry that now give another value."""
     kinds = type(new), type(old)
     if kinds[0] is not kinds[1]:
-        yield Lookup(of, KIND)
+        yield Lookup(entry_path, KIND)
     names = fields_of(kinds[0]).keys() | fields_of(kinds[1]).keys()
-    differing = [name for name in names if not alike(getattr(new, name, None), getattr(old, name, None))]
+    differing = [name for name in names if not is_equal(getattr(new, name, None), getattr(old, name, None))]
     if differing:
-        yield Lookup(of, KEYS)
-    yield from (Lookup(of, name) for name in differing)
+        yield Lookup(entry_path, KEYS)
+    yield from (Lookup(entry_path, name) for name in differing)
     if new.model_fields_set != old.model_fields_set:
-        yield Lookup(of, GIVEN)
+        yield Lookup(entry_path, GIVEN_FIELDS)
 
 
-def alike(new: Any, old: Any) -> bool:
-    """Whether two values of fields are the same; entries by their own, also in lists."""
+def is_equal(new: Any, old: Any) -> bool:
+    """Whether two field values are equal; entries are compared field by field, also within lists."""
     if new is old:
         return True
     if type(new) is type(old) is list:
-        return len(new) == len(old) and all(map(alike, new, old))
+        return len(new) == len(old) and all(map(is_equal, new, old))
     if not isinstance(old, Entry) or type(new) is not type(old):
-        return same(new, old)
-    own = all(alike(getattr(new, name), value) for name, value in vars(old).items())
-    return own and new.model_fields_set == old.model_fields_set
+        return is_same(new, old)
+    fields_equal = all(is_equal(getattr(new, name), value) for name, value in vars(old).items())
+    return fields_equal and new.model_fields_set == old.model_fields_set

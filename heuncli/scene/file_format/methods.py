@@ -1,18 +1,18 @@
-"""Whether a method of integration and a step go together, and with the run: one check for specs and for options."""
+"""Check whether an integration method and a step fit each other and the run; used for specs and for command options."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
-from heuncli.base.method_rows import AUTO, METHODS, NAMES, row_of
+from heuncli.base.method_rows import AUTO, METHODS, NAMES, find_method
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.scene.file_format.words import METHOD_WORDS
 
 
-class Unfit(NamedTuple):
-    """What is wrong: the code, the key concerned (method or step), the message and a hint."""
+class MethodProblem(NamedTuple):
+    """What is wrong with method, step or tolerance: the code, the key concerned, the message and a hint."""
 
     code: str
     key: str
@@ -20,28 +20,30 @@ class Unfit(NamedTuple):
     hint: str
 
 
-def unfit(method: str, step: float | None, last: float | None) -> Iterator[Unfit]:
-    """What speaks against a method with a step, in a run to `last`; none of them: it is not given, or nothing moves."""
-    row = row_of(method)
-    if row is None and method.lower() != AUTO:
-        yield Unfit("unknown-method", "method", f"'{method}' is no method of integration", meant(method))
+def iter_method_problems(method: str, step: float | None, end_time: float | None) -> Iterator[MethodProblem]:
+    """Yield what is wrong with a method and a step in a run until `end_time`; None: not given, or no motion."""
+    method_row = find_method(method)
+    if method_row is None and method.lower() != AUTO:
+        yield MethodProblem("unknown-method", "method", f"'{method}' is no method of integration", method_hint(method))
         return
     if step is not None and step <= 0.0:
-        return  # told as what must be positive
-    fixed = row is not None and row.steps == "fixed"
-    if fixed and step is None:
+        return  # reported by the rule on positive numbers
+    has_fixed_step = method_row is not None and method_row.steps == "fixed"
+    if has_fixed_step and step is None:
         hint = f"analysis: {{method: {method}, step: 0.001}}, or --step 0.001; method: {AUTO} finds its own steps"
-        yield Unfit("fixed-step", "method", f"{method} goes in steps of a given length, and none is given", hint)
-    if not fixed and step is not None:
-        listed = ", ".join(row.name for row in METHODS if row.steps == "fixed")
+        yield MethodProblem(
+            "fixed-step", "method", f"{method} goes in steps of a given length, and none is given", hint
+        )
+    if not has_fixed_step and step is not None:
+        listed = ", ".join(method_row.name for method_row in METHODS if method_row.steps == "fixed")
         hint = f"a step goes with {listed}; here tolerance: 1e-9 tells how exactly"
-        yield Unfit("fixed-step", "step", f"{method} finds its own steps and takes none", hint)
+        yield MethodProblem("fixed-step", "step", f"{method} finds its own steps and takes none", hint)
     elif step is not None:
-        yield from unfit_step(step, last)
+        yield from iter_step_problems(step, end_time)
 
 
-def unfit_tolerance(tolerance: float) -> Unfit | None:
-    """What speaks against a tolerance; None: nothing. One range for specs and for options."""
+def find_tolerance_problem(tolerance: float) -> MethodProblem | None:
+    """Return what is wrong with a tolerance, or None. The range is the same for specs and for options."""
     low, high = tolerances.LEAST_ASKED, tolerances.MOST_ASKED
     if low <= tolerance <= high:
         return None
@@ -50,33 +52,37 @@ def unfit_tolerance(tolerance: float) -> Unfit | None:
         hint += "; for a quick look 1e-3 is coarse enough"
     elif tolerance > 0.0:
         hint += "; beyond that rounding is all that is left"
-    return Unfit("tolerance", "tolerance", f"tolerance {tolerance:g} is not between {low:g} and {high:g}", hint)
+    return MethodProblem("tolerance", "tolerance", f"tolerance {tolerance:g} is not between {low:g} and {high:g}", hint)
 
 
-def unfit_step(step: float, last: float | None) -> Iterator[Unfit]:
-    """What speaks against the length of a step."""
-    most, times = tolerances.MOST_STEPS, tolerances.CHECK_STEPS
-    if last is not None and step > last:
-        yield Unfit("step", "step", f"the step of {step:g} s is longer than the run of {last:g} s", "a shorter one")
-    elif last is not None and times * last > most * step:
-        message = (
-            f"steps of {step:g} s are too many: {last / step:.3g} to {last:g} s, {times} times as many in the check "
-            f"run, and {most:,} is the most"
+def iter_step_problems(step: float, end_time: float | None) -> Iterator[MethodProblem]:
+    """Yield what is wrong with the size of a step."""
+    max_steps, check_factor = tolerances.MOST_STEPS, tolerances.CHECK_STEPS
+    if end_time is not None and step > end_time:
+        yield MethodProblem(
+            "step", "step", f"the step of {step:g} s is longer than the run of {end_time:g} s", "a shorter one"
         )
-        least = times * last / most
-        yield Unfit("step", "step", message, f"steps of {least:.2g} s and more, or a method of higher order")
+    elif end_time is not None and check_factor * end_time > max_steps * step:
+        message = (
+            f"steps of {step:g} s are too many: {end_time / step:.3g} to {end_time:g} s, {check_factor} times as many in the check "
+            f"run, and {max_steps:,} is the most"
+        )
+        smallest_step = check_factor * end_time / max_steps
+        yield MethodProblem(
+            "step", "step", message, f"steps of {smallest_step:.2g} s and more, or a method of higher order"
+        )
 
 
-def meant(method: str) -> str:
-    """Which method may be meant by a word that is none."""
-    word = METHOD_WORDS.get(bare(method))
-    if word is not None and (word == AUTO or row_of(word) is not None):
+def method_hint(method: str) -> str:
+    """Return a hint on which method an unknown word may mean."""
+    word = METHOD_WORDS.get(normalize_name(method))
+    if word is not None and (word == AUTO or find_method(word) is not None):
         return f"here that is method: {word}"
-    same = next((name for name in NAMES if bare(name) == bare(method)), method)
-    hint = did_you_mean(same, NAMES, "methods") or ""
+    same_name = next((name for name in NAMES if normalize_name(name) == normalize_name(method)), method)
+    hint = suggest(same_name, NAMES, "methods") or ""
     return f"{hint}{'' if hint.endswith('?') else ';'} `heun methods` lists them"
 
 
-def bare(name: str) -> str:
-    """A name in lower case, without hyphens and blanks."""
+def normalize_name(name: str) -> str:
+    """Return a name in lower case, without hyphens, underscores and blanks."""
     return "".join(x for x in name.lower() if x not in "-_ ")

@@ -1,9 +1,9 @@
-"""A scene as it was meant: frozen, all numbers SI, all references known to lead somewhere.
+"""A validated scene: frozen records, all numbers in SI, all references resolved.
 
-What spec.load returns and the rest of the program reads. Vectors are tuples of three floats, matrices three rows of
-them; "in time" values are expressions. None is what was left out. A joint's, force's or section's axes and points are
-in the body axes that manual/format.md names. Keeps clear of pydantic and YAML, so that the numeric part may know these
-types; named tuples, because they are made faster at the start than dataclasses.
+`load` returns these records and the rest of the program reads them. Vectors are tuples of three floats, matrices three
+rows of them; values in time are expressions. None marks what the spec leaves out. Axes and points of a joint, load or
+section are in the body axes that manual/format.md names. Free of pydantic and YAML, so that the numeric modules may
+import these types; named tuples, because they are created faster at start-up than dataclasses.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ Matrix = tuple[Vec, Vec, Vec]
 Vector = tuple[Expression, Expression, Expression]
 Frame = Literal["world", "body"]
 Coordinate = Literal["angle", "travel", "length"]
-Ref = TypeVar("Ref")  # what a body or joint is called by: its name, or its number
+Ref = TypeVar("Ref")  # reference to a body or joint: its name or its index
 V = TypeVar("V")  # a vector
 M = TypeVar("M")  # a matrix
 ZERO: Vec = (0.0, 0.0, 0.0)
 X: Vec = (1.0, 0.0, 0.0)
 Z: Vec = (0.0, 0.0, 1.0)
-RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
-NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
+RIGID: Vec = (math.inf, math.inf, math.inf)  # default stiffness
+NO_LOCATIONS: Mapping[str, SourceLocation] = MappingProxyType({})
 NO_CASES: Mapping[str, str] = MappingProxyType({})
 NO_COUPLINGS: Mapping[str, Coupling] = MappingProxyType({})
 
@@ -49,9 +49,9 @@ class Ground(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A part of a body: one of mass, density, line_density is given; of the measures those its type has.
+    """A part of a body: one of mass, density and line_density is given, and the dimensions of its type.
 
-    A mesh stands in the units and axes of its file: a corner x is at + rotation (scale x) [m].
+    A mesh is in the units and axes of its file: a vertex x of the file is at `at` + rotation (scale x) [m].
     """
 
     type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh"]
@@ -72,15 +72,15 @@ class Shape(NamedTuple):
 
 
 @record
-class Directed(Generic[V]):
-    """A vector in world axes, or in the body's own."""
+class FramedVector(Generic[V]):
+    """A vector in world axes, or in the axes of its body."""
 
     vector: V
     in_body: bool
 
 
 class MassProperties(NamedTuple):
-    """Mass properties of what a cut separates: mass [kg], centre of mass [m], inertia about it, body axes."""
+    """Mass properties of the piece that a cut separates: mass [kg], centre of mass [m], inertia about it; body axes."""
 
     mass: float
     center: Vec
@@ -89,11 +89,13 @@ class MassProperties(NamedTuple):
 
 @record
 class Body(Generic[V, M]):
-    """A rigid body: mass [kg], centre of mass [m], inertia about it [kg m2], body axes; what of its start is held.
+    """A rigid body and its prescribed start values.
 
-    rotation takes components in body axes to world axes. position and velocity are those of the body's origin.
-    near_position, near_rotation: where the assembly starts to look, not held. shapes: what the body is built from
-    instead; then mass, center and inertia are zero until multibody/mechanism/build.py has summed the shapes up.
+    mass [kg], center [m], inertia [kg m2]: inertia about the centre of mass; body axes
+    position, velocity: of the body's origin
+    rotation: takes components in body axes to world axes
+    near_position, near_rotation: where the assembly starts its search; not prescribed
+    shapes: instead; then mass, center, inertia are zero until multibody/mechanism/build.py has summed the shapes
     """
 
     name: str
@@ -103,8 +105,8 @@ class Body(Generic[V, M]):
     points: Mapping[str, V]
     position: V | None
     rotation: M | None
-    velocity: Directed[V] | None
-    angular_velocity: Directed[V] | None
+    velocity: FramedVector[V] | None
+    angular_velocity: FramedVector[V] | None
     near_position: V | None
     near_rotation: M | None
     shapes: tuple[Shape, ...] | None = None
@@ -112,11 +114,12 @@ class Body(Generic[V, M]):
 
 @record
 class Drive:
-    """A coordinate of a joint prescribed in time: angle [rad], travel [m] or length [m]; joint: its name.
+    """A coordinate of a joint prescribed in time: angle [rad], travel [m] or length [m].
 
-    by_rate: the value is the coordinate's rate of change. from_start: the value is what is added to the coordinate
-    since t = 0, whose start the assembly is yet to find; the integral of a rate is. zero_assembled: the coordinate is
-    counted from the assembled start.
+    joint: name of the joint
+    by_rate: the value is the coordinate's rate of change
+    from_start: the value is added to the coordinate at t = 0, which the assembly finds; so is the integral of a rate
+    zero_assembled: the coordinate is counted from the assembled pose
     """
 
     name: str
@@ -129,27 +132,30 @@ class Drive:
 
     @property
     def adds_to_start(self) -> bool:
-        """Whether the value is to be added to what the coordinate is at the assembled start.
+        """Whether the value is added to the coordinate of the assembled pose.
 
-        An angle counted from there is zero there; a travel is zero where the points are level.
+        An angle counted from that pose is zero there; a travel is zero where the two points are level.
         """
         return self.from_start or (self.zero_assembled and self.quantity == "travel")
 
 
 @record
 class Joint(Generic[Ref, V]):
-    """A joint between the point p of body a ("from") and the point q of body b ("to"), each in its body's axes.
+    """A joint between the point p of body a ("from") and the point q of body b ("to"), each in the axes of its body.
 
-    kind: a name of joint_kinds.TYPES; in a mechanism of joint_kinds.JOINTS, what it is in the plane if that was
-    declared. axis: direction in a's axes (of `plane` the normal), z where the kind has none; to_axis: direction in b's
-    axes, the same components unless `to_axis_given`. As written in a spec, of unit length in a mechanism.
-    Held start values of the coordinates are None where left out: angle [rad], rate [rad/s], travel [m], speed [m/s].
-    length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
-    [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
-    drives by themselves. restitution: of a rope that goes slack and catches, or what flies off a path and strikes it;
-    None: the run ends where it would push, or pull. one_sided: of a path, which only pushes, to its left.
-    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names. path:
-    of a curve, from the point p on, a's axes; way: in a mechanism, its number among those along paths.
+    kind: a name of joint_kinds.TYPES; in a mechanism of joint_kinds.JOINTS (the planar kind in a planar scene)
+    axis: direction in a's axes (of a `plane` the normal), z if the kind has none; in a mechanism of unit length
+    to_axis: direction in b's axes, with the same components unless `to_axis_given`
+    angle, rate, travel, speed: prescribed start values [rad], [rad/s], [m], [m/s], or None
+    length: of a rod [m]; None: as assembled
+    stiffness: of force [N/m] and moment [N m/rad] along world axes at the start; distributes redundant reactions
+    drive: only in a mechanism; a spec lists its drives separately
+    restitution: of a rope that catches, or a point that hits its path again; None: the run ends where it would open
+    one_sided: the path only pushes, to its left
+    bearing: bearing diameter times width [m^2]
+    p_name, q_name: names of the two points, if they have any
+    path: of a curve joint, from the point p, in a's axes
+    path_index: in a mechanism, the index of the joint among those with a path, else -1
     """
 
     name: str
@@ -178,8 +184,8 @@ class Joint(Generic[Ref, V]):
     one_sided: bool = False
 
     @property
-    def opens(self) -> bool:
-        """Whether it may open: a rope, or a path that only pushes."""
+    def can_open(self) -> bool:
+        """Whether the joint may open: a rope, or a path that only pushes."""
         return self.tension_only or self.one_sided
 
 
@@ -193,7 +199,7 @@ class PointForce(NamedTuple):
 
 
 class Couple(NamedTuple):
-    """A couple on a body [N m]; on is the point where it enters, if one was named."""
+    """A couple on a body [N m]; `on` is its point of application, if the spec names one."""
 
     body: str
     on: End | None
@@ -211,7 +217,7 @@ class Torque(NamedTuple):
 
 
 class Actuator(NamedTuple):
-    """A force along the line between two points [N], positive pushes apart."""
+    """A force along the line between two points [N]; positive pushes them apart."""
 
     from_: End
     to: End
@@ -220,7 +226,10 @@ class Actuator(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """A spring and damper between two points: N/m, free length [m], N s/m; or its force [N], positive pushes apart."""
+    """A spring and damper between two points: stiffness [N/m], free length [m], damping [N s/m].
+
+    force: a law [N] instead of the stiffness; positive pushes the points apart
+    """
 
     from_: End
     to: End
@@ -232,7 +241,10 @@ class Spring(NamedTuple):
 
 
 class TurnSpring(NamedTuple):
-    """A spring and damper about a joint's axis: N m/rad, relaxed angle [rad], N m s; or its torque [N m]."""
+    """A spring and damper about a joint's axis: stiffness [N m/rad], free angle [rad], damping [N m s].
+
+    torque: a law [N m] instead of the stiffness
+    """
 
     joint: str
     stiffness: float
@@ -243,7 +255,7 @@ class TurnSpring(NamedTuple):
 
 
 class Distributed(NamedTuple):
-    """A force along a line of a body, N/m: `vector` at from_, `to_vector` at to, linear between."""
+    """A line load on a body [N/m]: `vector` at from_, `to_vector` at to, linear between them."""
 
     body: str
     from_: Vec
@@ -256,10 +268,12 @@ class Distributed(NamedTuple):
 
 @record
 class Elastic(Generic[V]):
-    """Three springs and dampers of a bushing, of its shift or of its turn, along its axes.
+    """Three springs and dampers of a bushing, for its translation or for its rotation, along its axes.
 
-    stiffness [N/m] or [N m/rad], damping [N s/m] or [N m s]; preload [N] or [N m]; given: what it exerts beside the
-    stiffness: the preload, and in place of a stiffness a table of the deflection, which has its areas.
+    stiffness: [N/m] or [N m/rad], 0 where a table replaces it
+    damping: [N s/m] or [N m s]
+    preload: [N] or [N m]
+    extra_load: load besides the stiffness: the preload, plus a table over the deflection (with its areas)
     """
 
     stiffness: V
@@ -269,7 +283,10 @@ class Elastic(Generic[V]):
 
 
 class Bushing(NamedTuple):
-    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: in that of `to`."""
+    """Six springs and dampers between two bodies, in axes fixed in the body of from_.
+
+    to_rotation: the orientation of these axes in the body of `to`
+    """
 
     from_: End
     to: End
@@ -281,7 +298,7 @@ class Bushing(NamedTuple):
 
 
 class Motor(NamedTuple):
-    """A motor in a joint: torque ON `to` [N m], opposite on `from`, by the joint's rate."""
+    """A motor in a joint: torque on `to` [N m], opposite on `from`, as a function of the joint's rate."""
 
     joint: str
     value: Expression
@@ -289,9 +306,9 @@ class Motor(NamedTuple):
 
 
 class Damper(NamedTuple):
-    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder).
+    """A damper in a joint: coefficient in N m s (turning) or N s/m (slide, line, plane), sliding in N s/m (cylinder).
 
-    Or its torque [N m] or force [N] ON `to`, by the joint's rate.
+    law: torque [N m] or force [N] on `to` as a function of the joint's rate, instead of the coefficients
     """
 
     joint: str
@@ -302,10 +319,10 @@ class Damper(NamedTuple):
 
 
 class Friction(NamedTuple):
-    """Coulomb friction in a joint, torque [N m] or force [N], in time, times tanh(rate/speed).
+    """Coulomb friction in a joint: torque [N m] or force [N], in time, times tanh(rate/speed).
 
-    Or coefficient: of what presses, the joint's own force; about a pin at a radius [m]. length [m]: of a guide at whose
-    two ends it presses.
+    coefficient: of friction by the joint's own reaction, instead; in a pin at a radius [m]
+    length: of a guide that carries tilting moments at its two ends [m]
     """
 
     joint: str
@@ -324,12 +341,13 @@ Force = (
 
 
 @record
-class Blow(Generic[Ref, V]):
-    """An impulse [N s] at a body's point at one instant [s], or an impulsive couple [N m s] on it.
+class AppliedImpulse(Generic[Ref, V]):
+    """An impulse [N s] at a point of a body at one instant [s], or an impulsive couple [N m s] on a body.
 
-    when: the condition at which it strikes, in place of an instant: the first time that it becomes true, or every time.
-
-    in_body: the vector is in the body's axes. Of a couple point is where it enters, which a cut asks for, or None.
+    time: the instant [s], if `when` is None
+    when: it acts the first time that this becomes true, or every time if `every`
+    in_body: the vector is in the body's axes
+    point: of a couple the point of application, which only section forces need, or None
     """
 
     name: str
@@ -345,12 +363,14 @@ class Blow(Generic[Ref, V]):
 
 @record
 class Latch:
-    """What of a latch its stop does not tell: where it catches, from when on, and when it lets go.
+    """The properties of a latch beyond those of a stop: where it catches, when it is active, when it lets go.
 
-    at: the coordinate at which it catches [rad] or [m]; stop: else at the limits of that stop which are told by their
-    sides (-1 the lower, 1 the upper); neither: wherever the coordinate is. when: only while this is true, None: always;
-    release: lets go, and does not catch, while this is true, None: never; every: again, after it was released.
-    passes: that the coordinate is beyond `at`, so that a motion through it is met.
+    position: coordinate at which it catches [rad] or [m]
+    stop, sides: else at these limits of a stop (-1 lower, 1 upper); without both it catches at any coordinate
+    when: it only catches while this is true; None: always
+    release: it lets go, and does not catch, while this is true; None: never
+    passes: the coordinate is above `position`; detects a motion through it
+    every: it catches again after it was released
     """
 
     at: float | None
@@ -363,15 +383,16 @@ class Latch:
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """What it hangs on."""
+        """The conditions that the latch depends on."""
         return tuple(c for c in (self.when, self.release, self.passes) if c is not None)
 
 
 @record
 class Stop(Generic[Ref]):
-    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1.
+    """Limits of a joint's coordinate [rad] or [m]; None: no limit on that side.
 
-    latch: what holds the coordinate both ways, without limits of its own.
+    restitution: of its impacts, 0 to 1
+    latch: holds the coordinate in both directions; such a stop has no limits of its own
     """
 
     name: str
@@ -384,15 +405,15 @@ class Stop(Generic[Ref]):
 
     @property
     def path(self) -> str:
-        """Where it stands in a spec."""
+        """Its path in the spec."""
         return f"{'stops' if self.latch is None else 'latches'}.{self.name}"
 
 
 class Properties(NamedTuple):
-    """Of a section's shape, for stresses: SI values by name.
+    """Properties of a cross-section, for stresses: SI values by name.
 
     circle: radius; tube: radius, inner_radius; rectangle: width (along e1), height (along e2); general: area, I1, I2,
-    J, c1, c2 (half extents along e1, e2), and, where it is known, shear_factor; auto: those of the shapes that are cut.
+    J, c1, c2 (half extents along e1, e2) and, if known, shear_factor; auto: those of the shapes that are cut
     """
 
     kind: Literal["circle", "tube", "rectangle", "general", "auto"]
@@ -401,7 +422,9 @@ class Properties(NamedTuple):
 
 @record
 class Section:
-    """A cut (`at`), or a run of `count` cuts from `from_` to `to`, all in body axes; normal is given or from -> to."""
+    """A cut (`at`), or a run of `count` cuts from `from_` to `to`, in body axes; the normal is given or points from ->
+    to.
+    """
 
     body: str
     normal: Vec
@@ -418,9 +441,10 @@ class Section:
 
 
 class Condition(NamedTuple):
-    """What is watched for during a motion: true or not (1 or 0), in time and coordinates; text: as written.
+    """A condition on time and coordinates that is monitored during a motion; its value is 1 (true) or 0.
 
-    ends: whether the motion ends where it becomes true.
+    text: as written
+    ends: whether the motion ends where the condition becomes true
     """
 
     name: str
@@ -430,11 +454,14 @@ class Condition(NamedTuple):
 
 
 class ResultCondition(NamedTuple):
-    """What is watched for in the results: the number at the path `of` is below the limit, or above it.
+    """A condition on a result that is monitored during a motion: the number at the path `of` is below or above the
+    limit.
 
-    text: as written. ends: whether the motion ends where it becomes true. why: of one that an entry brings with it, as
-    wheels do, what it then means, in words. given: what of the entry is too small by as much as the number passes the
-    limit; {} in the words is what it would have to be at least.
+    text: as written
+    ends: whether the motion ends where the condition becomes true
+    is_above: the number is above the limit, else below
+    why: what it means, in words, for a condition that an entry such as a wheel brings with it
+    entry_value: value of that entry that is too small by the excess over the limit; {} in `why` is the value needed
     """
 
     name: str
@@ -455,10 +482,13 @@ SIMULTANEOUS: ImpactModel = "simultaneous"
 
 
 class Analysis(NamedTuple):
-    """What is solved: times are the instants asked for [s]; duration is the last of them in a motion.
+    """What is solved.
 
-    step is for methods of fixed step. tolerance_given: whether somebody asked for it, or it is the default. impacts:
-    how a blow goes through several contacts that touch.
+    times: the output instants [s]
+    duration: the last of them in a motion
+    step: step size of methods with a fixed step [s]
+    tolerance_given: whether the user gave the tolerance, or it is the default
+    impacts: how an impulse passes through several touching contacts
     """
 
     type: Literal["motion", "impulse", "state", "rest"]
@@ -473,15 +503,16 @@ class Analysis(NamedTuple):
 
 
 class Foundation(NamedTuple):
-    """About which point M_s is taken, world axes; None is the origin."""
+    """The reference point of M_s, world axes; None is the origin."""
 
     about: Vec | None
 
 
 class Curve(NamedTuple):
-    """A measured curve: points x, y (n,) in SI, of the lines of a file; x is time, or the number at a path (x_of).
+    """A measured curve: points x, y (n,) in SI and their line numbers in a file; x is time, or the result at the path
+    x_of.
 
-    within: the share of the points that must lie within the tolerance.
+    within: share of the points that must lie within the tolerance
     """
 
     file: str
@@ -493,8 +524,9 @@ class Curve(NamedTuple):
 
 
 class Expect(NamedTuple):
-    """One expectation: the value found at `of` is `is_` (None: must be open) within rel and abs, or within bounds, or
-    follows a curve within rel and abs."""
+    """One expectation: the result at `of` equals `is_` (None: it must be indeterminate) within rel and abs, or lies
+    within bounds, or follows a curve within rel and abs.
+    """
 
     of: str
     at: float | None
@@ -509,14 +541,16 @@ class Expect(NamedTuple):
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """The paths into the results that it needs."""
+        """The result paths that the expectation needs."""
         return (self.of,) if self.curve is None or self.curve.x_of is None else (self.of, self.curve.x_of)
 
 
 class Spec(NamedTuple):
-    """A validated scene. `location("joints.elbow")`: where in the file a value stands, for errors of later stages.
+    """A validated scene.
 
-    cases: the titles of the load cases by their names; case: the one whose values hold; expect: what holds in it.
+    locations: location in the file of every path that later stages may report
+    cases: titles of the load cases by name
+    case, expect: the load case whose values apply, or None; the expectations that hold in it
     """
 
     title: str
@@ -530,7 +564,7 @@ class Spec(NamedTuple):
     joints: Mapping[str, Joint[str, Vec]]
     drives: Mapping[str, Drive]
     forces: Mapping[str, Force]
-    impulses: Mapping[str, Blow[str, Vec]]
+    impulses: Mapping[str, AppliedImpulse[str, Vec]]
     stops: Mapping[str, Stop[str]]
     latches: Mapping[str, Stop[str]]
     sections: Mapping[str, Section]
@@ -540,18 +574,18 @@ class Spec(NamedTuple):
     foundation: Foundation
     expect: tuple[Expect, ...]
     warnings: tuple[Problem, ...]
-    locations: Mapping[str, SourceLocation] = NOWHERE
+    locations: Mapping[str, SourceLocation] = NO_LOCATIONS
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
     @property
     def rolling(self) -> Mapping[str, RollingWheel]:
-        """The couplings that are wheels, which stand in a block of their own."""
-        return {name: given for name, given in self.couplings.items() if isinstance(given, RollingWheel)}
+        """The couplings that are wheels; they have a block of their own."""
+        return {name: coupling for name, coupling in self.couplings.items() if isinstance(coupling, RollingWheel)}
 
     def location(self, path: str) -> SourceLocation:
-        """Where a dotted path stands, or the nearest thing around it that does."""
+        """Return the location of a dotted path such as joints.elbow, or of the nearest enclosing one."""
         while path and path not in self.locations:
             path = path.rpartition(".")[0]
         return self.locations.get(path) or SourceLocation(self.path, 1, 1)

@@ -1,7 +1,7 @@
-"""The files that a spec names, of tables and of curves: on the disk, or as they were read before. Impure: reads files.
+"""The files that a spec names, for tables, curves and meshes: from the disk, or as read before. Impure: reads files.
 
-Their names are relative to the spec's folder. A process that has neither the spec nor these files beside it (a worker
-of a cluster) is given them as they were read (`FilesAtHand`), errors included, and looks at no disk.
+Names are relative to the spec's folder. A process that has neither the spec nor these files on disk (a worker of a
+cluster) receives them with their content and errors (`PreloadedFiles`) and accesses no disk.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 
-LARGEST = 200_000_000  # bytes: two million rows of a hundred characters
-RELATIVE = "a path is relative to the spec's folder"
+MAX_FILE_SIZE = 200_000_000  # bytes: two million rows of a hundred characters
+RELATIVE_PATH_HINT = "a path is relative to the spec's folder"
 
 
-class FileNotKept(BaseException):
-    """A file is asked for that is not among those that were read before; no Exception: it is no fault of a variant."""
+class FileNotPreloaded(BaseException):
+    """A requested file is not among the preloaded ones; not an Exception, because it is not an error of a variant."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.name = name
 
 
-class KeptFinding(NamedTuple):
-    """A finding as it can be sent from process to process."""
+class PortableFinding(NamedTuple):
+    """A finding in a form that can be sent between processes."""
 
     code: str
     message: str
@@ -35,106 +35,111 @@ class KeptFinding(NamedTuple):
 
 
 class NamedFile(NamedTuple):
-    """A file as it was read: its content, or why it has none; outside: what is said of where it stands."""
+    """A file as read.
+
+    content: its bytes
+    unread: why it could not be read, or None
+    outside: the warning about its place, or None
+    """
 
     content: bytes
-    unread: KeptFinding | None = None
-    outside: KeptFinding | None = None
+    unread: PortableFinding | None = None
+    outside: PortableFinding | None = None
 
 
 class NamedFiles:
-    """The files beside a spec, by the names that it gives them."""
+    """The files next to a spec, by the names that it gives them."""
 
     def __init__(self, spec: str) -> None:
-        """spec: the path of the spec; those that standard input names are looked for in the working folder."""
+        """spec: path of the spec; files named by standard input are looked up in the working folder"""
         self.folder = Path() if spec == STANDARD_INPUT else Path(spec).parent
 
     def path(self, name: str) -> Path:
-        """Where a file stands, as it is told."""
+        """Return the path of a file for messages."""
         return self.folder / name
 
-    def content(self, name: str) -> bytes | bytearray:
-        """The bytes of a file. Raises Finding: unreadable, too-large."""
-        return read_bytes(str(self.path(name)), LARGEST)
+    def read_content(self, name: str) -> bytes | bytearray:
+        """Read the bytes of a file. Raises Finding [unreadable] or [too-large]."""
+        return read_bytes(str(self.path(name)), MAX_FILE_SIZE)
 
-    def outside(self, name: str) -> Finding | None:
-        """What to say of a file that is not in the spec's folder or below it; links count by where they lead."""
+    def find_outside_warning(self, name: str) -> Finding | None:
+        """Return a warning if a file is not in the spec's folder or below it; links are followed."""
         try:
-            home, given = os.path.realpath(self.folder), os.path.abspath(self.path(name))  # noqa: PTH100  # Path's loop
-            leads_to = os.path.realpath(given)
-        except (OSError, ValueError):  # no working folder, no name of a file: told where it is read
+            real_folder, absolute_path = os.path.realpath(self.folder), os.path.abspath(self.path(name))  # noqa: PTH100  # Path's loop
+            real_path = os.path.realpath(absolute_path)
+        except (OSError, ValueError):  # no working folder, or an invalid name: reported when the file is read
             return None
-        if Path(leads_to).is_relative_to(home):
+        if Path(real_path).is_relative_to(real_folder):
             return None
-        led = f", which is {leads_to}" if Path(given).is_relative_to(home) else ""
+        link_note = f", which is {real_path}" if Path(absolute_path).is_relative_to(real_folder) else ""
         hint = "copy it beside the spec: whoever runs that then knows what is read"
-        return Finding("outside-folder", f"reads a file outside the spec's folder: {name}{led}", hint)
+        return Finding("outside-folder", f"reads a file outside the spec's folder: {name}{link_note}", hint)
 
-    def text(self, name: str) -> str:
-        """The text of a file. Raises Finding."""
+    def read_text(self, name: str) -> str:
+        """Read the text of a file. Raises Finding."""
         try:
-            return self.content(name).decode("utf-8-sig")
+            return self.read_content(name).decode("utf-8-sig")
         except UnicodeDecodeError:
             reason, code, hint = "it is not UTF-8", "table-file", "save it as CSV in UTF-8"
         except Finding as refused:
             is_large = refused.code == "too-large"
             reason, code = refused.message, refused.code if is_large else "table-file"
-            hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE
+            hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE_PATH_HINT
         raise Finding(code, f"the file '{self.path(name)}' cannot be read: {reason}", hint)
 
-    def kept(self, name: str) -> NamedFile:
-        """A file as it is now."""
-        outside = _kept_finding(self.outside(name))
+    def get_file(self, name: str) -> NamedFile:
+        """Return a file as it is now."""
+        outside = _to_portable_finding(self.find_outside_warning(name))
         try:
-            return NamedFile(bytes(self.content(name)), None, outside)
-        except Finding as unread:
-            return NamedFile(b"", _kept_finding(unread), outside)
+            return NamedFile(bytes(self.read_content(name)), None, outside)
+        except Finding as error:
+            return NamedFile(b"", _to_portable_finding(error), outside)
 
 
-class NotedFiles(NamedFiles):
-    """Files on the disk; which of them are asked for is written down."""
+class TrackedFiles(NamedFiles):
+    """Files on the disk; records the names of those that are requested."""
 
     def __init__(self, spec: str) -> None:
         super().__init__(spec)
         self.names: dict[str, None] = {}
 
-    def content(self, name: str) -> bytes | bytearray:
-        """The bytes of a file."""
+    def read_content(self, name: str) -> bytes | bytearray:
+        """Read the bytes of a file and record its name."""
         self.names[name] = None
         return super().content(name)
 
-    def outside(self, name: str) -> Finding | None:
-        """What to say of where it stands."""
+    def find_outside_warning(self, name: str) -> Finding | None:
+        """Return the warning about a file's place and record its name."""
         self.names[name] = None
         return super().outside(name)
 
 
-class FilesAtHand(NamedFiles):
-    """Files as they were read before; asked for another one this raises FileNotKept."""
+class PreloadedFiles(NamedFiles):
+    """Files as read before; a request for another file raises FileNotPreloaded."""
 
     def __init__(self, spec: str, files: Mapping[str, NamedFile]) -> None:
         super().__init__(spec)
         self.files = files
 
-    def content(self, name: str) -> bytes:
-        """The bytes of a file."""
-        found = self.kept(name)
-        if found.unread is not None:
-            raise Finding(*found.unread)
-        return found.content
+    def read_content(self, name: str) -> bytes:
+        """Return the bytes of a file. Raises Finding if it could not be read."""
+        file = self.get_file(name)
+        if file.read_error is not None:
+            raise Finding(*file.read_error)
+        return file.content
 
-    def outside(self, name: str) -> Finding | None:
-        """What is said of where it stood."""
-        found = self.kept(name).outside
-        return Finding(*found) if found is not None else None
+    def find_outside_warning(self, name: str) -> Finding | None:
+        """Return the warning about the file's place when it was read."""
+        warning = self.get_file(name).outside_warning
+        return Finding(*warning) if warning is not None else None
 
-    def kept(self, name: str) -> NamedFile:
-        """A file as it was then."""
-        found = self.files.get(name)
-        if found is None:
-            raise FileNotKept(name)
-        return found
+    def get_file(self, name: str) -> NamedFile:
+        """Return a file as it was read. Raises FileNotPreloaded."""
+        file = self.files.get(name)
+        if file is None:
+            raise FileNotPreloaded(name)
+        return file
 
 
-def _kept_finding(finding: Finding | None) -> KeptFinding | None:
-    return KeptFinding(finding.code, finding.message, finding.hint) if finding is not None else None
+def _to_portable_finding(finding: Finding | None) -> PortableFinding | None:
+    return PortableFinding(finding.code, finding.message, finding.hint) if finding is not None else None

@@ -1,44 +1,49 @@
-"""What is named in a scene, read off the plain data: so references can be judged beside entries that are in error."""
+"""Collect what a scene names from the plain data, so that references can be checked even if other entries have
+errors.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import misspelt
+from heuncli.base.nearest import match_misspelt_keys
 from heuncli.scene.expressions.grammar import RESERVED
 from heuncli.scene.file_format.entries import Entry, keys_of
 from heuncli.scene.file_format.format import BodyEntry, GroundEntry
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.motors import rotor_of
+from heuncli.scene.file_format.motors import rotor_name
 
 GROUND = "ground"
-NAMED = (
+NAMED_BLOCKS = (
     "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "rolling",
     "sections", "tables", "cases",
 )  # fmt: skip
-ALL_CASES = "all"  # what --case takes for every one of them
-UNTIL = "until"  # the condition that ends a motion, beside the events that have names
-CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
-RESERVED_FOR: dict[str, frozenset[str]] = {
+ALL_CASES = "all"  # the value of --case that selects all cases
+UNTIL = "until"  # name of the condition that ends a motion; events have names of their own
+CAUSE_NAMES = frozenset({"gravity", "drives", "motion"})  # causes in the shares report, besides the names of entries
+RESERVED_NAMES: dict[str, frozenset[str]] = {
     "parameters": RESERVED,
     "joints": RESERVED,
     "tables": RESERVED,
     "bodies": frozenset({GROUND}),
-    "forces": CAUSES,
-    "impulses": CAUSES,
-    "stops": CAUSES,
-    "couplings": CAUSES,
-    "rolling": CAUSES,
-    "latches": CAUSES,
+    "forces": CAUSE_NAMES,
+    "impulses": CAUSE_NAMES,
+    "stops": CAUSE_NAMES,
+    "couplings": CAUSE_NAMES,
+    "rolling": CAUSE_NAMES,
+    "latches": CAUSE_NAMES,
     "cases": frozenset({ALL_CASES}),
 }
 
 
-class Names(NamedTuple):
-    """Entries of each block and points of each body and of the ground, as plain data by name; types of the joints.
+class SceneNames(NamedTuple):
+    """The names in a scene.
 
-    keys: of the results, by the words before them, as far as they were asked for (rules/outcome.py).
+    entries: plain data of the entries of each block, by name
+    points: plain data of the points of each body and of the ground, by name
+    joints: types of the joints
+    keys: cached keys of the results, by the words before them (rules/outcome.py)
     """
 
     entries: dict[str, dict[str, Any]]
@@ -47,52 +52,52 @@ class Names(NamedTuple):
     keys: dict[tuple[str, ...], dict[str, None]]
 
     @classmethod
-    def of(cls, data: dict[str, Any]) -> Names:
-        """Of plain data of any shape."""
-        entries = {block: mapping(data.get(block)) for block in NAMED}
-        analysis = mapping(data.get("analysis"))
-        ends = {key: analysis[key] for key in (UNTIL,) if key in analysis}
-        entries["events"] = ends | mapping(analysis.get("events"))
+    def from_data(cls, data: dict[str, Any]) -> SceneNames:
+        """Collect the names in plain data of any shape."""
+        entries = {block: as_mapping(data.get(block)) for block in NAMED_BLOCKS}
+        analysis = as_mapping(data.get("analysis"))
+        end_conditions = {key: analysis[key] for key in (UNTIL,) if key in analysis}
+        entries["events"] = end_conditions | as_mapping(analysis.get("events"))
         bodies = entries["bodies"]
-        points = {name: points_of(body, BodyEntry) for name, body in bodies.items()}
-        points[GROUND] = points_of(data.get(GROUND), GroundEntry)
-        joints = {name: str(mapping(joint).get("type")) for name, joint in mapping(data.get("joints")).items()}
-        for name in rotors_in(entries["forces"]):
+        points = {name: get_points(body, BodyEntry) for name, body in bodies.items()}
+        points[GROUND] = get_points(data.get(GROUND), GroundEntry)
+        joints = {name: str(as_mapping(joint).get("type")) for name, joint in as_mapping(data.get("joints")).items()}
+        for name in list_rotor_names(entries["forces"]):
             for block in ("bodies", "joints", "couplings"):
                 entries[block] = {name: {}} | entries[block]
             joints.setdefault(name, "pin")
         return cls(entries, points, joints, {})
 
 
-def rotors_in(forces: dict[str, Any]) -> list[str]:
-    """The names of the rotors of motors, which are bodies, joints and couplings."""
+def list_rotor_names(forces: dict[str, Any]) -> list[str]:
+    """List the names of the rotors of motors; each is a body, a joint and a coupling."""
     return [
-        rotor_of(name) for name, load in forces.items()
-        if mapping(load).get("type") == "motor" and mapping(load).get("rotor") is not None
+        rotor_name(name) for name, load in forces.items()
+        if as_mapping(load).get("type") == "motor" and as_mapping(load).get("rotor") is not None
     ]  # fmt: skip
 
 
-def names_in(spec: Spec) -> Names:
-    """The names of a scene that was loaded."""
-    entries: dict[str, dict[str, Any]] = {block: dict(getattr(spec, block)) for block in NAMED}
+def collect_scene_names(spec: Spec) -> SceneNames:
+    """Collect the names of a loaded scene."""
+    entries: dict[str, dict[str, Any]] = {block: dict(getattr(spec, block)) for block in NAMED_BLOCKS}
     entries["events"] = {condition.name: condition for condition in spec.analysis.conditions}
     points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}
-    return Names(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {})
+    return SceneNames(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {})
 
 
-def points_of(owner: Any, model: type[Entry]) -> dict[str, Any]:
-    """The points of a body or of the ground, also under a misspelt key."""
-    given = mapping(owner)
-    if "points" not in given and any(key not in keys_of(model) for key in given):
-        given = misspelt(given, keys_of(model))
-    return mapping(given.get("points"))
+def get_points(owner: Any, model: type[Entry]) -> dict[str, Any]:
+    """Return the points of a body or of the ground, also under a misspelt key."""
+    data = as_mapping(owner)
+    if "points" not in data and any(key not in keys_of(model) for key in data):
+        data = match_misspelt_keys(data, keys_of(model))
+    return as_mapping(data.get("points"))
 
 
-def mapping(value: Any) -> dict[str, Any]:
-    """The value if it is a mapping, else an empty one."""
+def as_mapping(value: Any) -> dict[str, Any]:
+    """Return the value if it is a mapping, else an empty one."""
     return value if type(value) is dict else {}
 
 
 def is_name(text: str) -> bool:
-    """A letter, then letters, digits, _."""
+    """Whether a text is a valid name: a letter, then letters, digits, _."""
     return text.isidentifier() and not text.startswith("_")

@@ -1,4 +1,4 @@
-"""`--set`: values from the command line put into the plain data before anything reads it."""
+"""Apply `--set`: put values from the command line into the plain data before anything reads it."""
 
 from __future__ import annotations
 
@@ -9,17 +9,21 @@ from typing import Any
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean
-from heuncli.results.results_schema import counted
-from heuncli.scene.file_format.names import NAMED, mapping
-from heuncli.scene.file_format.source import Path_, parse, plain
+from heuncli.base.nearest import suggest
+from heuncli.results.results_schema import parse_index
+from heuncli.scene.file_format.names import NAMED_BLOCKS, as_mapping
+from heuncli.scene.file_format.source import Path_, parse_plain_scalar, parse_source
 
-FIGURE = re.compile(r"[+-]?[0-9]{1,18}(\.[0-9]{0,18})?([eE][+-]?[0-9]{1,3})?")  # that YAML could but read as itself
-OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the parameters
+PLAIN_NUMBER = re.compile(
+    r"[+-]?[0-9]{1,18}(\.[0-9]{0,18})?([eE][+-]?[0-9]{1,3})?"
+)  # a number that YAML reads the same way
+HEAD_KEYS = ("title", "gravity", "space", "report")  # keys without a dot that are not parameters
 
 
 class Setting(NamedTuple):
-    """A value in the place of another: a parameter's name or a dotted key, the value, and where both stand."""
+    """A value that replaces another: a parameter's name or a dotted key, the value, and the locations of value and
+    key.
+    """
 
     key: str
     value: Any
@@ -27,53 +31,57 @@ class Setting(NamedTuple):
     key_location: SourceLocation
 
 
-def of_words(given: Mapping[str, str]) -> tuple[list[Setting], list[Problem]]:
-    """What the command line sets, as YAML; and what cannot be read of it."""
+def parse_settings(texts_by_key: Mapping[str, str]) -> tuple[list[Setting], list[Problem]]:
+    """Parse what the command line sets, as YAML; return the settings and what cannot be parsed."""
     settings: list[Setting] = []
     problems: list[Problem] = []
-    for key, text in given.items():
-        word = f"--set {key}={text}"
-        place = SourceLocation(word, 1, len(key) + 2, key)
+    for key, text in texts_by_key.items():
+        option = f"--set {key}={text}"
+        location = SourceLocation(option, 1, len(key) + 2, key)
         try:
-            value = plain(text) if FIGURE.fullmatch(text) else parse(word, text if text.strip() else "''", "").data
+            value = (
+                parse_plain_scalar(text)
+                if PLAIN_NUMBER.fullmatch(text)
+                else parse_source(option, text if text.strip() else "''", "").data
+            )
         except SpecError as error:
-            problems += [Problem(p.code, p.message, place, p.hint) for p in error.problems]
+            problems += [Problem(p.code, p.message, location, p.hint) for p in error.problems]
             continue
-        settings.append(Setting(key, value, place, SourceLocation(word, 1, 1)))
+        settings.append(Setting(key, value, location, SourceLocation(option, 1, 1)))
     return settings, problems
 
 
-def override(
+def apply_settings(
     data: dict[str, Any], settings: Sequence[Setting]
 ) -> tuple[dict[str, Any], dict[Path_, SourceLocation], list[Problem]]:
-    """The data with values replaced, the locations of these, and the problems with them."""
+    """Return the data with values replaced, the locations of these values, and the problems with them."""
     if not settings:
         return data, {}, []
     data = {**data}
     locations: dict[Path_, SourceLocation] = {}
     problems: list[Problem] = []
     for key, value, location, key_location in settings:
-        path = path_of(key, data)
-        reason = put(data, path, value)
+        path = parse_path(key, data)
+        reason = set_value(data, path, value)
         if reason is not None:
             problems.append(Problem("no-such-key", reason[0], key_location, reason[1]))
         locations[path] = location._replace(path=".".join(map(str, path)))
     return data, locations, problems
 
 
-def taken_in_si(
-    before: dict[str, Any], after: dict[str, Any], locations: Mapping[Path_, SourceLocation]
+def iter_si_warnings(
+    old_data: dict[str, Any], new_data: dict[str, Any], locations: Mapping[Path_, SourceLocation]
 ) -> Iterator[Problem]:
-    """Warnings of plain numbers in place of numbers with a unit that is not the SI's own."""
-    from heuncli.base.units import parse_unit, si_unit  # where something is set
-    from heuncli.scene.file_format.quantity import unit_in
+    """Yield warnings for plain numbers that replace numbers with a unit other than the SI unit."""
+    from heuncli.base.units import parse_unit, si_unit  # only needed if something is set
+    from heuncli.scene.file_format.quantity import match_quantity
 
     for path, location in locations.items():
-        old, new = at(before, path), at(after, path)
-        found = unit_in(old) if type(old) is str and type(new) in (int, float) and new != 0 else None
-        if found is None:
+        old, new = get_value(old_data, path), get_value(new_data, path)
+        old_quantity = match_quantity(old) if type(old) is str and type(new) in (int, float) and new != 0 else None
+        if old_quantity is None:
             continue
-        unit = found[2].strip()
+        unit = old_quantity[2].strip()
         try:
             size, dimension = parse_unit(unit)
         except Finding:
@@ -83,60 +91,60 @@ def taken_in_si(
             yield Problem("set-in-si", message, location, f"with the unit: --set {location.path}='{new:.9g} {unit}'")
 
 
-def at(data: Any, path: Path_) -> Any:
-    """The value at a path, None where there is none."""
+def get_value(data: Any, path: Path_) -> Any:
+    """Return the value at a path, or None."""
     for part in path:
-        data = below(data, part)
+        data = get_child(data, part)
     return data
 
 
-def path_of(key: str, data: dict[str, Any]) -> Path_:
-    """A parameter's name, or a dotted key; numbers are indices in lists."""
-    if "." not in key and (key in mapping(data.get("parameters")) or key not in OWN):
+def parse_path(key: str, data: dict[str, Any]) -> Path_:
+    """Parse a parameter's name or a dotted key into a path; numbers are indices into lists."""
+    if "." not in key and (key in as_mapping(data.get("parameters")) or key not in HEAD_KEYS):
         return ("parameters", key)
     path: list[str | int] = []
     node: Any = data
     for word in key.split("."):
-        place = counted(word) if type(node) is list else None
-        part: str | int = word if place is None else place
-        node = below(node, part)
+        index = parse_index(word) if type(node) is list else None
+        part: str | int = word if index is None else index
+        node = get_child(node, part)
         path.append(part)
     return tuple(path)
 
 
-def below(node: Any, part: str | int) -> Any:
-    """The value under a key or at an index of a list; None where there is none."""
+def get_child(node: Any, part: str | int) -> Any:
+    """Return the value under a key of a mapping or at an index of a list, or None."""
     if type(node) is dict:
         return node.get(part)
     return node[part] if type(node) is list and isinstance(part, int) and part < len(node) else None
 
 
-def in_list(node: list[Any], part: str | int) -> bool:
+def is_list_index(node: list[Any], part: str | int) -> bool:
     return isinstance(part, int) and part < len(node)
 
 
-def put(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str] | None:
-    """Store a value; or return why it cannot be stored, with a hint.
+def set_value(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str] | None:
+    """Store a value in the data. Returns None, or why it cannot be stored and a hint.
 
-    What users name (a parameter, a body, a point) must be there; other keys may be new: the format judges them. What
-    the path leads through is copied, all beside it is shared with the data of which these are a copy.
+    What users name (a parameter, a body, a point) must exist; other keys may be new, the format checks them. Containers
+    along the path are copied; all others stay shared with the original data.
     """
     node: Any = data
     for depth, part in enumerate(path):
-        above = path[depth - 1] if depth else None
+        parent_key = path[depth - 1] if depth else None
         if type(node) is list:
-            if not in_list(node, part):
+            if not is_list_index(node, part):
                 return (
                     f"'{'.'.join(map(str, path[:depth]))}' has no entry {part}",
                     f"entries are counted from 0 to {len(node) - 1}",
                 )
         elif type(node) is not dict:
-            whole = ".".join(map(str, path[:depth]))
-            return f"'{whole}' is a value without keys", f"set it as a whole: --set {whole}=..."
+            parent_path = ".".join(map(str, path[:depth]))
+            return f"'{parent_path}' is a value without keys", f"set it as a whole: --set {parent_path}=..."
         elif part not in node:
-            if (depth == 1 and above in NAMED) or above == "points":
-                kind = {"bodies": "body", "points": "point"}.get(str(above), str(above).removesuffix("s"))
-                return f"there is no {kind} '{part}' to set", did_you_mean(str(part), node, str(above))
+            if (depth == 1 and parent_key in NAMED_BLOCKS) or parent_key == "points":
+                kind = {"bodies": "body", "points": "point"}.get(str(parent_key), str(parent_key).removesuffix("s"))
+                return f"there is no {kind} '{part}' to set", suggest(str(part), node, str(parent_key))
             if depth < len(path) - 1:
                 node[part] = {}
         elif node[part] is None and depth < len(path) - 1:

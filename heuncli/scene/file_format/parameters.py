@@ -1,4 +1,4 @@
-"""The parameters of a scene: numbers that may refer to each other in any order."""
+"""Evaluate the parameters of a scene: numbers that may refer to each other in any order."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from typing import Any
 
 from heuncli.base.errors import Finding
 from heuncli.base.records import record
-from heuncli.scene.expressions.grammar import GivenParameter
-from heuncli.scene.file_format.quantity import Follows, Scope, in_time
+from heuncli.scene.expressions.grammar import DimensionedParameter
+from heuncli.scene.file_format.quantity import DependentError, Scope, read_function
 
-MOST_TOLD = 12  # names of a circle
-CUT = "give one of them as a number"
+MAX_LISTED_NAMES = 12  # names of a cycle that a message lists
+CIRCLE_HINT = "give one of them as a number"
 
 
-class _Needed(Exception):
-    """A parameter that has to be known first."""
+class _UnknownParameter(Exception):
+    """A parameter that has to be evaluated first."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -22,76 +22,82 @@ class _Needed(Exception):
 
 
 class _Values(dict[str, float | None]):
-    """Known values; asking for one that is given but not yet known raises _Needed."""
+    """Known values; looking up one that is given but not yet known raises _UnknownParameter."""
 
-    def __init__(self, given: dict[str, Any]) -> None:
+    def __init__(self, block: dict[str, Any]) -> None:
         super().__init__()
-        self.given = given
-        self.asked: set[object] = set()
+        self.block = block
+        self.used_names: set[object] = set()
 
     def __contains__(self, name: object) -> bool:
-        self.asked.add(name)
-        return name in self.given
+        self.used_names.add(name)
+        return name in self.block
 
     def __missing__(self, name: str) -> float | None:
-        raise _Needed(name)
+        raise _UnknownParameter(name)
 
 
 @record
 class Parameters:
-    """Values in SI, None for those in error; those with a dimension, as they are written; and what is wrong.
+    """Evaluated parameters.
 
-    uses: the names that each of them asks for.
+    values: in SI; None for wrong ones
+    given_quantities: those with a dimension, as written
+    findings: what is wrong
+    uses: the names that each parameter looks up
     """
 
     values: dict[str, float | None]
-    given: dict[str, GivenParameter]
+    given: dict[str, DimensionedParameter]
     findings: list[tuple[str, Finding]]
     uses: dict[str, set[object]]
 
 
-def evaluate_parameters(given: dict[str, Any], known: Parameters | None = None) -> Parameters:
-    """The parameters that a spec gives; known: those that hang on nothing that has changed since."""
-    values = _Values(given)
-    written: dict[str, GivenParameter] = {}
-    uses: dict[str, set[object]] = {name: set() for name in given}
-    if known is not None:
-        values.update(known.values)
-        written.update(known.given)
-        uses.update(known.uses)
-    scope = Scope(parameters=values, given=written)
+def evaluate_parameters(block: dict[str, Any], earlier: Parameters | None = None) -> Parameters:
+    """Evaluate the parameters of a block.
+
+    earlier: results of an earlier evaluation that remain valid
+    """
+    values = _Values(block)
+    given_quantities: dict[str, DimensionedParameter] = {}
+    uses: dict[str, set[object]] = {name: set() for name in block}
+    if earlier is not None:
+        values.update(earlier.values)
+        given_quantities.update(earlier.given_quantities)
+        uses.update(earlier.uses)
+    scope = Scope(parameters=values, given=given_quantities)
     findings: list[tuple[str, Finding]] = []
-    for first in given:
-        waiting = {first: None}  # in the order in which they were asked for
-        while waiting:
-            name = next(reversed(waiting))
+    for first in block:
+        pending = {first: None}  # ordered: the last one is evaluated next
+        while pending:
+            name = next(reversed(pending))
             if name in values.keys():  # noqa: SIM118  # `in values` asks whether it is given
-                waiting.popitem()
+                pending.popitem()
                 continue
-            values.asked = uses[name]
+            values.used_names = uses[name]
             try:
-                expression = in_time(given[name], None, scope)
+                expression = read_function(block[name], None, scope)
                 values[name] = expression.constant
                 if expression.dimension is not None:
-                    written[name] = GivenParameter(expression.dimension, expression.source.strip())
-            except _Needed as needed:
-                if needed.name in waiting:
-                    asked = list(waiting)
-                    circle = [*asked[asked.index(needed.name) :], needed.name]
-                    message = f"parameters refer to each other in a circle: {' -> '.join(shortened(circle))}"
-                    findings.append((needed.name, Finding("parameter-circle", message, CUT)))
-                    values.update(dict.fromkeys(circle))
+                    given_quantities[name] = DimensionedParameter(expression.dimension, expression.source.strip())
+            except _UnknownParameter as unknown:
+                if unknown.name in pending:
+                    chain = list(pending)
+                    cycle = [*chain[chain.index(unknown.name) :], unknown.name]
+                    message = f"parameters refer to each other in a circle: {' -> '.join(abbreviate_names(cycle))}"
+                    findings.append((unknown.name, Finding("parameter-circle", message, CIRCLE_HINT)))
+                    values.update(dict.fromkeys(cycle))
                 else:
-                    waiting[needed.name] = None
-            except Follows:
+                    pending[unknown.name] = None
+            except DependentError:
                 values[name] = None
             except Finding as finding:
                 values[name] = None
                 findings.append((name, finding))
-    return Parameters({name: values[name] for name in given}, written, findings, uses)
+    return Parameters({name: values[name] for name in block}, given_quantities, findings, uses)
 
 
-def shortened(names: list[str]) -> list[str]:
-    """A long row of names by its ends."""
-    left_out = len(names) - MOST_TOLD
-    return names if left_out <= 0 else [*names[: MOST_TOLD - 2], f"({left_out} more)", *names[-2:]]
+def abbreviate_names(names: list[str]) -> list[str]:
+    """Abbreviate a long list of names to its two ends."""
+    omitted = len(names) - MAX_LISTED_NAMES
+    return names if omitted <= 0 else [*names[: MAX_LISTED_NAMES - 2], f"({omitted} more)", *names[-2:]]

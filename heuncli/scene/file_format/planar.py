@@ -1,50 +1,50 @@
-"""A scene declared planar, read as one in space: balls as pins about z, vectors of two components with a third."""
+"""Complete a planar scene to one in space: balls become pins about z, vectors of two components get a third."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from heuncli.base.joint_kinds import TYPES
-from heuncli.scene.file_format.names import mapping
+from heuncli.scene.file_format.names import as_mapping
 
-BLOCKS = (
+VECTOR_BLOCKS = (
     "gravity", "ground", "bodies", "joints", "couplings", "rolling", "forces", "impulses", "sections", "foundation",
 )  # fmt: skip
-OF_ENTRIES = ("shapes", "through")  # lists whose members hold vectors
-VECTORS = frozenset({  # keys of vectors that lie in the plane; named points are found under `points`
+ENTRY_LISTS = ("shapes", "through")  # lists whose items hold vectors
+VECTOR_KEYS = frozenset({  # keys of vectors that lie in the plane; named points are found under `points`
     "gravity", "center", "position", "from", "to", "at", "velocity", "vector", "to_vector", "axis", "to_axis", "normal",
     "first_axis", "about",
 })  # fmt: skip
-NOT_IN_PLANE = ("orientation", "angular_velocity")  # what they hold turns about z
+KEYS_ABOUT_Z = ("orientation", "angular_velocity")  # their values are about z already
 
 
-def in_the_plane(data: dict[str, Any]) -> dict[str, Any]:
-    """A planar scene's balls read as pins about z, its pins with that axis if they give none; vectors complete."""
-    data = {key: completed(value, key) if key in BLOCKS else value for key, value in data.items()}
+def complete_planar_scene(data: dict[str, Any]) -> dict[str, Any]:
+    """Return the data with complete vectors; balls become pins about z, and pins without an axis get the z axis."""
+    data = {key: complete_vectors(value, key) if key in VECTOR_BLOCKS else value for key, value in data.items()}
     about_z = {"type": "pin", "axis": [0, 0, 1]}
     joints = {
-        name: {**about_z, **joint, "type": "pin"} if _turns_in_the_plane(joint) else joint
-        for name, joint in mapping(data.get("joints")).items()
+        name: {**about_z, **joint, "type": "pin"} if _is_planar_pin(joint) else joint
+        for name, joint in as_mapping(data.get("joints")).items()
     }
     return {**data, "joints": joints} if joints else data
 
 
-def completed(value: Any, key: str) -> Any:
-    """What stands under a key, its vectors of two components with 0 for the third."""
+def complete_vectors(value: Any, key: str) -> Any:
+    """Return the value of a key; its vectors of two components get 0 as the third."""
     if type(value) is list:
-        if len(value) == 2 and key in VECTORS:
+        if len(value) == 2 and key in VECTOR_KEYS:
             return [*value, 0]
-        return [completed(member, "") for member in value] if key in OF_ENTRIES else value
-    if type(value) is not dict or key in NOT_IN_PLANE:
+        return [complete_vectors(member, "") for member in value] if key in ENTRY_LISTS else value
+    if type(value) is not dict or key in KEYS_ABOUT_Z:
         return value
-    couple = value.get("type") == "couple"
+    is_couple = value.get("type") == "couple"
     return {
-        name: entry if couple and name == "vector" else completed(entry, "at" if key == "points" else name)
+        name: entry if is_couple and name == "vector" else complete_vectors(entry, "at" if key == "points" else name)
         for name, entry in value.items()
     }
 
 
-def _turns_in_the_plane(joint: Any) -> bool:
+def _is_planar_pin(joint: Any) -> bool:
     if type(joint) is not dict:
         return False
     kind = TYPES.get(str(joint.get("type")))

@@ -1,6 +1,6 @@
-"""The format as models of pydantic, made of the classes that read it: for JSON Schema.
+"""The format as pydantic models, made from the classes that read it, for the JSON Schema.
 
-They judge as `judging` does, which tests hold: one format, told to pydantic in two ways.
+They validate like `validation`, which tests verify: one format, described to pydantic in two ways.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ConfigDict, create_model, model_validator
 from pydantic import Field as PydanticField
 
-from heuncli.scene.file_format.entries import Entry, Field, fields_of, once
+from heuncli.scene.file_format.entries import Entry, Field, cached_by_model, fields_of
 
 
 class Strict(BaseModel):
@@ -20,37 +20,39 @@ class Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
-@once
-def model_of(entry: type[Entry]) -> type[BaseModel]:
-    """The model of an entry, of its name, its docstring and its keys."""
+@cached_by_model
+def make_model(entry: type[Entry]) -> type[BaseModel]:
+    """Make the pydantic model of an entry class, with its name, its docstring and its keys."""
     keys: dict[str, Any] = {
-        name: (with_models(field.annotation), told(field)) for name, field in fields_of(entry).items()
+        name: (replace_entries(field.annotation), to_pydantic_field(field)) for name, field in fields_of(entry).items()
     }
-    own = vars(entry).get("before")
-    before: dict[str, Any] = {"before": model_validator(mode="before")(own)} if own is not None else {}
-    made: type[BaseModel] = create_model(
+    own_validator = vars(entry).get("before")
+    before: dict[str, Any] = (
+        {"before": model_validator(mode="before")(own_validator)} if own_validator is not None else {}
+    )
+    model: type[BaseModel] = create_model(
         entry.__name__, __base__=Strict, __module__=entry.__module__, __validators__=before, **keys
     )
-    made.__doc__ = entry.__doc__
-    return made
+    model.__doc__ = entry.__doc__
+    return model
 
 
-def told(field: Field) -> Any:
-    """A key's alias and default, in pydantic's words."""
+def to_pydantic_field(field: Field) -> Any:
+    """Convert a key's alias and default to a pydantic field."""
     if field.default_factory is not None:
         return PydanticField(alias=field.alias, default_factory=field.default_factory)
     return PydanticField(... if field.is_required else field.default, alias=field.alias)
 
 
-def with_models(annotation: Any) -> Any:
-    """An annotation with models in the place of entries."""
+def replace_entries(annotation: Any) -> Any:
+    """Replace entry classes by pydantic models in an annotation."""
     origin, parts = get_origin(annotation), get_args(annotation)
     if isinstance(annotation, type) and issubclass(annotation, Entry):
-        return model_of(annotation)
+        return make_model(annotation)
     if origin is Annotated:
-        return Annotated[with_models(parts[0]), *parts[1:]]
+        return Annotated[replace_entries(parts[0]), *parts[1:]]
     if origin in (Union, types.UnionType):
-        return Union[tuple(map(with_models, parts))]  # noqa: UP007 - of as many as there are
+        return Union[tuple(map(replace_entries, parts))]  # noqa: UP007 - of as many as there are
     if origin is None or origin is Literal:
         return annotation
-    return origin[tuple(map(with_models, parts))]
+    return origin[tuple(map(replace_entries, parts))]

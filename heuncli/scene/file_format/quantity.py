@@ -1,4 +1,4 @@
-"""One reader of numbers: 12, "12 mm", "2*L + 0.1", and in time "5*sin(2*pi*t)". Raises Finding."""
+"""Read every number of a spec: 12, "12 mm", "2*L + 0.1", and in time "5*sin(2*pi*t)". Raises Finding."""
 
 from __future__ import annotations
 
@@ -7,147 +7,155 @@ import re
 from typing import Any
 
 from heuncli.base.errors import Finding
-from heuncli.base.number_range import is_in_range, out_of_range
+from heuncli.base.number_range import is_in_range, range_error
 from heuncli.base.records import replace
-from heuncli.base.units import Dimension, describe, in_si, parse_unit, si_unit, spelled
+from heuncli.base.units import Dimension, correct_unit, describe, parse_unit, si_expression_hint, si_unit
 from heuncli.scene.expressions.grammar import (
     RESERVED,
     WORDS,
-    Follows,
+    DependentError,
     Scope,
     compile_expression,
+    describe_dimensions,
     require_length,
-    told_of,
 )
 from heuncli.scene.expressions.programs import Expression
 
-# A number and then something that begins like a unit; "2 if t < 1 else 3" is an expression all the same.
-# The 1 of 1/s stands apart from it: 21/s is no 2 of 1/s, nor 9.81/2 a 9.8 of 1/2.
-# Possessive (++, *+, ?+): what is taken is not given back, so that a text is read once whatever does not follow.
+# A number followed by something that begins like a unit; "2 if t < 1 else 3" is excluded separately.
+# The 1 of 1/s needs a blank before it: 21/s is not 2 1/s, and 9.81/2 is not 9.8 1/2.
+# Possessive quantifiers (++, *+, ?+) prevent backtracking, so that a text is scanned only once.
 FIGURE = r"\s*+([+-]?\s*+(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+"
 WITH_UNIT = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|(?<=\s)1/)[^,]*+)\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
-TIME_IN_IT = re.compile(r"(?<![\w.])t(?![\w.])")
-CONDITIONS = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
+USES_TIME = re.compile(r"(?<![\w.])t(?![\w.])")
+CONDITIONS_HINT = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
 
 
-def number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
-    """The SI value of what stands in a spec; dimension None takes any."""
+def read_number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
+    """Read a value of a spec as a number in SI; dimension None accepts any. Raises Finding."""
     if type(value) is float or type(value) is int:
-        return in_range(finite(value))
-    expression = in_time(value, dimension, scope)
-    assert expression.constant is not None  # a scope out of time knows no variables
+        return require_in_range(require_finite(value))
+    expression = read_function(value, dimension, scope)
+    assert expression.constant is not None  # a scope without time has no variables
     return expression.constant
 
 
-def in_time(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
-    """The expression that stands in a spec, in SI; its dimension is known where it has a unit."""
-    expression = as_written(value, dimension, scope)
+def read_function(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
+    """Read a value of a spec as an expression in time, in SI; its dimension is known if it has a unit. Raises
+    Finding.
+    """
+    expression = read_unbounded_function(value, dimension, scope)
     if expression.constant is not None:
-        in_range(expression.constant)
+        require_in_range(expression.constant)
     return expression
 
 
-def as_written(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
-    """A value in time as `in_time` reads it, also where it is too large or too small to be computed with."""
+def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
+    """Read a value like `read_function`, but without refusing numbers outside the range of computation."""
     if type(value) is float or type(value) is int:
-        return Expression.of(finite(value))
+        return Expression.from_number(require_finite(value))
     if type(value) is not str:
-        raise Finding("wrong-kind", f"expected a number, found {kind_of(value)}", hint_for(value))
+        raise Finding("wrong-kind", f"expected a number, found {describe_kind(value)}", number_hint(value))
     require_length(value)
     if NOT_A_NUMBER.match(value.strip()):
-        raise Finding("not-finite", f"'{value.strip()}' is not a finite number", FINITE)
-    with_unit = unit_in(value)
+        raise Finding("not-finite", f"'{value.strip()}' is not a finite number", FINITE_HINT)
+    with_unit = match_quantity(value)
     if with_unit is None:
-        return fitting(compiled(value, scope), dimension, scope)
-    size, measured = measure(with_unit[1], with_unit[2].strip(), scope)
-    if dimension is not None and measured != dimension:
+        return require_dimension(compile_text(value, scope), dimension, scope)
+    size, unit_dimension = evaluate_quantity(with_unit[1], with_unit[2].strip(), scope)
+    if dimension is not None and unit_dimension != dimension:
         hint = (
             product_hint(with_unit[1], with_unit[2].strip(), scope)
             or f"a number without a unit is taken in {si_unit(dimension)}"
         )
-        raise Finding("dimension", f"'{value.strip()}' is {describe(measured)}, expected {describe(dimension)}", hint)
-    return replace(Expression.of(size), source=value, dimension=measured)
+        raise Finding(
+            "dimension", f"'{value.strip()}' is {describe(unit_dimension)}, expected {describe(dimension)}", hint
+        )
+    return replace(Expression.from_number(size), source=value, dimension=unit_dimension)
 
 
-def compiled(text: str, scope: Scope) -> Expression:
-    """The expression a text means; of 21/s the hint is the unit as it is written."""
+def compile_text(text: str, scope: Scope) -> Expression:
+    """Compile the expression in a text; for 21/s the hint of the Finding shows how the unit is written."""
     try:
         return compile_expression(text, scope)
     except Finding as finding:
-        found = OVER_UNIT.match(text)
-        if found is None or finding.code not in ("unknown-name", "function-arguments"):
+        division = OVER_UNIT.match(text)
+        if division is None or finding.code not in ("unknown-name", "function-arguments"):
             raise
-        unit = f"1/{found[2]}"
+        unit = f"1/{division[2]}"
         try:
             parse_unit(unit)
         except Finding:
             raise finding from None
-        raise Finding(finding.code, finding.message, f"with a unit: {found[1].strip()} {unit}") from None
+        raise Finding(finding.code, finding.message, f"with a unit: {division[1].strip()} {unit}") from None
 
 
-def unit_in(text: str) -> re.Match[str] | None:
-    """The figure and the unit of a text that is a number with a unit."""
+def match_quantity(text: str) -> re.Match[str] | None:
+    """Match figure and unit of a text that is a number with a unit."""
     found = WITH_UNIT.match(text)
     return found if found is not None and re.split(r"\W", found[2], maxsplit=1)[0] not in WORDS else None
 
 
-def fitting(expression: Expression, dimension: Dimension | None, scope: Scope) -> Expression:
-    """The expression, unless it is certainly of another dimension. Raises Finding."""
-    found = expression.dimension
-    if dimension is None or found is None or found == dimension:
+def require_dimension(expression: Expression, dimension: Dimension | None, scope: Scope) -> Expression:
+    """Return the expression unless it certainly has another dimension. Raises Finding."""
+    own_dimension = expression.dimension
+    if dimension is None or own_dimension is None or own_dimension == dimension:
         return expression
     text, hint = expression.source.strip(), "without a unit a parameter fits anywhere"
-    what = f"'{text}' is {describe(found)}"
+    description = f"'{text}' is {describe(own_dimension)}"
     if text in scope.given:
-        what = f"{text} is {describe(found)} ({scope.given[text].text})"
+        description = f"{text} is {describe(own_dimension)} ({scope.given[text].text})"
     else:
-        hint = f"{told_of(text, scope)}; {hint}"
+        hint = f"{describe_dimensions(text, scope)}; {hint}"
         if WHOLE_NUMBER.search(text):
             hint += "; a whole number is a plain factor: write 3.0 for one that has a unit"
-        if TIME_IN_IT.search(text):
+        if USES_TIME.search(text):
             hint += "; t beside it is a time: for a ramp divide by one, as in F*t/T"
-    raise Finding("wrong-dimension", f"{what}, {describe(dimension)} is wanted here", hint)
+    raise Finding("wrong-dimension", f"{description}, {describe(dimension)} is wanted here", hint)
 
 
-def condition(value: Any, scope: Scope) -> Expression:
-    """The condition that stands in a spec: what is true or not, in time and coordinates."""
+def read_condition(value: Any, scope: Scope) -> Expression:
+    """Read a condition in time and coordinates, which is true or false. Raises Finding."""
     if type(value) is not str:
-        raise Finding("condition", f"expected a condition, found {kind_of(value)}", CONDITIONS)
+        raise Finding("condition", f"expected a condition, found {describe_kind(value)}", CONDITIONS_HINT)
     require_length(value)
-    found = compile_expression(value, replace(scope, with_units=True))
+    expression = compile_expression(value, replace(scope, with_units=True))
     text = value.strip()
-    if not found.is_truth and found.constant is None:
+    if not expression.is_truth and expression.constant is None:
         hint = f"compare it: {text.removesuffix(' == 0')} > 0, say"
         raise Finding("condition", f"'{text}' is a number, not a condition", hint)
-    if found.constant is not None:
-        raise Finding("condition", f"'{text}' never changes: it uses neither the time nor a coordinate", CONDITIONS)
+    if expression.constant is not None:
+        raise Finding(
+            "condition", f"'{text}' never changes: it uses neither the time nor a coordinate", CONDITIONS_HINT
+        )
     if equality := re.search("[=!]=", text):
         message = f"'{text}': a motion passes through an equality ({equality[0]}) in no time"
         raise Finding("condition", message, "compare by > or <: an event tells the instants of both directions")
-    return found
+    return expression
 
 
-def measure(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
-    """SI value and dimension of a figure with a unit."""
+def evaluate_quantity(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
+    """Return SI value and dimension of a figure with a unit. Raises Finding."""
     try:
         size, dimension = parse_unit(unit)
     except Finding as finding:
-        written = spelled(unit)
-        hint = f"write {figure.strip()} {written}" if written else product_hint(figure, unit, scope)
-        hint = hint or inside_hint(figure, unit) or finding.hint
+        usual_spelling = correct_unit(unit)
+        hint = f"write {figure.strip()} {usual_spelling}" if usual_spelling else product_hint(figure, unit, scope)
+        hint = hint or expression_hint(figure, unit) or finding.hint
         raise Finding(finding.code, finding.message, hint) from None
-    return finite(float(figure.replace(" ", "")) * size), dimension
+    return require_finite(float(figure.replace(" ", "")) * size), dimension
 
 
 def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
-    """For '2 L' with a parameter L, or '2 t': a product was meant."""
+    """Return a hint for '2 L' with a parameter L, or '2 t': a product was meant."""
     name = re.split(r"\W", unit, maxsplit=1)[0]
     if name == "t" and re.fullmatch(r"t\s*/\s*m(\^|\*\*)?[3³]", unit):
-        whole = f"tonne{unit[1:]}"
-        return f"t is the time; a thousand kilograms are a tonne: {figure.strip()} {spelled(whole) or whole}"
+        unit_text = f"tonne{unit[1:]}"
+        return (
+            f"t is the time; a thousand kilograms are a tonne: {figure.strip()} {correct_unit(unit_text) or unit_text}"
+        )
     if re.search(r"[+-]\s*+(?:\d++\s*+)?[^\W\d]", unit):
         return "units do not stand inside expressions: give the quantity a name under parameters, or write it in SI"
     if name in scope.parameters or name in RESERVED:
@@ -155,33 +163,33 @@ def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
     return None
 
 
-def inside_hint(figure: str, unit: str) -> str | None:
-    """For '40 mm * 2': what goes on after the unit makes it an expression, in which there are no units."""
+def expression_hint(figure: str, unit: str) -> str | None:
+    """Return a hint for '40 mm * 2': text after the unit makes it an expression, and expressions contain no units."""
     parts = re.match(r"([^\W\d]+)(\s*[-+*/].*)", unit)
-    return in_si(figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None
+    return si_expression_hint(figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None
 
 
-def finite(value: float) -> float:
-    """A number as a float, unless it is inf, nan or too large."""
+def require_finite(value: float) -> float:
+    """Return a number as a float. Raises Finding [not-finite] for inf, nan and overflow."""
     try:
         result = float(value)
     except OverflowError:
         result = math.inf
     if not math.isfinite(result):
-        what = value if isinstance(value, float) else "the number"
-        raise Finding("not-finite", f"{what} is not a finite number", FINITE)
+        description = value if isinstance(value, float) else "the number"
+        raise Finding("not-finite", f"{description} is not a finite number", FINITE_HINT)
     return result
 
 
-def in_range(value: float) -> float:
-    """The number, unless it is too small or too large to be computed with."""
+def require_in_range(value: float) -> float:
+    """Return the number. Raises Finding if it is outside the range of computation."""
     if not is_in_range(value):
-        raise out_of_range(value)
+        raise range_error(value)
     return value
 
 
-def kind_of(value: Any) -> str:
-    """What stands there, in words."""
+def describe_kind(value: Any) -> str:
+    """Describe the kind of a value in words."""
     if value is None:
         return "nothing"
     if type(value) is bool:
@@ -191,8 +199,8 @@ def kind_of(value: Any) -> str:
     return "a list" if type(value) is list else "a mapping" if type(value) is dict else "a number"
 
 
-def hint_for(value: Any) -> str:
-    """What to do about it."""
+def number_hint(value: Any) -> str:
+    """Return a hint on how to write a number instead of this value."""
     if type(value) is dict and len(value) == 1 and next(iter(value.values())) is None:
         return "an expression with { } is written without them"
     if value is None:
@@ -202,6 +210,6 @@ def hint_for(value: Any) -> str:
     return 'as 0.5, "12 mm" or "2*L"'
 
 
-FINITE = "where there is no limit leave the key out; in [low, high] write null"
+FINITE_HINT = "where there is no limit leave the key out; in [low, high] write null"
 
-__all__ = ["Follows", "Scope", "in_time", "kind_of", "number"]
+__all__ = ["DependentError", "Scope", "read_function", "describe_kind", "read_number"]

@@ -1,10 +1,10 @@
-"""Bytes of a file, or of what stands for one, up to a limit: the one place at which heun opens what it reads. Impure.
+"""Read the bytes of files and of standard input, up to a limit. The only place at which heun opens its input. Impure.
 
-Ordinary files are judged by their size before a byte is read. Pipes, `<(command)` and `/dev/fd/N` are read until they
-end or pass the limit. Devices are refused unread, but for a terminal and for what is always empty: they never end.
+The size of an ordinary file is checked before a byte is read. Pipes, `<(command)` and `/dev/fd/N` are read until they
+end or exceed the limit. Devices may never end, so they are refused unread, except a terminal and the null device.
 
-Which files a command has read is remembered, by what they are and not by what they are called, for none of them is
-written over: a link, a hard link, another spelling or `/dev/fd/3` is the same file.
+The files that a command has read are remembered by device and inode, so that the command never overwrites one of them:
+a link, a hard link, another spelling or `/dev/fd/3` is the same file.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import BinaryIO
 from heuncli.base.errors import Finding
 
 STANDARD_INPUT = "-"
-GIVE = "give a file, or - for standard input"
-CHUNK = 1 << 20  # bytes at a time: few calls, and beyond the limit no more than this is kept
+INPUT_HINT = "give a file, or - for standard input"
+CHUNK = 1 << 20  # bytes per read: few calls, and little memory beyond the limit
 FILE_KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISBLK, "a disk"),
@@ -33,36 +33,36 @@ REASONS = {  # why a file cannot be opened, and what to do
     errno.EPERM: ("the file may not be read", "look at its permissions"),
     errno.ELOOP: ("its links lead in a circle", "look where they lead: ls -l"),
     errno.ENAMETOOLONG: ("the name is too long for a file", None),
-    errno.ENXIO: ("this is a socket, not a file", GIVE),
+    errno.ENXIO: ("this is a socket, not a file", INPUT_HINT),
 }
-_READ: dict[tuple[int, int], str] = {}  # device and number of each file -> the name it was read by
+_NAMES_READ: dict[tuple[int, int], str] = {}  # device and number of each file -> the name it was read by
 
 
-def forget() -> None:
-    """Another command begins: nothing was read yet."""
-    _READ.clear()
+def forget_files_read() -> None:
+    """Forget the files that earlier commands read."""
+    _NAMES_READ.clear()
 
 
-def name_of(state: os.stat_result) -> str | None:
-    """By what name an ordinary file was read, if it was; a pipe or a device is no content that could be lost."""
-    return _READ.get((state.st_dev, state.st_ino)) if stat.S_ISREG(state.st_mode) else None
+def find_name_read(state: os.stat_result) -> str | None:
+    """Return the name by which an ordinary file was read, or None. Pipes and devices hold no content to protect."""
+    return _NAMES_READ.get((state.st_dev, state.st_ino)) if stat.S_ISREG(state.st_mode) else None
 
 
-def read_bytes(path: str, most: int) -> bytearray:
-    """The content of a file, or of standard input for "-". Raises Finding: unreadable, or too-large beyond `most`."""
+def read_bytes(path: str, max_size: int) -> bytearray:
+    """Read a file, or standard input for "-". Raises Finding [unreadable], or [too-large] above `max_size` bytes."""
     try:
         if path == STANDARD_INPUT:
-            return _of_standard_input(most)
-        number = os.open(path, os.O_RDONLY | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0))
+            return _read_standard_input(max_size)
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0))
         try:
-            _guard(number, path, most)
+            _require_readable(descriptor, path, max_size)
         except BaseException:
-            os.close(number)
+            os.close(descriptor)
             raise
-        with os.fdopen(number, "rb") as file:
-            return _bounded(file, most)
+        with os.fdopen(descriptor, "rb") as file:
+            return _read_limited(file, max_size)
     except OSError as error:
-        raise _unreadable(error) from None
+        raise _unreadable_finding(error) from None
     except ValueError as error:
         if isinstance(error, Finding):
             raise
@@ -70,57 +70,57 @@ def read_bytes(path: str, most: int) -> bytearray:
         raise Finding("unreadable", "this cannot be the name of a file", hint) from None
 
 
-def _of_standard_input(most: int) -> bytearray:
+def _read_standard_input(max_size: int) -> bytearray:
     if sys.stdin is None:
         raise Finding("unreadable", "standard input is closed", "name a file, or send a spec: heun ... - < FILE")
     try:
-        number = sys.stdin.buffer.fileno()
-    except (OSError, ValueError):  # one that is none of the system's
-        return _bounded(sys.stdin.buffer, most)
-    _guard(number, STANDARD_INPUT, most)
-    return _bounded(sys.stdin.buffer, most)
+        descriptor = sys.stdin.buffer.fileno()
+    except (OSError, ValueError):  # a stream without a file descriptor
+        return _read_limited(sys.stdin.buffer, max_size)
+    _require_readable(descriptor, STANDARD_INPUT, max_size)
+    return _read_limited(sys.stdin.buffer, max_size)
 
 
-def _guard(number: int, path: str, most: int) -> None:
-    """Refuse what is of a kind that is not read, or too large, before reading; number: of an open file."""
-    state = os.fstat(number)
+def _require_readable(descriptor: int, path: str, max_size: int) -> None:
+    """Refuse a file of an unreadable kind or size before it is read, and remember an ordinary file."""
+    state = os.fstat(descriptor)
     if stat.S_ISREG(state.st_mode):
-        _READ.setdefault((state.st_dev, state.st_ino), path)
+        _NAMES_READ.setdefault((state.st_dev, state.st_ino), path)
     kind = next((words for is_kind, words in FILE_KINDS if is_kind(state.st_mode)), None)
-    if kind is not None and not (stat.S_ISCHR(state.st_mode) and _ends(number)):
-        hint = "for folders of specs: heun check" if kind == "a folder" else GIVE
+    if kind is not None and not (stat.S_ISCHR(state.st_mode) and _is_finite_device(descriptor)):
+        hint = "for folders of specs: heun check" if kind == "a folder" else INPUT_HINT
         raise Finding("unreadable", f"this is {kind}, not a file", hint)
-    if stat.S_ISREG(state.st_mode) and state.st_size > most:
-        raise _too_large(_megabytes(state.st_size), most)
+    if stat.S_ISREG(state.st_mode) and state.st_size > max_size:
+        raise _too_large_finding(_format_megabytes(state.st_size), max_size)
 
 
-def _ends(number: int) -> bool:
-    """Whether an open device comes to an end: a terminal by Ctrl-D, the null device at once."""
-    return os.isatty(number) or os.path.samestat(os.fstat(number), os.stat(os.devnull))  # noqa: PTH116 - pathlib takes 3 ms
+def _is_finite_device(descriptor: int) -> bool:
+    """Whether an open device comes to an end: a terminal (by Ctrl-D) or the null device."""
+    return os.isatty(descriptor) or os.path.samestat(os.fstat(descriptor), os.stat(os.devnull))  # noqa: PTH116 - pathlib takes 3 ms
 
 
-def _bounded(file: BinaryIO, most: int) -> bytearray:
-    """All of a stream, chunk by chunk, until it is more than is read."""
+def _read_limited(file: BinaryIO, max_size: int) -> bytearray:
+    """Read a stream in chunks. Raises Finding [too-large] above `max_size` bytes."""
     content = bytearray()
     while chunk := file.read(CHUNK):
         content += chunk
-        if len(content) > most:
-            raise _too_large(f"more than {_megabytes(most)}", most)
+        if len(content) > max_size:
+            raise _too_large_finding(f"more than {_format_megabytes(max_size)}", max_size)
     return content
 
 
-def _unreadable(error: OSError) -> Finding:
-    """Why something cannot be read, in words."""
+def _unreadable_finding(error: OSError) -> Finding:
+    """Explain an OSError in words."""
     message, hint = REASONS.get(error.errno or 0, (None, None))
     hint = hint or "paths are relative to where heun was started"
     return Finding("unreadable", message or f"it cannot be read: {error.strerror or error}", hint)
 
 
-def _too_large(found: str, most: int) -> Finding:
-    """What is beyond the limit: how large it is, and how much is read."""
+def _too_large_finding(size_text: str, max_size: int) -> Finding:
+    """Make the finding for a file above the limit."""
     hint = "is it the right file? What is generated may be split, or thinned"
-    return Finding("too-large", f"this has {found}; at most {_megabytes(most)} are read", hint)
+    return Finding("too-large", f"this has {size_text}; at most {_format_megabytes(max_size)} are read", hint)
 
 
-def _megabytes(size: int) -> str:
+def _format_megabytes(size: int) -> str:
     return f"{size / 1e6:.6g} MB"

@@ -1,4 +1,4 @@
-"""From the document as written to the scene as meant: references followed, forms made one, defaults filled in.
+"""Resolve a document as written into a scene: follow references, unify alternative forms, fill in defaults.
 
 For documents in which no rule found an error.
 """
@@ -9,9 +9,15 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.base.errors import Problem, SourceLocation
-from heuncli.base.method_rows import canonical
+from heuncli.base.method_rows import canonical_name
 from heuncli.base.records import record
-from heuncli.scene.expressions.composed import product, renamed, total, with_factor, within
+from heuncli.scene.expressions.composed import (
+    add_expressions,
+    limit_magnitude,
+    multiply_expressions,
+    rename_coordinates,
+    scale_coordinate,
+)
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import LOADS, OWN, Expression, TableFunction
 from heuncli.scene.file_format import format as f
@@ -22,19 +28,24 @@ from heuncli.scene.file_format.couplings import Coupling
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.format_couplings import CouplingEntry
 from heuncli.scene.file_format.format_rolling import RollingEntry
-from heuncli.scene.file_format.motors import curve_of, rotors
+from heuncli.scene.file_format.motors import make_rotors, make_torque_curve
 from heuncli.scene.file_format.names import GROUND, UNTIL
-from heuncli.scene.file_format.resolve_couplings import conditions_of_belts, conditions_of_wheels, meant, wheel_meant
+from heuncli.scene.file_format.resolve_couplings import (
+    iter_belt_conditions,
+    iter_wheel_conditions,
+    resolve_coupling,
+    resolve_wheel,
+)
 from heuncli.scene.file_format.semantics import (
-    body_axes,
-    drive_of,
-    end_of,
-    held_of,
-    instants_of,
-    limits_of,
-    point_in,
-    tensor,
-    type_of,
+    find_analysis_type,
+    find_driven_coordinate,
+    find_held_coordinate,
+    find_limits,
+    find_point,
+    find_reduction_end,
+    inertia_tensor,
+    list_instants,
+    orientation_matrix,
 )
 from heuncli.scene.file_format.turns import IDENTITY
 
@@ -46,8 +57,8 @@ DEFAULT_TOLERANCE = 1e-9
 
 
 @record
-class Meaning:
-    """What resolve needs beside the document."""
+class ResolveInputs:
+    """What `resolve` needs besides the document."""
 
     path: str
     sha256: str
@@ -60,50 +71,53 @@ class Meaning:
     case: str | None
 
 
-def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) -> m.Spec:
-    """The scene that a document without errors means; by: what follows the references, one of them by default."""
-    r = by or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
-    joints = r.entries("joints", "joint")
-    of_motors = rotors(document, joints, meaning.locations)
+def resolve(document: f.Document, meaning: ResolveInputs, resolver: Resolver | None = None) -> m.Spec:
+    """Resolve a document without errors into a scene.
+
+    resolver: resolves the references; by default a plain Resolver
+    """
+    active_resolver = resolver or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
+    joints = active_resolver.resolve_entries("joints", "joint")
+    motor_rotors = make_rotors(document, joints, meaning.locations)
     return m.Spec(
-        title=titled(document, meaning.case),
+        title=format_title(document, meaning.case),
         path=meaning.path,
         sha256=meaning.sha256,
         space=document.head.space,
         parameters=meaning.parameters,
         gravity=document.head.gravity,
         ground=m.Ground(document.ground.points),
-        bodies=r.entries("bodies", "body") | of_motors.bodies,
-        joints=joints | of_motors.joints,
-        drives=r.entries("drives", "drive"),
-        forces=r.entries("forces", "force"),
-        impulses=r.entries("impulses", "impulse"),
-        stops=r.entries("stops", "stop"),
-        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel") | of_motors.couplings,
-        latches=r.entries("latches", "latch"),
-        sections=r.entries("sections", "section"),
+        bodies=active_resolver.resolve_entries("bodies", "body") | motor_rotors.bodies,
+        joints=joints | motor_rotors.joints,
+        drives=active_resolver.resolve_entries("drives", "drive"),
+        forces=active_resolver.resolve_entries("forces", "force"),
+        impulses=active_resolver.resolve_entries("impulses", "impulse"),
+        stops=active_resolver.resolve_entries("stops", "stop"),
+        couplings=active_resolver.resolve_entries("couplings", "coupling") | active_resolver.resolve_entries("rolling", "wheel") | motor_rotors.couplings,
+        latches=active_resolver.resolve_entries("latches", "latch"),
+        sections=active_resolver.resolve_entries("sections", "section"),
         tables=meaning.tables,
-        analysis=r.single("analysis"),
+        analysis=active_resolver.resolve_single("analysis"),
         report=tuple(document.head.report) if document.head.report is not None else None,
-        foundation=m.Foundation(r.about(document.foundation.about)),
-        expect=tuple(r.entries("expect", "expect").values()),
+        foundation=m.Foundation(active_resolver.find_reference_point(document.foundation.about)),
+        expect=tuple(active_resolver.resolve_entries("expect", "expect").values()),
         cases={name: case.title for name, case in document.cases.items()},
         case=meaning.case,
         warnings=meaning.warnings,
-        locations={**meaning.locations, **of_motors.locations} if of_motors.locations else meaning.locations,
+        locations={**meaning.locations, **motor_rotors.locations} if motor_rotors.locations else meaning.locations,
     )  # fmt: skip
 
 
-def titled(document: f.Document, case: str | None) -> str:
-    """The title of a scene, in a load case with that of the case."""
+def format_title(document: f.Document, case: str | None) -> str:
+    """Return the title of a scene; in a load case extended by the title of the case."""
     if case is None:
         return document.head.title
-    own = document.cases[case].title if case in document.cases else ""
-    return f"{document.head.title} (case {case}{': ' if own else ''}{own})".strip()
+    case_title = document.cases[case].title if case in document.cases else ""
+    return f"{document.head.title} (case {case}{': ' if case_title else ''}{case_title})".strip()
 
 
 class Resolver:
-    """Follows the references of one document."""
+    """Resolves the references of one document."""
 
     def __init__(
         self,
@@ -114,23 +128,29 @@ class Resolver:
     ) -> None:
         self.document, self.locations, self.curves, self.surfaces = document, locations, curves, surfaces
 
-    def entries(self, block: str, by: str) -> dict[Any, Any]:
-        """What the entries of a block mean; by: the method that tells it of one."""
-        made = getattr(self, by)
-        return {name: made(name, entry) for name, entry in getattr(self.document, block).items()}
+    def resolve_entries(self, block: str, method: str) -> dict[Any, Any]:
+        """Resolve the entries of a block.
 
-    def single(self, by: str) -> Any:
-        """What the document as a whole means; by: the method that tells it."""
-        return getattr(self, by)()
+        method: name of the method that resolves one of them
+        """
+        resolve_entry = getattr(self, method)
+        return {name: resolve_entry(name, entry) for name, entry in getattr(self.document, block).items()}
+
+    def resolve_single(self, method: str) -> Any:
+        """Resolve a part that belongs to the document as a whole.
+
+        method: name of the method that resolves it
+        """
+        return getattr(self, method)()
 
     def analysis(self) -> m.Analysis:
-        analysis, kind = self.document.analysis, type_of(self.document)
-        instants = instants_of(self.document)
+        analysis, kind = self.document.analysis, find_analysis_type(self.document)
+        instants = list_instants(self.document)
         return m.Analysis(
             kind, instants, instants[-1] if kind == "motion" else None,
-            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
+            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical_name(analysis.method),
             analysis.step,
-            (*self.conditions(analysis), *(self.brought() if kind == "motion" else ())),
+            (*self.make_conditions(analysis), *(self.iter_entry_conditions() if kind == "motion" else ())),
             analysis.tolerance is not None,
             analysis.impacts,
         )  # fmt: skip
@@ -145,12 +165,14 @@ class Resolver:
         assert end.at is not None
         return m.End(end.body, end.at)
 
-    def placed(self, value: Expression, path: str) -> Expression:
+    def attach_location(self, value: Expression, path: str) -> Expression:
         location = self.locations.get(path)
-        return value.at(location) if location is not None else value
+        return value.with_location(location) if location is not None else value
 
-    def vector(self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector") -> m.Vector:
-        x, y, z = (self.placed(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
+    def attach_locations(
+        self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector"
+    ) -> m.Vector:
+        x, y, z = (self.attach_location(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
         return x, y, z
 
     def shape(self, shape: fs.ShapeEntry) -> m.Shape:
@@ -169,16 +191,16 @@ class Resolver:
         )
         rotation = None
         if isinstance(shape, fs.BoxShape | fs.MeshShape):
-            rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
-        meant = m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+            rotation = orientation_matrix(shape.orientation) if shape.orientation is not None else IDENTITY
+        resolved = m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
         if not isinstance(shape, fs.MeshShape):
-            return meant
-        return meant._replace(
+            return resolved
+        return resolved._replace(
             at=shape.at or m.ZERO, scale=1.0 if shape.scale is None else shape.scale, mesh=self.surfaces[shape.file]
         )
 
     def piece(self, piece: f.PieceEntry | None) -> m.MassProperties | None:
-        return m.MassProperties(piece.mass, piece.center, tensor(piece)) if piece is not None else None
+        return m.MassProperties(piece.mass, piece.center, inertia_tensor(piece)) if piece is not None else None
 
     def body(self, name: str, body: f.BodyEntry) -> m.Body[m.Vec, m.Matrix]:
         near = body.near
@@ -186,14 +208,14 @@ class Resolver:
             name=name,
             mass=body.mass if body.mass is not None else 0.0,
             center=body.center if body.center is not None else m.ZERO,
-            inertia=tensor(body) if body.inertia is not None else (m.ZERO, m.ZERO, m.ZERO),
+            inertia=inertia_tensor(body) if body.inertia is not None else (m.ZERO, m.ZERO, m.ZERO),
             points=body.points,
             position=body.position,
-            rotation=body_axes(body.orientation) if body.orientation is not None else None,
-            velocity=directed(body.velocity),
-            angular_velocity=directed(body.angular_velocity),
+            rotation=orientation_matrix(body.orientation) if body.orientation is not None else None,
+            velocity=make_framed_vector(body.velocity),
+            angular_velocity=make_framed_vector(body.angular_velocity),
             near_position=near.position if near is not None else None,
-            near_rotation=body_axes(near.orientation) if near is not None and near.orientation else None,
+            near_rotation=orientation_matrix(near.orientation) if near is not None and near.orientation else None,
             shapes=tuple(self.shape(shape) for shape in body.shapes) if body.shapes is not None else None,
         )
 
@@ -218,123 +240,145 @@ class Resolver:
             speed=getattr(initial, "speed", None),
             length=getattr(joint, "length", None),
             tension_only=getattr(joint, "tension_only", False),
-            stiffness=stiffness(joint.stiffness),
+            stiffness=expand_stiffness(joint.stiffness),
             drive=None,
             restitution=getattr(joint, "restitution", None),
-            bearing=area(getattr(joint, "bearing", None)),
+            bearing=bearing_area(getattr(joint, "bearing", None)),
             p_name=a.name,
             q_name=b.name,
-            path=self.path(joint) if isinstance(joint, f.CurveJoint) else None,
+            path=self.make_path(joint) if isinstance(joint, f.CurveJoint) else None,
             one_sided=getattr(joint, "one_sided", False),
         )
 
-    def path(self, joint: f.CurveJoint) -> Path:
-        """What the point of a curve runs along, or the centre of its roller beside."""
-        from heuncli.scene.expressions.paths import (  # with NumPy, which a spec without one needs not
-            path_beside,
-            path_of,
+    def make_path(self, joint: f.CurveJoint) -> Path:
+        """Return the path of a curve joint's point, or of its roller's centre next to it."""
+        from heuncli.scene.expressions.paths import (  # loads NumPy, which other specs do not need
+            make_path,
+            make_roller_path,
         )
 
-        found = path_of((joint.x, joint.y, joint.z))
+        raw_path = make_path((joint.x, joint.y, joint.z))
         if joint.radius is None and not joint.one_sided:
-            return found
-        return path_beside(found, joint.radius or 0.0, joint.normal or (0.0, 0.0, 1.0))
+            return raw_path
+        return make_roller_path(raw_path, joint.radius or 0.0, joint.normal or (0.0, 0.0, 1.0))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
-        driven = drive_of(drive, self.document.joints[drive.joint].type)
+        driven = find_driven_coordinate(drive, self.document.joints[drive.joint].type)
         assert driven is not None
-        value = self.placed(driven.value, f"drives.{name}.{driven.key}")
+        value = self.attach_location(driven.value, f"drives.{name}.{driven.key}")
         return m.Drive(name, drive.joint, driven.quantity, value, drive.zero == "assembled", driven.by_rate)
 
     def force(self, name: str, load: f.LoadEntry) -> m.Force:
         path = f"forces.{name}"
         match load:
             case f.ForceEntry():
-                return m.PointForce(self.end(load.on), self.vector(load.vector, path), load.frame)
+                return m.PointForce(self.end(load.on), self.attach_locations(load.vector, path), load.frame)
             case f.CoupleEntry():
                 on = self.end(load.on) if load.on.at is not None else None
-                return m.Couple(load.on.body, on, self.vector(load.vector, path), load.frame)
+                return m.Couple(load.on.body, on, self.attach_locations(load.vector, path), load.frame)
             case f.TorqueEntry():
-                return m.Torque(load.joint, self.placed(load.value, f"{path}.value"))
+                return m.Torque(load.joint, self.attach_location(load.value, f"{path}.value"))
             case f.ActuatorEntry():
-                return m.Actuator(self.end(load.from_), self.end(load.to), self.placed(load.value, f"{path}.value"))
+                return m.Actuator(
+                    self.end(load.from_), self.end(load.to), self.attach_location(load.value, f"{path}.value")
+                )
             case f.SpringEntry():
-                law = self.own(load.force, f"{path}.force", f"{LOADS}.{name}")
+                law = self.bind_law(load.force, f"{path}.force", f"{LOADS}.{name}")
                 numbers = load.stiffness or 0.0, load.length or 0.0, load.damping or 0.0
                 return m.Spring(self.end(load.from_), self.end(load.to), *numbers, law)
             case f.TurnSpringEntry():
-                law = self.own(load.torque, f"{path}.torque", load.joint)
+                law = self.bind_law(load.torque, f"{path}.torque", load.joint)
                 return m.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
             case fe.BushingEntry():
                 return self.bushing(name, load)
             case fe.MotorEntry():
                 return self.motor(load, path)
             case f.DistributedEntry():
-                return self.distributed(load, path)
+                return self.make_distributed(load, path)
             case f.DamperEntry():
-                coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
-                torque, force = (self.own(getattr(load, k), f"{path}.{k}", load.joint) for k in ("torque", "force"))
+                coefficient = constant_value(load.coefficient) if load.coefficient is not None else 0.0
+                torque, force = (
+                    self.bind_law(getattr(load, k), f"{path}.{k}", load.joint) for k in ("torque", "force")
+                )
                 return m.Damper(load.joint, coefficient, load.sliding, torque or force)
             case _:
                 by_load = load.coefficient, load.radius, load.length
                 torque, force = (
-                    self.placed(value, f"{path}.{k}") if (value := getattr(load, k)) is not None else None
+                    self.attach_location(value, f"{path}.{k}") if (value := getattr(load, k)) is not None else None
                     for k in ("torque", "force")
                 )
-                return m.Friction(load.joint, torque, force, constant(load.speed), *by_load)
+                return m.Friction(load.joint, torque, force, constant_value(load.speed), *by_load)
 
-    def own(self, law: Expression | None, path: str, owner: str) -> Expression | None:
-        """A law of what a load itself acts between: of its line's length, or of its joint's coordinate."""
+    def bind_law(self, law: Expression | None, path: str, owner: str) -> Expression | None:
+        """Bind a load's law to its own variables: the length of its line, or the coordinate of its joint."""
         if law is None:
             return None
-        return renamed(self.placed(law, path), {use: (owner, use[1]) for use in law.uses if use[0] == OWN})
+        return rename_coordinates(
+            self.attach_location(law, path), {use: (owner, use[1]) for use in law.uses if use[0] == OWN}
+        )
 
     def motor(self, load: fe.MotorEntry, path: str) -> m.Motor:
-        """ratio * value * curve(ratio * rate), within the limit of the motor itself."""
-        law = with_factor(self.placed(curve_of(load), f"{path}.curve"), (OWN, "rate"), load.ratio)
-        law = within(law, load.limit) if load.limit is not None else law
+        """Resolve a motor: ratio * value * curve(ratio * rate), within the limit of the motor itself."""
+        law = scale_coordinate(
+            self.attach_location(make_torque_curve(load), f"{path}.curve"), (OWN, "rate"), load.ratio
+        )
+        law = limit_magnitude(law, load.limit) if load.limit is not None else law
         if load.value is not None:
-            law = product(self.placed(load.value, f"{path}.value"), law)
-        told = self.own(product(Expression.of(load.ratio), law), f"{path}.curve", load.joint)
-        assert told is not None
-        return m.Motor(load.joint, told)
+            law = multiply_expressions(self.attach_location(load.value, f"{path}.value"), law)
+        bound = self.bind_law(
+            multiply_expressions(Expression.from_number(load.ratio), law), f"{path}.curve", load.joint
+        )
+        assert bound is not None
+        return m.Motor(load.joint, bound)
 
     def bushing(self, name: str, load: fe.BushingEntry) -> m.Bushing:
-        rotation = body_axes(load.orientation) if load.orientation is not None else IDENTITY
-        to_rotation = body_axes(load.to_orientation) if load.to_orientation is not None else rotation
-        shift = self.elastic(name, "shift", load.stiffness, load.damping, load.preload)
-        turn = self.elastic(name, "turn", load.turning, load.turning_damping, load.turning_preload)
+        rotation = orientation_matrix(load.orientation) if load.orientation is not None else IDENTITY
+        to_rotation = orientation_matrix(load.to_orientation) if load.to_orientation is not None else rotation
+        shift = self.make_elastic(name, "shift", load.stiffness, load.damping, load.preload)
+        turn = self.make_elastic(name, "turn", load.turning, load.turning_damping, load.turning_preload)
         return m.Bushing(self.end(load.from_), self.end(load.to), shift, turn, rotation, to_rotation)
 
-    def elastic(self, name: str, of: str, stiffness: Any, damping: Any, preload: m.Vec | None) -> m.Elastic[m.Vec]:
-        """The three springs of a bushing's shift or turn; what has no stiffness given is a table."""
-        laws = self.storing(three(stiffness))
+    def make_elastic(
+        self, name: str, motion: str, stiffness: Any, damping: Any, preload: m.Vec | None
+    ) -> m.Elastic[m.Vec]:
+        """Make the three springs of a bushing's translation or rotation.
+
+        motion: "shift" or "turn". An axis without a constant stiffness has a table.
+        """
+        laws = self.add_table_areas(expand_to_axes(stiffness))
         preload = preload or m.ZERO
-        given = [Expression.of(x) for x in preload]
+        extra_load = [Expression.from_number(x) for x in preload]
         numbers = tuple(0.0 if isinstance(law, Expression) else law for law in laws)
-        path = f"forces.{name}.{'stiffness' if of == 'shift' else 'turning'}"
+        path = f"forces.{name}.{'stiffness' if motion == 'shift' else 'turning'}"
         for i, law in enumerate(laws):
             if isinstance(law, Expression):
-                placed = renamed(self.placed(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{of}_{'xyz'[i]}")})
-                given[i] = total(given[i], placed)
-        return m.Elastic((numbers[0], numbers[1], numbers[2]), three(damping), preload, (given[0], given[1], given[2]))
+                law_of_axis = rename_coordinates(
+                    self.attach_location(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{motion}_{'xyz'[i]}")}
+                )
+                extra_load[i] = add_expressions(extra_load[i], law_of_axis)
+        return m.Elastic(
+            (numbers[0], numbers[1], numbers[2]),
+            expand_to_axes(damping),
+            preload,
+            (extra_load[0], extra_load[1], extra_load[2]),
+        )
 
-    def storing(self, laws: tuple[Any, Any, Any]) -> list[Any]:
-        """Stiffnesses, those by a table with its areas; of one table for several axes they are found once."""
+    def add_table_areas(self, laws: tuple[Any, Any, Any]) -> list[Any]:
+        """Return the stiffness laws, tables extended by their areas; a table used for several axes is extended once."""
         if not any(isinstance(law, Expression) for law in laws):
             return list(laws)
-        from heuncli.scene.expressions.areas import with_areas  # with NumPy, which a table has loaded
+        from heuncli.scene.expressions.areas import append_areas  # needs NumPy, which a table has loaded already
 
-        own = {id(law): with_areas(law) for law in laws if isinstance(law, Expression)}
-        return [own.get(id(law), law) for law in laws]
+        tables_with_areas = {id(law): append_areas(law) for law in laws if isinstance(law, Expression)}
+        return [tables_with_areas.get(id(law), law) for law in laws]
 
-    def distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
+    def make_distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
         body = self.document.bodies[load.on]
-        start, end = point_in(body, load.from_), point_in(body, load.to)
+        start, end = find_point(body, load.from_), find_point(body, load.to)
         assert start is not None
         assert end is not None
-        vector = self.vector(load.vector, path)
-        to_vector = vector if load.to_vector is None else self.vector(load.to_vector, path, "to_vector")
+        vector = self.attach_locations(load.vector, path)
+        to_vector = vector if load.to_vector is None else self.attach_locations(load.to_vector, path, "to_vector")
         return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
     def impulse(self, name: str, blow: f.ImpulseEntry) -> m.Blow[str, m.Vec]:
@@ -349,100 +393,102 @@ class Resolver:
         when = None
         if blow.when is not None:
             path = f"impulses.{name}"
-            when = m.Condition(path, blow.when.source.strip(), False, self.placed(blow.when, f"{path}.when"))
-        return m.Blow(name, body, point, vector, in_body, blow.time, kind, when, blow.every)
+            when = m.Condition(path, blow.when.source.strip(), False, self.attach_location(blow.when, f"{path}.when"))
+        return m.AppliedImpulse(name, body, point, vector, in_body, blow.time, kind, when, blow.every)
 
     def section(self, _: str, section: f.SectionEntry) -> m.Section:
         body = self.document.bodies[section.body]
-        at, start, end = (point_in(body, at_or_name) for at_or_name in (section.at, section.from_, section.to))
+        at, start, end = (find_point(body, at_or_name) for at_or_name in (section.at, section.from_, section.to))
         normal = section.normal
         if normal is None:
             assert start is not None
             assert end is not None
             normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
-        point = end_of(section.reduce_to)
+        point = find_reduction_end(section.reduce_to)
         reduce_to: Any = self.end(point) if point is not None else section.reduce_to
         return m.Section(
             body=section.body, normal=normal, at=at, from_=start, to=end, count=section.count or 1,
             first_axis=section.first_axis, reduce_to=reduce_to, side=section.side,
-            properties=properties(section.properties), strength=section.strength,
+            properties=make_properties(section.properties), strength=section.strength,
             piece=self.piece(section.piece or (body.piece if at is not None else None)),
         )  # fmt: skip
 
-    def about(self, about: object) -> m.Vec | None:
-        if isinstance(about, str):
-            return self.document.ground.points[about.rpartition(".")[2]]
-        return about  # type: ignore[return-value]
+    def find_reference_point(self, point: object) -> m.Vec | None:
+        if isinstance(point, str):
+            return self.document.ground.points[point.rpartition(".")[2]]
+        return point  # type: ignore[return-value]
 
-    def conditions(self, analysis: f.AnalysisEntry) -> tuple[m.WatchedCondition, ...]:
-        found = [(UNTIL, True, UNTIL, analysis.until)] if analysis.until is not None else []
-        found += [(name, False, f"events.{name}", given) for name, given in analysis.events.items()]
-        return tuple(self.condition(*row) for row in found)
+    def make_conditions(self, analysis: f.AnalysisEntry) -> tuple[m.WatchedCondition, ...]:
+        rows = [(UNTIL, True, UNTIL, analysis.until)] if analysis.until is not None else []
+        rows += [(name, False, f"events.{name}", condition) for name, condition in analysis.events.items()]
+        return tuple(self.make_condition(*row) for row in rows)
 
-    def brought(self) -> Iterator[m.ResultCondition]:
-        """What entries bring with them to be watched for."""
-        yield from conditions_of_wheels(self.document.rolling)
-        yield from conditions_of_belts(self.document.couplings)
+    def iter_entry_conditions(self) -> Iterator[m.ResultCondition]:
+        """Yield the conditions that entries bring with them, such as wheels and belts."""
+        yield from iter_wheel_conditions(self.document.rolling)
+        yield from iter_belt_conditions(self.document.couplings)
 
-    def condition(
-        self, name: str, ends: bool, path: str, given: Expression | f.ResultConditionEntry
+    def make_condition(
+        self, name: str, ends: bool, path: str, entry: Expression | f.ResultConditionEntry
     ) -> m.WatchedCondition:
-        if isinstance(given, Expression):
-            return m.Condition(name, given.source.strip(), ends, self.placed(given, f"analysis.{path}"))
-        above = given.above is not None
-        limit = given.above if given.above is not None else given.below
+        if isinstance(entry, Expression):
+            return m.Condition(name, entry.source.strip(), ends, self.attach_location(entry, f"analysis.{path}"))
+        is_above = entry.above is not None
+        limit = entry.above if entry.above is not None else entry.below
         assert limit is not None
-        number = limit.source.strip() if limit.dimension is not None else f"{constant(limit):.9g}"
-        text = f"{given.of} {'above' if above else 'below'} {number}"
-        return m.ResultCondition(name, text, ends, given.of, constant(limit), above)
+        number = limit.source.strip() if limit.dimension is not None else f"{constant_value(limit):.9g}"
+        text = f"{entry.of} {'above' if is_above else 'below'} {number}"
+        return m.ResultCondition(name, text, ends, entry.of, constant_value(limit), is_above)
 
     def expect(self, i: int, item: f.ExpectEntry) -> m.Expect:
         location = self.locations.get(f"expect.{i}", SourceLocation("", 1, 1))
         return m.Expect(
-            item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location,
-            numbers(item.below), numbers(item.above), self.curves.get(i),
+            item.of, item.at, item.peak, evaluate_numbers(item.is_), item.rel, evaluate_numbers(item.abs), location,
+            evaluate_numbers(item.below), evaluate_numbers(item.above), self.curves.get(i),
         )  # fmt: skip
 
-    def wheel(self, name: str, given: RollingEntry) -> Coupling:
-        return wheel_meant(self, given)
+    def wheel(self, name: str, entry: RollingEntry) -> Coupling:
+        return resolve_wheel(self, entry)
 
-    def coupling(self, name: str, given: CouplingEntry) -> Coupling:
-        return meant(self, name, given)
+    def coupling(self, name: str, entry: CouplingEntry) -> Coupling:
+        return resolve_coupling(self, name, entry)
 
-    def stop(self, name: str, given: f.StopEntry) -> m.Stop[str]:
-        found = limits_of(given)
-        assert found is not None
-        quantity, (low, high) = found
-        return m.Stop(name, given.joint, quantity, low, high, given.restitution)
+    def stop(self, name: str, entry: f.StopEntry) -> m.Stop[str]:
+        quantity_and_limits = find_limits(entry)
+        assert quantity_and_limits is not None
+        quantity, (low, high) = quantity_and_limits
+        return m.Stop(name, entry.joint, quantity, low, high, entry.restitution)
 
-    def latch(self, name: str, given: f.LatchEntry) -> m.Stop[str]:
-        held = held_of(given, self.document)
-        assert held is not None
+    def latch(self, name: str, entry: f.LatchEntry) -> m.Stop[str]:
+        coordinate = find_held_coordinate(entry, self.document)
+        assert coordinate is not None
         passes = None
-        if held.at is not None:
-            beyond = f"{held.joint}.{held.quantity} > {held.at!r}"
-            kind = self.document.joints[held.joint].type
-            passes = compile_expression(beyond, Scope(joints={held.joint: kind}, in_time=True))
+        if coordinate.position is not None:
+            condition_text = f"{coordinate.joint}.{coordinate.quantity} > {coordinate.position!r}"
+            kind = self.document.joints[coordinate.joint].type
+            passes = compile_expression(condition_text, Scope(joints={coordinate.joint: kind}, in_time=True))
         path = f"latches.{name}"
-        when, release, crossed = (
-            m.Condition(path, value.source.strip(), False, self.placed(value, f"{path}.{key}")) if value else None
-            for key, value in (("when", given.when), ("release", given.release), ("angle", passes))
+        when, release, passing = (
+            m.Condition(path, value.source.strip(), False, self.attach_location(value, f"{path}.{key}"))
+            if value
+            else None
+            for key, value in (("when", entry.when), ("release", entry.release), ("angle", passes))
         )
-        latch = m.Latch(held.at, given.stop, held.sides, when, release, crossed, given.every)
-        return m.Stop(name, held.joint, held.quantity, None, None, 0.0, latch)
+        latch = m.Latch(coordinate.position, entry.stop, coordinate.sides, when, release, passing, entry.every)
+        return m.Stop(name, coordinate.joint, coordinate.quantity, None, None, 0.0, latch)
 
 
-def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:
-    """A vector in world axes unless it says otherwise."""
+def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:
+    """Return a vector in world axes unless the value says otherwise."""
     if value is None:
         return None
     if isinstance(value, f.VelocityInFrame | f.RateInFrame):
-        return m.Directed(value.vector, value.frame == "body")
-    return m.Directed(value, False)
+        return m.FramedVector(value.vector, value.frame == "body")
+    return m.FramedVector(value, False)
 
 
-def three(value: Any) -> tuple[Any, Any, Any]:
-    """What is given of three axes: of all alike, of each in a list or by its name; what is left out is none."""
+def expand_to_axes(value: Any) -> tuple[Any, Any, Any]:
+    """Expand a value to three axes: one value for all, a list, or values by axis name; None is zero."""
     if value is None:
         return m.ZERO
     if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
@@ -450,13 +496,15 @@ def three(value: Any) -> tuple[Any, Any, Any]:
     return value if isinstance(value, tuple) else (value, value, value)
 
 
-def area(bearing: f.BearingEntry | None) -> float | None:
-    """Diameter times width of a bearing [m^2]: what a mean pressure stands on."""
+def bearing_area(bearing: f.BearingEntry | None) -> float | None:
+    """Return diameter times width of a bearing [m^2], the area of the mean pressure."""
     return bearing.diameter * bearing.width if bearing is not None else None
 
 
-def stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | None:
-    """Of force and moment; one number is that of the force, in all directions."""
+def expand_stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | None:
+    """Return the stiffness of force and of moment along the three axes; a single number is that of force in all
+    directions.
+    """
     if value is None:
         return None
     if isinstance(value, float):
@@ -467,11 +515,11 @@ def stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | N
             return m.RIGID
         return (part, part, part) if isinstance(part, float) else part
 
-    return three(value.force), three(value.moment)
+    return expand_to_axes(value.force), expand_to_axes(value.moment)
 
 
-def properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Properties | None:
-    """A named shape with its sizes, the numbers themselves, or those of what is cut."""
+def make_properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Properties | None:
+    """Make the cross-section properties: a named shape with its dimensions, the numbers, or `auto`."""
     if value is None:
         return None
     if isinstance(value, str):
@@ -479,17 +527,19 @@ def properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Propertie
     for kind in ("circle", "tube", "rectangle"):
         if (sizes := getattr(value, kind)) is not None:
             return m.Properties(kind, vars(sizes))
-    return m.Properties("general", {name: given for name, given in vars(value).items() if given is not None})
+    return m.Properties(
+        "general", {name: value_given for name, value_given in vars(value).items() if value_given is not None}
+    )
 
 
-def numbers(value: Any) -> Any:
-    """Expected numbers without their dimensions, in the same lists."""
+def evaluate_numbers(value: Any) -> Any:
+    """Evaluate expected numbers, without their dimensions, in the same nested lists."""
     if isinstance(value, tuple):
-        return tuple(map(numbers, value))
-    return constant(value) if value is not None else None
+        return tuple(map(evaluate_numbers, value))
+    return constant_value(value) if value is not None else None
 
 
-def constant(value: Expression) -> float:
-    """The number of an expression that depends on nothing."""
+def constant_value(value: Expression) -> float:
+    """Return the number of an expression that depends on nothing."""
     assert value.constant is not None
     return value.constant

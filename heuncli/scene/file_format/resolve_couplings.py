@@ -1,4 +1,4 @@
-"""What couplings mean: their references followed, defaults filled in; a row a type of entry.
+"""Resolve couplings: follow references and fill in defaults; one function per type of entry.
 
 For documents in which no rule found an error.
 """
@@ -16,157 +16,172 @@ from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format import format as whole
 from heuncli.scene.file_format import format_couplings as f
 from heuncli.scene.file_format.fields import EndEntry
-from heuncli.scene.file_format.format_rolling import RollingEntry, axle, centre
+from heuncli.scene.file_format.format_rolling import RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.models import End, ResultCondition, Z
 
-PUSHES = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
+SLACK_BELT_MESSAGE = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
 
 
-class Following(Protocol):
-    """What follows the references of a document (resolve.py)."""
+class ReferenceResolver(Protocol):
+    """Resolves the references of a document (resolve.py)."""
 
     document: whole.Document
 
     def end(self, end: EndEntry) -> End:
-        """The point that an end names."""
+        """Return the point that an end refers to."""
 
-    def placed(self, value: Expression, path: str) -> Expression:
-        """An expression with its place in the file; path: dotted."""
+    def attach_location(self, value: Expression, path: str) -> Expression:
+        """Return an expression with its location in the file.
 
-
-def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
-    """The coupling that an entry means; name: of it, for the places of its expressions."""
-    found: c.Coupling = MEANINGS[entry.type](by, name, entry)
-    return found
+        path: dotted path of the value
+        """
 
 
-def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
-    """A linear relation of coordinates."""
+def resolve_coupling(resolver: ReferenceResolver, name: str, entry: f.CouplingEntry) -> c.Coupling:
+    """Resolve a coupling entry; `name` gives the locations of its expressions."""
+    resolved: c.Coupling = MEANINGS[entry.type](resolver, name, entry)
+    return resolved
+
+
+def resolve_ratio(resolver: ReferenceResolver, name: str, entry: f.RatioEntry) -> c.Ratio:
+    """Resolve a linear relation of coordinates."""
     rows = zip(entry.of, entry.factors, strict=True)
-    return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
+    return c.Ratio(tuple(term(resolver, word, factor) for word, factor in rows), entry.is_)
 
 
-def wheel_meant(by: Following, entry: RollingEntry) -> c.RollingWheel:
-    """The wheel that an entry of `rolling` means; in the plane all are round about z."""
-    joints = by.document.joints
-    axis = Z if by.document.head.space == "planar" else axle(entry, joints) if entry.shape == "disc" else None
-    wheel = centre(entry, joints)
+def resolve_wheel(resolver: ReferenceResolver, entry: RollingEntry) -> c.RollingWheel:
+    """Resolve an entry of `rolling`; in a planar scene every wheel is round about z."""
+    joints = resolver.document.joints
+    axis = (
+        Z
+        if resolver.document.head.space == "planar"
+        else find_axle_direction(entry, joints)
+        if entry.shape == "disc"
+        else None
+    )
+    wheel = find_centre(entry, joints)
     assert wheel is not None
     return c.RollingWheel(
-        by.end(wheel), axis, entry.radius, by.end(entry.on),
+        resolver.end(wheel), axis, entry.radius, resolver.end(entry.on),
         entry.normal, entry.friction, entry.slides is not None, entry.held,
     )  # fmt: skip
 
 
-def conditions_of_wheels(rolling: Mapping[str, RollingEntry]) -> Iterator[ResultCondition]:
-    """What is watched for of wheels: where one lifts off its plane, which ends the motion, and where one slips."""
+def iter_wheel_conditions(rolling: Mapping[str, RollingEntry]) -> Iterator[ResultCondition]:
+    """Yield the conditions of wheels: one that lifts off its plane ends the motion, one that slips is reported."""
     for name, entry in rolling.items():
         if not entry.held:
             why = f"the wheel {name} lifts: it would have to be pulled onto its plane"
-            yield below_zero(f"{name}_lifts", f"couplings.{name}.normal", why, ends=True)
+            yield make_below_zero_condition(f"{name}_lifts", f"couplings.{name}.normal", why, ends=True)
         if entry.friction is not None:
             why = f"the wheel {name} slips: it would take more friction than there is"
-            yield below_zero(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
+            yield make_below_zero_condition(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
 
 
-def conditions_of_belts(couplings: Mapping[str, f.CouplingEntry]) -> Iterator[ResultCondition]:
-    """What is watched for of belts: where a strand would have to push."""
+def iter_belt_conditions(couplings: Mapping[str, f.CouplingEntry]) -> Iterator[ResultCondition]:
+    """Yield the conditions of belts: a slack strand would have to push."""
     for name, entry in couplings.items():
         if isinstance(entry, f.BeltEntry):
-            why, of = PUSHES.format(name, "{}"), f"couplings.{name}.slack"
-            yield below_zero(f"{name}_pushes", of, why, ends=False)._replace(given=entry.pretension)
+            why, result_path = SLACK_BELT_MESSAGE.format(name, "{}"), f"couplings.{name}.slack"
+            yield make_below_zero_condition(f"{name}_pushes", result_path, why, ends=False)._replace(
+                entry_value=entry.pretension
+            )
 
 
-def at_least(least: float) -> str:
-    """A number above zero with four digits, rounded up, but for its own rounding: what is written so is enough."""
-    quantum = 10.0 ** (math.floor(math.log10(least)) - 3)
-    return f"{math.ceil(least / quantum * (1.0 - tolerances.SAME_VALUE)) * quantum:.4g}"
+def format_rounded_up(lower_bound: float) -> str:
+    """Format a number above zero with four digits, rounded up (except for its own rounding error), so that it
+    suffices.
+    """
+    quantum = 10.0 ** (math.floor(math.log10(lower_bound)) - 3)
+    return f"{math.ceil(lower_bound / quantum * (1.0 - tolerances.SAME_VALUE)) * quantum:.4g}"
 
 
-def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:
-    """The condition that a number of the results is below zero."""
-    return ResultCondition(name, f"{of} below 0", ends, of, 0.0, False, why)
+def make_below_zero_condition(name: str, result_path: str, why: str, *, ends: bool) -> ResultCondition:
+    """Make the condition that a result is below zero."""
+    return ResultCondition(name, f"{result_path} below 0", ends, result_path, 0.0, False, why)
 
 
-def gear(by: Following, name: str, entry: f.GearEntry) -> c.Gear:
-    """Two gears."""
+def resolve_gear(resolver: ReferenceResolver, name: str, entry: f.GearEntry) -> c.Gear:
+    """Resolve a gear mesh."""
     teeth = None if entry.teeth is None else (entry.teeth[0], entry.teeth[1])
-    at = None if entry.at is None else by.end(entry.at)
+    pitch_point = None if entry.at is None else resolver.end(entry.at)
     return c.Gear(
-        tuple(term(by, word) for word in entry.of), entry.ratio, teeth, entry.internal, at,
+        tuple(term(resolver, word) for word in entry.of), entry.ratio, teeth, entry.internal, pitch_point,
         entry.pressure_angle, entry.helix,
     )  # fmt: skip
 
 
-def screw(by: Following, name: str, entry: f.ScrewEntry) -> c.Screw:
-    """A thread: of a cylinder its two coordinates."""
-    terms = tuple(term(by, word) for word in entry.of)
+def resolve_screw(resolver: ReferenceResolver, name: str, entry: f.ScrewEntry) -> c.Screw:
+    """Resolve a screw thread; of a cylinder it couples both coordinates."""
+    terms = tuple(term(resolver, word) for word in entry.of)
     if len(entry.of) == 1:
         terms = tuple(c.Term(entry.of[0], quantity, 1.0) for quantity in ("angle", "travel"))
-    return c.Screw(terms, entry.lead, None if entry.friction is None else rubbing(entry.friction, entry.lead))
+    return c.Screw(
+        terms, entry.lead, None if entry.friction is None else make_thread_friction(entry.friction, entry.lead)
+    )
 
 
-def rubbing(given: f.ThreadFrictionEntry, lead: float) -> c.ThreadFriction:
-    """The friction of a thread: of an efficiency eta, tan(lambda + rho) = tan(lambda) / eta.
+def make_thread_friction(entry: f.ThreadFrictionEntry, lead: float) -> c.ThreadFriction:
+    """Make the friction of a thread; for an efficiency eta, tan(lambda + rho) = tan(lambda) / eta.
 
     tan(lambda) = lead / (2 pi radius) is its slope, tan(rho) = coefficient / cos(flank_angle).
     """
-    if given.coefficient is not None:
-        coefficient = given.coefficient / math.cos(given.flank_angle)
+    if entry.coefficient is not None:
+        coefficient = entry.coefficient / math.cos(entry.flank_angle)
     else:
-        assert given.efficiency is not None
-        slope = abs(lead) / (math.tau * given.radius)
-        coefficient = math.tan(math.atan(slope / given.efficiency) - math.atan(slope))
-    return c.ThreadFriction(coefficient, given.radius, given.speed)
+        assert entry.efficiency is not None
+        slope = abs(lead) / (math.tau * entry.radius)
+        coefficient = math.tan(math.atan(slope / entry.efficiency) - math.atan(slope))
+    return c.ThreadFriction(coefficient, entry.radius, entry.speed)
 
 
-def belt(by: Following, name: str, entry: f.BeltEntry) -> c.Belt:
-    """A belt over two pulleys."""
-    terms = tuple(term(by, word) for word in entry.of)
+def resolve_belt(resolver: ReferenceResolver, name: str, entry: f.BeltEntry) -> c.Belt:
+    """Resolve a belt over two pulleys."""
+    terms = tuple(term(resolver, word) for word in entry.of)
     return c.Belt(terms, (entry.radii[0], entry.radii[1]), entry.crossed, entry.pretension)
 
 
-def differential(by: Following, name: str, entry: f.DifferentialEntry) -> c.Differential:
-    """Two shafts and their carrier."""
-    return c.Differential(tuple(term(by, word) for word in entry.of), entry.ratio)
+def resolve_differential(resolver: ReferenceResolver, name: str, entry: f.DifferentialEntry) -> c.Differential:
+    """Resolve two shafts and their carrier."""
+    return c.Differential(tuple(term(resolver, word) for word in entry.of), entry.ratio)
 
 
-def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
-    """A coordinate by its joint's name, which has one, or by `joint.angle`, `joint.travel`."""
-    joint, _, named = word.partition(".")
-    quantity: Any = named
-    return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
+def term(resolver: ReferenceResolver, word: str, factor: float = 1.0) -> c.Term:
+    """Make the term of a coordinate: the name of a joint that has one, or `joint.angle`, `joint.travel`."""
+    joint, _, quantity_name = word.partition(".")
+    quantity: Any = quantity_name
+    return c.Term(joint, quantity or TYPES[resolver.document.joints[joint].type].coordinates[0], factor)
 
 
-def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
-    """A disc and its follower."""
+def resolve_cam(resolver: ReferenceResolver, name: str, entry: f.CamEntry) -> c.Cam:
+    """Resolve a disc and its follower."""
     shaft, follower = entry.of
     return c.Cam(
-        shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
+        shaft, follower, entry.lift, resolver.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
         entry.phase, entry.two_sided, entry.restitution,
     )  # fmt: skip
 
 
-def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
-    """A rope."""
-    through = tuple(passage(by, given) for given in entry.through)
+def resolve_rope(resolver: ReferenceResolver, name: str, entry: f.RopeEntry) -> c.Rope:
+    """Resolve a rope."""
+    passages = tuple(resolve_passage(resolver, entry_passage) for entry_passage in entry.through)
     length, law = None, entry.length
     if law is not None and law.constant is not None:
         length, law = law.constant, None
     elif law is not None:
-        law = by.placed(law, f"couplings.{name}.length")
-    stretching = entry.stiffness, entry.damping or 0.0
-    return c.Rope(through, length, entry.tension_only, entry.restitution, law, *stretching)
+        law = resolver.attach_location(law, f"couplings.{name}.length")
+    elastic_properties = entry.stiffness, entry.damping or 0.0
+    return c.Rope(passages, length, entry.tension_only, entry.restitution, law, *elastic_properties)
 
 
-def passage(by: Following, given: f.PassageEntry) -> c.Passage:
-    """Where a rope passes."""
-    written = given.point if given.point is not None else given.sheave
-    assert written is not None
-    end = by.end(written)
-    return c.Passage(end, given.radius or 0.0, given.axis, given.side, given.slip == "none")
+def resolve_passage(resolver: ReferenceResolver, entry: f.PassageEntry) -> c.Passage:
+    """Resolve a place that a rope passes."""
+    written_end = entry.point if entry.point is not None else entry.sheave
+    assert written_end is not None
+    end = resolver.end(written_end)
+    return c.RopePassage(end, entry.radius or 0.0, entry.axis, entry.side, entry.slip == "none")
 
 
 MEANINGS: dict[str, Callable[..., c.Coupling]] = {
-    "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam, "rope": rope,
+    "ratio": resolve_ratio, "gear": resolve_gear, "screw": resolve_screw, "belt": resolve_belt, "differential": resolve_differential, "cam": resolve_cam, "rope": resolve_rope,
 }  # fmt: skip

@@ -1,6 +1,6 @@
-"""What single entries mean, for the rules and for resolve alike: attitudes, inertia, drives, instants, points.
+"""The meaning of single entries, for the rules and for `resolve`: orientations, inertia, drives, instants, points.
 
-All but body_axes take any document that could be read, also one in which a rule will find an error.
+All functions except orientation_matrix accept any document that could be read, even one with errors.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from decimal import Decimal
 from typing import Any, Literal
 
 from heuncli.base.errors import Finding
-from heuncli.base.joint_kinds import RATES, TYPES, Kind
+from heuncli.base.joint_kinds import RATES, TYPES, JointKind
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import format as f
@@ -23,7 +23,7 @@ from heuncli.scene.file_format.fields import EndEntry
 DEFAULT_SAMPLES = 201
 # what a drive may prescribe: a coordinate, or its rate of change
 DRIVEN_RATES = RATES | {"length": "speed"}
-DRIVEN = tuple(dict.fromkeys((*DRIVEN_RATES, *DRIVEN_RATES.values())))
+DRIVE_KEYS = tuple(dict.fromkeys((*DRIVEN_RATES, *DRIVEN_RATES.values())))
 Limits = tuple[float | None, float | None]
 ORIENTATIONS: dict[str, tuple[str, ...]] = {
     "axis": ("axis", "angle"),
@@ -34,15 +34,15 @@ ORIENTATIONS: dict[str, tuple[str, ...]] = {
 }
 
 
-def body_axes(value: fs.Orientation) -> m.Matrix:
-    """The rotation an orientation means. Raises Finding."""
-    given = {key for keys in ORIENTATIONS.values() for key in keys if getattr(value, key) is not None}
-    forms = [name for name, keys in ORIENTATIONS.items() if given & set(keys)]
+def orientation_matrix(value: fs.Orientation) -> m.Matrix:
+    """Return the rotation matrix of an orientation. Raises Finding."""
+    given_keys = {key for keys in ORIENTATIONS.values() for key in keys if getattr(value, key) is not None}
+    forms = [name for name, keys in ORIENTATIONS.items() if given_keys & set(keys)]
     known = "{axis, angle}, {quaternion}, {rodrigues}, {euler, sequence} or {matrix}"
     if len(forms) != 1:
-        what = f"an orientation by {' and '.join(forms)}" if forms else "an empty orientation"
-        raise Finding("orientation", what, f"one of {known}")
-    missing = [key for key in ORIENTATIONS[forms[0]] if key not in given]
+        description = f"an orientation by {' and '.join(forms)}" if forms else "an empty orientation"
+        raise Finding("orientation", description, f"one of {known}")
+    missing = [key for key in ORIENTATIONS[forms[0]] if key not in given_keys]
     if missing:
         hint = (
             "sequence: zyx turns about z, then the new y, then the new x"
@@ -53,19 +53,19 @@ def body_axes(value: fs.Orientation) -> m.Matrix:
     if value.axis is not None and value.angle is not None:
         if not any(value.axis):
             raise Finding("orientation", "the axis is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
-        return turns.about(value.axis, value.angle)
+        return turns.rotation_about(value.axis, value.angle)
     if value.quaternion is not None:
-        return turns.of_unit_quaternion(value.quaternion)
+        return turns.rotation_from_unit_quaternion(value.quaternion)
     if value.rodrigues is not None:
-        return turns.of_rodrigues(value.rodrigues)
+        return turns.rotation_from_rodrigues(value.rodrigues)
     if value.euler is not None:
-        return turns.of_euler(value.euler, value.sequence or "")
+        return turns.rotation_from_euler(value.euler, value.sequence or "")
     assert value.matrix is not None
-    return turns.of_matrix(value.matrix)
+    return turns.rotation_from_matrix(value.matrix)
 
 
-def tensor(owner: f.BodyEntry | f.PieceEntry) -> m.Matrix:
-    """The inertia tensor about the centre of mass: moments on the diagonal, deviation moments negated beside it."""
+def inertia_tensor(owner: f.BodyEntry | f.PieceEntry) -> m.Matrix:
+    """Return the inertia tensor about the centre of mass: moments on the diagonal, negated deviation moments off it."""
     inertia = owner.inertia
     if isinstance(inertia, float):  # planar: a flat body with this moment about z
         return ((0.5 * inertia, 0.0, 0.0), (0.0, 0.5 * inertia, 0.0), (0.0, 0.0, inertia))
@@ -79,8 +79,8 @@ def tensor(owner: f.BodyEntry | f.PieceEntry) -> m.Matrix:
     return ((x, c, b), (c, y, a), (b, a, z))
 
 
-class Driven(NamedTuple):
-    """What a drive prescribes: key, the coordinate or its rate, as a value in time, and the coordinate itself."""
+class DrivenCoordinate(NamedTuple):
+    """What a drive prescribes: the key (the coordinate or its rate), its value in time, and the coordinate."""
 
     key: Literal["angle", "travel", "length", "rate", "speed"]
     value: Expression
@@ -92,36 +92,41 @@ class Driven(NamedTuple):
         return self.key != self.quantity
 
 
-def driven_keys(kind: Kind) -> tuple[str, ...]:
-    """The keys by which a joint of this kind may be driven."""
+def list_drive_keys(kind: JointKind) -> tuple[str, ...]:
+    """List the keys by which a joint of this kind may be driven."""
     return (*kind.drives, *(DRIVEN_RATES[quantity] for quantity in kind.drives))
 
 
-def drive_of(drive: f.DriveEntry, joint_type: str | None) -> Driven | None:
-    """What a drive prescribes that prescribes one thing; joint_type: of its joint, None: unknown."""
-    given = [key for key in DRIVEN if getattr(drive, key) is not None]
-    if len(given) != 1:
+def find_driven_coordinate(drive: f.DriveEntry, joint_type: str | None) -> DrivenCoordinate | None:
+    """Return what a drive prescribes, if it is exactly one quantity.
+
+    joint_type: type of its joint, or None if unknown
+    """
+    given_keys = [key for key in DRIVE_KEYS if getattr(drive, key) is not None]
+    if len(given_keys) != 1:
         return None
-    key = given[0]
+    key = given_keys[0]
     value = getattr(drive, key)
     if key not in DRIVEN_RATES.values():
-        return Driven(key, value, key)  # type: ignore[arg-type]
+        return DrivenCoordinate(key, value, key)  # type: ignore[arg-type]
     kind = TYPES.get(joint_type or "")
-    of = [quantity for quantity in (kind.drives if kind is not None else ()) if DRIVEN_RATES[quantity] == key]
-    return Driven(key, value, of[0]) if of else None  # type: ignore[arg-type]
+    quantities = [quantity for quantity in (kind.drives if kind is not None else ()) if DRIVEN_RATES[quantity] == key]
+    return DrivenCoordinate(key, value, quantities[0]) if quantities else None  # type: ignore[arg-type]
 
 
-def limits_of(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], Limits] | None:
-    """Quantity and limits of a stop that limits one coordinate."""
-    given: list[tuple[Literal["angle", "travel", "length"], Limits | None]] = [
+def find_limits(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], Limits] | None:
+    """Return quantity and limits of a stop that limits exactly one coordinate."""
+    limits_by_quantity: list[tuple[Literal["angle", "travel", "length"], Limits | None]] = [
         ("angle", stop.angle), ("travel", stop.travel), ("length", stop.length)
     ]  # fmt: skip
-    found = [(quantity, limits) for quantity, limits in given if limits is not None]
+    found = [(quantity, limits) for quantity, limits in limits_by_quantity if limits is not None]
     return found[0] if len(found) == 1 else None
 
 
-class Held(NamedTuple):
-    """What a latch holds: a joint's coordinate, at a value, at limits of its stop (-1 lower, 1 upper), or anywhere."""
+class HeldCoordinate(NamedTuple):
+    """What a latch holds: a joint's coordinate at a position, at limits of its stop (-1 lower, 1 upper), or
+    anywhere.
+    """
 
     joint: str
     quantity: Literal["angle", "travel", "length"]
@@ -129,29 +134,31 @@ class Held(NamedTuple):
     sides: tuple[int, ...]
 
 
-def held_of(latch: f.LatchEntry, document: f.Document) -> Held | None:
-    """What a latch holds, of one that is in order."""
+def find_held_coordinate(latch: f.LatchEntry, document: f.Document) -> HeldCoordinate | None:
+    """Return what a latch holds, or None if its entry is not valid."""
     stop = document.stops.get(latch.stop or "")
     if stop is not None:
-        found = limits_of(stop)
-        asked = {"lower": (-1,), "upper": (1,), None: (-1, 1)}[latch.limit]
+        found = find_limits(stop)
+        sides = {"lower": (-1,), "upper": (1,), None: (-1, 1)}[latch.limit]
         return (
-            Held(stop.joint, found[0], None, tuple(s for s in asked if found[1][s > 0] is not None)) if found else None
+            HeldCoordinate(stop.joint, found[0], None, tuple(s for s in sides if found[1][s > 0] is not None))
+            if found
+            else None
         )
     joint = document.joints.get(latch.joint or "")
     kind = TYPES.get(joint.type) if joint is not None else None
-    if latch.joint is None or kind is None or len(fit := limitable(kind)) != 1:
+    if latch.joint is None or kind is None or len(coordinates := limitable_coordinates(kind)) != 1:
         return None
-    return Held(latch.joint, fit[0], getattr(latch, fit[0], None), ())
+    return HeldCoordinate(latch.joint, coordinates[0], getattr(latch, coordinates[0], None), ())
 
 
-def limitable(kind: Kind) -> tuple[Literal["angle", "travel", "length"], ...]:
-    """The coordinates of a kind of joint that can be limited, or held."""
+def limitable_coordinates(kind: JointKind) -> tuple[Literal["angle", "travel", "length"], ...]:
+    """Return the coordinates of a kind of joint that can be limited or held."""
     return ("length",) if kind.keeps_distance else kind.coordinates
 
 
-def type_of(document: f.Document) -> Literal["motion", "impulse", "state", "rest"]:
-    """What is solved, by default what the rest of the scene asks for."""
+def find_analysis_type(document: f.Document) -> Literal["motion", "impulse", "state", "rest"]:
+    """Return the type of the analysis: as given, else as the rest of the spec implies."""
     analysis = document.analysis
     if analysis.type is not None:
         return analysis.type
@@ -160,47 +167,47 @@ def type_of(document: f.Document) -> Literal["motion", "impulse", "state", "rest
     return "impulse" if document.impulses else "state"
 
 
-MOST_SAMPLES = 3_000_000  # 100 MB while a spec is read; of the least of scenes results of 200 million numbers
+MAX_SAMPLES = 3_000_000  # 100 MB while a spec is read; 200 million result numbers even for the smallest scene
 
 
-def instants_of(document: f.Document) -> tuple[float, ...]:
-    """The instants asked for, [s]; empty where they are in error."""
+def list_instants(document: f.Document) -> tuple[float, ...]:
+    """List the output instants [s]; empty if they are not valid."""
     analysis = document.analysis
-    if type_of(document) != "motion":
+    if find_analysis_type(document) != "motion":
         return (0.0,)
     if analysis.times is not None:
         return tuple(analysis.times)
     count = analysis.samples if analysis.samples is not None else DEFAULT_SAMPLES
-    if analysis.duration is None or not math.isfinite(analysis.duration) or not 2 <= count <= MOST_SAMPLES:
+    if analysis.duration is None or not math.isfinite(analysis.duration) or not 2 <= count <= MAX_SAMPLES:
         return ()
-    return (*evenly(analysis.duration, count), analysis.duration)
+    return (*iter_even_instants(analysis.duration, count), analysis.duration)
 
 
-def evenly(duration: float, count: int) -> Iterator[float]:
-    """So many evenly spaced instants but the last, of the duration as it is written.
+def iter_even_instants(duration: float, count: int) -> Iterator[float]:
+    """Yield `count` evenly spaced instants without the last, with the duration taken as the decimal number written.
 
-    Each is the double nearest to its fraction, so the second of 0, 0.1, 0.2, 0.3 is that of a blow at 0.1: 0.3 * 1 / 3
-    is the double before it.
+    Each is the double nearest to its exact fraction. So the second of 0, 0.1, 0.2, 0.3 equals an impulse time of 0.1,
+    whereas 0.3 * 1 / 3 in floating point is the next smaller double.
     """
     numerator, denominator = Decimal(repr(duration)).as_integer_ratio()
     return (numerator * i / (denominator * (count - 1)) for i in range(count - 1))
 
 
-def span_of(analysis: f.AnalysisEntry) -> float:
-    """How long the run lasts [s]; 0 where there is none."""
+def run_duration(analysis: f.AnalysisEntry) -> float:
+    """Return the duration of the run [s]; 0 if there is none."""
     if analysis.times:
         return max(analysis.times)
     return analysis.duration or 0.0
 
 
-def end_of(reduce_to: str | EndEntry) -> EndEntry | None:
-    """The point a section is reduced to, if it is one."""
+def find_reduction_end(reduce_to: str | EndEntry) -> EndEntry | None:
+    """Return the point that a section is reduced to, if it is one."""
     if isinstance(reduce_to, EndEntry):
         return reduce_to
     body, dot, point = reduce_to.partition(".")
     return EndEntry.model_construct(body=body, at=point) if dot else None
 
 
-def point_in(body: f.BodyEntry, at: object) -> m.Vec | None:
-    """A point given by coordinates or by name, in body axes."""
-    return body.points.get(at) if isinstance(at, str) else at  # type: ignore[return-value]
+def find_point(body: f.BodyEntry, point: object) -> m.Vec | None:
+    """Return a point given by coordinates or by name, in body axes."""
+    return body.points.get(point) if isinstance(point, str) else point  # type: ignore[return-value]

@@ -1,7 +1,7 @@
-"""Whether two values are the same to the bit, and the older of two that are: so that what hangs on it is known again.
+"""Compare values bit by bit, and keep the older of two equal ones so that results derived from it can be reused.
 
-A scene read again with other parameters is for the most part the same. Where a value is the very object that it was
-before, nothing that was made of it needs to be made again.
+A scene read again with other parameters is mostly the same. Where a value is the same object as before, everything
+derived from it stays valid.
 """
 
 from __future__ import annotations
@@ -17,41 +17,46 @@ import numpy as np
 T = TypeVar("T")
 
 
-def same(a: Any, b: Any) -> bool:
-    """Whether two values are of one type and of the same bits; of types that are not known here only the same object.
+def is_same(first: Any, second: Any) -> bool:
+    """Whether two values have the same type and bits; values of types unknown here are the same only as one object.
 
-    0.0 and -0.0 are two values, as are 1 and 1.0; mappings of one order of keys are the same.
+    0.0 and -0.0 differ, as do 1 and 1.0; two mappings are the same only if their keys have the same order.
     """
-    if a is b:
+    if first is second:
         return True
-    kind = type(a)
-    if kind is not type(b):
+    kind = type(first)
+    if kind is not type(second):
         return False
     if kind is float:
-        return bool((a == b and math.copysign(1.0, a) == math.copysign(1.0, b)) or (a != a and b != b))
+        return bool(
+            (first == second and math.copysign(1.0, first) == math.copysign(1.0, second))
+            or (first != first and second != second)
+        )
     if kind in (int, str, bool, set, frozenset):  # sets hold names and numbers of bodies
-        return bool(a == b)
+        return bool(first == second)
     if issubclass(kind, tuple) or kind is list:
-        return len(a) == len(b) and all(map(same, a, b))
+        return len(first) == len(second) and all(map(is_same, first, second))
     if kind in (dict, MappingProxyType):
-        return [*a] == [*b] and all(map(same, a.values(), b.values()))
+        return [*first] == [*second] and all(map(is_same, first.values(), second.values()))
     if kind is array:
-        return bool(a.typecode == b.typecode) and a.tobytes() == b.tobytes()
+        return bool(first.typecode == second.typecode) and first.tobytes() == second.tobytes()
     if kind is np.ndarray:
-        return bool(a.dtype == b.dtype) and a.shape == b.shape and a.tobytes() == b.tobytes()
+        return bool(first.dtype == second.dtype) and first.shape == second.shape and first.tobytes() == second.tobytes()
     names: tuple[str, ...] = getattr(kind, "__record_fields__", ())
-    return bool(names) and all(same(getattr(a, name), getattr(b, name)) for name in names)
+    return bool(names) and all(is_same(getattr(first, name), getattr(second, name)) for name in names)
 
 
-def shared(new: T, old: T) -> T:
-    """The old value where the new one is the same."""
-    return old if same(new, old) else new
+def reuse_if_same(new: T, old: T) -> T:
+    """Return the old value if the new one is the same."""
+    return old if is_same(new, old) else new
 
 
-def shared_entries(new: Mapping[str, Any], old: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The old mapping where the new one is the same, else the new one with the old values that are."""
+def reuse_entries(new: Mapping[str, Any], old: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the old mapping if the new one is the same, else the new mapping with unchanged values taken from the old
+    one.
+    """
     if new is old:
         return old
-    found = {key: shared(value, old.get(key)) for key, value in new.items()}
-    unchanged = [*found] == [*old] and all(found[key] is old[key] for key in found)
-    return old if unchanged else found
+    merged = {key: reuse_if_same(value, old.get(key)) for key, value in new.items()}
+    unchanged = [*merged] == [*old] and all(merged[key] is old[key] for key in merged)
+    return old if unchanged else merged

@@ -1,8 +1,8 @@
-"""YAML text -> plain data and the location of every value; strict, without any knowledge of mechanics.
+"""Read YAML text into plain data and record the location of every value. Strict; knows nothing of mechanics.
 
-Scalars are those of YAML 1.2 (`on` and `012` are what they look like, `1e-3` is a number). Refused: tags, anchors,
-aliases, merge keys, keys given twice, several documents, nesting beyond 64, characters that shift lines unseen.
-PyYAML's parser gives the events; data and locations are built here without recursion.
+Scalars follow YAML 1.2 (`on` and `012` are texts, `1e-3` is a number). Refused: tags, anchors, aliases, merge keys,
+duplicate keys, several documents, nesting deeper than 64, and invisible characters that would shift line numbers.
+PyYAML's parser supplies the events; data and locations are built here without recursion.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from heuncli.base.records import record
 from heuncli.scene.file_format.digest import digest
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 
-LARGEST = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
-DEEPEST = 64
-TOO_DEEP = f"nested more than {DEEPEST} levels deep"
+MAX_SIZE = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
+MAX_DEPTH = 64
+TOO_DEEP = f"nested more than {MAX_DEPTH} levels deep"
 TOO_DEEP_HINT = "no value of a spec is: is a bracket too many open?"
 
-SMALLEST = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
+SMALLEST_SPEC = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
 
 Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 Path_ = tuple[str | int, ...]
@@ -32,17 +32,17 @@ Mark = tuple[int, int]  # line, column, from 0
 
 INTEGER = re.compile(r"[-+]?[0-9]+\Z")
 FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?\Z")
-BASED = re.compile(r"0(?:x[0-9a-fA-F]+|o[0-7]+)\Z")
-WORDS: dict[str, Any] = {
+PREFIXED_INTEGER = re.compile(r"0(?:x[0-9a-fA-F]+|o[0-7]+)\Z")
+WORD_VALUES: dict[str, Any] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
     **dict.fromkeys(("false", "False", "FALSE"), False),
     **{sign + word: float(sign + "inf") for sign in ("", "+", "-") for word in (".inf", ".Inf", ".INF")},
     **dict.fromkeys((".nan", ".NaN", ".NAN"), float("nan")),
 }
-UNSEEN = "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]"
-UNSEEN_BEYOND_ASCII = "[\x80-\x9f\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff]"
-UNSEEN_NAMES = {
+INVISIBLE = "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]"
+INVISIBLE_NON_ASCII = "[\x80-\x9f\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff]"
+INVISIBLE_NAMES = {
     "\x00": "NUL", "\x85": "NEXT LINE", "\u2028": "LINE SEPARATOR", "\u2029": "PARAGRAPH SEPARATOR",
     "\ufeff": "BYTE ORDER MARK",
 }  # fmt: skip
@@ -59,41 +59,43 @@ class SourceFile:
     keys: dict[Path_, Mark]
     problems: tuple[Problem, ...] = ()
 
-    def location(self, path: Path_, key: bool = False) -> SourceLocation:
-        """Where a value, or its key, stands; for a value that is absent, where the nearest mapping around it stands."""
-        known: Path_ = path
-        while known and known not in self.values:
-            known = known[:-1]
-        use_key = key and known == path and known in self.keys
-        line, column = (self.keys if use_key else self.values).get(known, (0, 0))
-        return SourceLocation(self.file, line + 1, column + 1, dotted(path))
+    def location(self, path: Path_, prefer_key: bool = False) -> SourceLocation:
+        """Return the location of a value, or of its key. For an absent value: the location of the nearest enclosing
+        mapping.
+        """
+        nearest_path: Path_ = path
+        while nearest_path and nearest_path not in self.values:
+            nearest_path = nearest_path[:-1]
+        use_key = prefer_key and nearest_path == path and nearest_path in self.keys
+        line, column = (self.keys if use_key else self.values).get(nearest_path, (0, 0))
+        return SourceLocation(self.file, line + 1, column + 1, format_path(path))
 
 
-def dotted(path: Path_) -> str:
-    """A path as users write it: bodies.crank.center.2"""
+def format_path(path: Path_) -> str:
+    """Format a path as users write it: bodies.crank.center.2"""
     return ".".join(map(str, path))
 
 
-def read(path: str, text: str | None) -> SourceFile:
-    """The content of a file ("-" is standard input), or of a text that stands for it. Raises SpecError."""
+def read_source(path: str, text: str | None) -> SourceFile:
+    """Read and parse a file ("-" is standard input), or parse `text` in its place. Raises SpecError."""
     file = "<stdin>" if path == STANDARD_INPUT else path
     if text is None:
-        text = text_in(path)
+        text = read_text(path)
     try:
         raw = text.encode()
     except UnicodeEncodeError as error:
-        line, column = position(text, error.start)
+        line, column = line_and_column(text, error.start)
         raise SpecError(
             Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column), "delete it")
         ) from None
-    return parse(file, text.removeprefix("\ufeff"), digest(raw))
+    return parse_source(file, text.removeprefix("\ufeff"), digest(raw))
 
 
-def text_in(path: str) -> str:
-    """The text of a file ("-" is standard input), a mark of its byte order included. Raises SpecError."""
+def read_text(path: str) -> str:
+    """Read the text of a file ("-" is standard input), including a byte order mark. Raises SpecError."""
     file = "<stdin>" if path == STANDARD_INPUT else path
     try:
-        raw: bytes | bytearray = read_bytes(path, LARGEST)
+        raw: bytes | bytearray = read_bytes(path, MAX_SIZE)
     except Finding as finding:
         raise SpecError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint)) from None
     try:
@@ -106,43 +108,47 @@ def text_in(path: str) -> str:
         raise SpecError(Problem("not-utf8", message, SourceLocation(file, line + 1, column), hint)) from None
 
 
-def position(text: str, index: int) -> tuple[int, int]:
-    """Line and column, from 1, of a character."""
+def line_and_column(text: str, index: int) -> tuple[int, int]:
+    """Return line and column, both from 1, of a character index."""
     return text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index)
 
 
-def parse(file: str, text: str, sha256: str) -> SourceFile:
-    """The data in a text. Raises SpecError for what cannot be read on; what can be is in the source's problems."""
-    if "\r" in text:  # an end of a line to YAML, alone too: so that all count the same lines
+def parse_source(file: str, text: str, sha256: str) -> SourceFile:
+    """Parse a text. Raises SpecError where parsing cannot continue; other problems are recorded in the source."""
+    if "\r" in text:  # YAML treats \r alone as a line end; normalise, so that line numbers agree everywhere
         text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if len(text) > LARGEST:
-        message = f"{len(text)} characters; at most {LARGEST} are read"
+    if len(text) > MAX_SIZE:
+        message = f"{len(text)} characters; at most {MAX_SIZE} are read"
         hint = "put lists of numbers into files of their own: tables: {NAME: {file: NAME.csv}}"
         raise SpecError(Problem("too-large", message, SourceLocation(file, 1, 1), hint))
-    if unseen := re.search(UNSEEN if text.isascii() else f"{UNSEEN}|{UNSEEN_BEYOND_ASCII}", text):
-        name = f"U+{ord(unseen[0]):04X}" + (f" ({UNSEEN_NAMES[unseen[0]]})" if unseen[0] in UNSEEN_NAMES else "")
+    if invisible := re.search(INVISIBLE if text.isascii() else f"{INVISIBLE}|{INVISIBLE_NON_ASCII}", text):
+        name = f"U+{ord(invisible[0]):04X}" + (
+            f" ({INVISIBLE_NAMES[invisible[0]]})" if invisible[0] in INVISIBLE_NAMES else ""
+        )
         message = f"the character {name} may not stand in a spec"
         raise SpecError(
-            Problem("bad-character", message, SourceLocation(file, *position(text, unseen.start())), "delete it")
+            Problem(
+                "bad-character", message, SourceLocation(file, *line_and_column(text, invisible.start())), "delete it"
+            )
         )
-    builder = Builder(file)
+    builder = SourceBuilder(file)
     try:
-        for event in event_stream(text):
-            builder.take(event)
+        for event in iter_events(text):
+            builder.handle_event(event)
     except yaml.MarkedYAMLError as error:
-        problems = not_yaml(file, text, error)
+        problems = find_syntax_problems(file, text, error)
         first = min(p.location.line for p in problems if p.location)
-        # in that line words are taken for keys that are none
-        before = [p for p in builder.problems if p.location and p.location.line < first]
-        raise SpecError(*before, *problems) from None
+        # problems found after that line may come from misread keys
+        earlier = [p for p in builder.problems if p.location and p.location.line < first]
+        raise SpecError(*earlier, *problems) from None
     if builder.documents == 0 or builder.root is None:
-        hint = f"write the scene into it; the smallest is: {SMALLEST}"
+        hint = f"write the scene into it; the smallest is: {SMALLEST_SPEC}"
         raise SpecError(*builder.problems, Problem("empty", "the file is empty", SourceLocation(file, 1, 1), hint))
     return SourceFile(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
 
 
-def event_stream(text: str) -> Iterator[Any]:
-    """The parser's events, one by one."""
+def iter_events(text: str) -> Iterator[Any]:
+    """Yield the parser's events."""
     loader = Loader(text)
     try:
         while True:
@@ -154,67 +160,80 @@ def event_stream(text: str) -> Iterator[Any]:
         loader.dispose()
 
 
-def not_yaml(file: str, text: str, error: yaml.MarkedYAMLError) -> list[Problem]:
-    """What keeps a text from being YAML: brackets and quotes without their match, else what the parser says."""
-    from heuncli.scene.file_format.brackets import mismatches  # only on the way to an error
+def find_syntax_problems(file: str, text: str, error: yaml.MarkedYAMLError) -> list[Problem]:
+    """Explain why a text is not YAML: unmatched brackets and quotes, otherwise the parser's own message."""
+    from heuncli.scene.file_format.brackets import find_mismatches  # only on the way to an error
 
     mark = error.problem_mark or error.context_mark
     line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-    # what is opened after the place where the parser stopped was not its reason
-    stopped = sum(len(shown) + 1 for shown in text.split("\n")[: line - 1]) + column - 1
-    if "nesting depth" in (error.problem or ""):  # a bound of the parser's own, met before its events come
-        place = position(text, deep_bracket(text[:stopped]))
-        return [Problem("too-deep", TOO_DEEP, SourceLocation(file, *place), TOO_DEEP_HINT)]
-    if found := mismatches(text, stopped):
-        at = [SourceLocation(file, *position(text, one.at)) for one in found]
-        return [Problem("not-yaml", f"not YAML: {one.message}", at[k], one.hint) for k, one in enumerate(found)]
+    # a bracket opened after the parser stopped cannot be the cause
+    stop_index = sum(len(shown) + 1 for shown in text.split("\n")[: line - 1]) + column - 1
+    if "nesting depth" in (error.problem or ""):  # the parser's own limit, reached before it yields events
+        line_column = line_and_column(text, find_too_deep_bracket(text[:stop_index]))
+        return [Problem("too-deep", TOO_DEEP, SourceLocation(file, *line_column), TOO_DEEP_HINT)]
+    if unmatched := find_mismatches(text, stop_index):
+        locations = [SourceLocation(file, *line_and_column(text, one.at)) for one in unmatched]
+        return [
+            Problem("not-yaml", f"not YAML: {one.message}", locations[k], one.hint) for k, one in enumerate(unmatched)
+        ]
     what = error.problem or str(error)
-    return [Problem("not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), yaml_hint(text, line, what))]
+    return [
+        Problem(
+            "not-yaml", f"not YAML: {what}", SourceLocation(file, line, column), suggest_syntax_fix(text, line, what)
+        )
+    ]
 
 
-def deep_bracket(text: str) -> int:
-    """Where the bracket stands that is nested one level too deep."""
+def find_too_deep_bracket(text: str) -> int:
+    """Return the index of the first bracket that is nested too deep, or the length of the text."""
     depth = 0
     for index, letter in enumerate(text):
         depth += (letter in "[{") - (letter in "]}")
-        if depth > DEEPEST:
+        if depth > MAX_DEPTH:
             return index
     return len(text)
 
 
-def yaml_hint(text: str, line: int, what: str) -> str:
-    """What probably went wrong, for the usual accidents."""
+def suggest_syntax_fix(text: str, line: int, parser_message: str) -> str:
+    """Return a hint for the usual syntax mistakes."""
     lines = text.split("\n")
-    shown = lines[line - 1] if 0 < line <= len(lines) else ""
-    if "\t" in shown[: len(shown) - len(shown.lstrip())] or "'\\t'" in what or "tab" in what:
+    line_text = lines[line - 1] if 0 < line <= len(lines) else ""
+    if (
+        "\t" in line_text[: len(line_text) - len(line_text.lstrip())]
+        or "'\\t'" in parser_message
+        or "tab" in parser_message
+    ):
         return "indent with spaces, not tabs"
-    if "mapping values are not allowed" in what:
+    if "mapping values are not allowed" in parser_message:
         return "write a text that contains ': ' in quotes, or look at the indentation"
-    if "could not find expected ':'" in what:
+    if "could not find expected ':'" in parser_message:
         return "a key needs a colon and a space after it"
-    if "cannot start any token" in what:
+    if "cannot start any token" in parser_message:
         return "a text that starts with % or @ or a backquote is written in quotes"
-    if "unknown escape" in what:
+    if "unknown escape" in parser_message:
         return "a backslash within double quotes is written twice, or the text stands in single quotes"
-    if "did not find expected key" in what:
+    if "did not find expected key" in parser_message:
         return "look at the indentation: the keys of one mapping begin in one column"
-    if "expected ',' or" in what:
+    if "expected ',' or" in parser_message:
         return "look for a comma that is missing before this place"
-    if "expected node content" in what:
+    if "expected node content" in parser_message:
         return "look for a comma or a colon too many before this place"
-    if "alphabetic or numeric" in what or "alias" in what or "anchor" in what:
+    if "alphabetic or numeric" in parser_message or "alias" in parser_message or "anchor" in parser_message:
         return "a text that starts with * or & is written in quotes"
     return "look at this line and the one before it: brackets, colons, quotes, indentation"
 
 
-ALIAS = (
+ALIAS_HINT = (
     "name the value once under parameters and use the name; a program writes the spec as JSON, which is read, too, "
     "or tells its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
 )
 
 
 class OpenContainer:
-    """An open mapping or list; skipped: the value of a key that was refused."""
+    """A mapping or list that is still open.
+
+    skipped: the next value belongs to a refused key and is not stored
+    """
 
     def __init__(self, container: dict[str, Any] | list[Any], path: Path_) -> None:
         self.container, self.path = container, path
@@ -222,8 +241,10 @@ class OpenContainer:
         self.skipped = False
 
 
-class Builder:
-    """Builds data and locations from events; an error after which reading can go on is added to the problems."""
+class SourceBuilder:
+    """Build data and locations from parser events; errors after which parsing can continue are collected in
+    `problems`.
+    """
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -236,56 +257,62 @@ class Builder:
 
     def problem(self, code: str, message: str, event: Any, path: Path_ = (), *, hint: str) -> Problem:
         mark = event.start_mark
-        return Problem(code, message, SourceLocation(self.file, mark.line + 1, mark.column + 1, dotted(path)), hint)
+        return Problem(
+            code, message, SourceLocation(self.file, mark.line + 1, mark.column + 1, format_path(path)), hint
+        )
 
-    def take(self, event: Any) -> None:
-        """One event."""
+    def handle_event(self, event: Any) -> None:
+        """Handle one parser event. Raises SpecError at a second document."""
         kind = type(event)
         if kind is events.ScalarEvent:
-            self.scalar(event)
+            self.add_scalar(event)
         elif kind is events.MappingStartEvent:
-            self.open({}, event)
+            self.open_container({}, event)
         elif kind is events.SequenceStartEvent:
-            self.open([], event)
+            self.open_container([], event)
         elif kind is events.MappingEndEvent or kind is events.SequenceEndEvent:
             self.stack.pop()
         elif kind is events.AliasEvent:
-            self.problems.append(self.problem("alias", f"aliases (*{event.anchor}) are not read", event, hint=ALIAS))
+            self.problems.append(
+                self.problem("alias", f"aliases (*{event.anchor}) are not read", event, hint=ALIAS_HINT)
+            )
             top = self.stack[-1] if self.stack else None
-            if top is not None and top.key is None and type(top.container) is dict:  # it stands for a key
+            if top is not None and top.key is None and type(top.container) is dict:  # the alias stands for a key
                 top.key, top.skipped = "", True
             else:
-                self.put(None, event)
+                self.store(None, event)
         elif kind is events.DocumentStartEvent:
             self.documents += 1
             if self.documents > 1:
-                raise SpecError(*self.problems, self.several(event))
+                raise SpecError(*self.problems, self.make_several_documents_problem(event))
 
-    def several(self, event: Any) -> Problem:
-        """The error of a second document."""
+    def make_several_documents_problem(self, event: Any) -> Problem:
+        """Make the problem that reports a second document."""
         hint = "what stands behind the line --- belongs into a file of its own"
         return self.problem("several-documents", "a file holds one spec only", event, hint=hint)
 
-    def check(self, event: Any) -> None:
-        """No anchors, no tags."""
+    def refuse_anchor_and_tag(self, event: Any) -> None:
+        """Report an anchor or a tag as a problem."""
         if event.anchor is not None:
-            self.problems.append(self.problem("alias", f"anchors (&{event.anchor}) are not read", event, hint=ALIAS))
+            self.problems.append(
+                self.problem("alias", f"anchors (&{event.anchor}) are not read", event, hint=ALIAS_HINT)
+            )
         if event.tag is not None and event.tag != "!":
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             hint = "values are plain numbers and texts; a value used often belongs into parameters"
             self.problems.append(self.problem("tag", f"tags ({tag}) are not read", event, hint=hint))
 
-    def scalar(self, event: Any) -> None:
+    def add_scalar(self, event: Any) -> None:
         if event.anchor is not None or event.tag is not None:
-            self.check(event)
+            self.refuse_anchor_and_tag(event)
         top = self.stack[-1] if self.stack else None
         if top is not None and top.key is None and type(top.container) is dict:
-            self.key(event, top)
+            self.add_key(event, top)
         else:
-            self.put(plain(event.value) if event.implicit[0] else event.value, event)
+            self.store(parse_plain_scalar(event.value) if event.implicit[0] else event.value, event)
 
-    def key(self, event: Any, top: OpenContainer) -> None:
-        """A key of a mapping: a plain word, once."""
+    def add_key(self, event: Any, top: OpenContainer) -> None:
+        """Begin a mapping entry; report merge keys and duplicate keys."""
         key = event.value
         path = (*top.path, key)
         if key == "<<" and event.implicit[0]:
@@ -302,24 +329,26 @@ class Builder:
             self.keys[path] = (event.start_mark.line, event.start_mark.column)
         top.key = key
 
-    def open(self, container: dict[str, Any] | list[Any], event: Any) -> None:
-        """The start of a mapping or list."""
+    def open_container(self, container: dict[str, Any] | list[Any], event: Any) -> None:
+        """Store a new mapping or list and push it on the stack. Raises SpecError if it stands for a key or is nested
+        too deep.
+        """
         if event.anchor is not None or event.tag is not None:
-            self.check(event)
+            self.refuse_anchor_and_tag(event)
         top = self.stack[-1] if self.stack else None
         if top is not None and top.key is None and type(top.container) is dict:
             hint = "an expression or a text that starts with { or [ is written in quotes"
             message = "not YAML as specs use it: a key is a plain word"
             problem = self.problem("not-yaml", message, event, top.path, hint=hint)
             raise SpecError(*self.problems, problem)
-        path = self.put(container, event)
+        path = self.store(container, event)
         self.stack.append(OpenContainer(container, path))
-        if len(self.stack) > DEEPEST:
+        if len(self.stack) > MAX_DEPTH:
             problem = self.problem("too-deep", TOO_DEEP, event, hint=TOO_DEEP_HINT)
             raise SpecError(*self.problems, problem)
 
-    def put(self, value: Any, event: Any) -> Path_:
-        """Store a value where it belongs; gives its path."""
+    def store(self, value: Any, event: Any) -> Path_:
+        """Store a value in the innermost open container and return its path."""
         path: Path_ = ()
         if not self.stack:
             self.root = value
@@ -339,14 +368,14 @@ class Builder:
         return path
 
 
-def plain(word: str) -> Any:
-    """The value of an unquoted scalar, by YAML 1.2."""
-    if word in WORDS:
-        return WORDS[word]
+def parse_plain_scalar(word: str) -> Any:
+    """Return the value of an unquoted scalar by the rules of YAML 1.2."""
+    if word in WORD_VALUES:
+        return WORD_VALUES[word]
     if INTEGER.match(word):
         return int(word) if len(word) < 20 else float(word)
     if FLOAT.match(word):
         return float(word)
-    if BASED.match(word):
+    if PREFIXED_INTEGER.match(word):
         return int(word, 0)
     return word

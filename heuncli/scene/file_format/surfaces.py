@@ -1,56 +1,56 @@
-"""The files of meshes that shapes name -> closed surfaces, and what to say of them. Impure: reads files."""
+"""Read the mesh files that shapes name into closed surfaces, and check them. Impure: reads files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from heuncli.base.errors import Finding
-from heuncli.base.number_range import is_in_range, out_of_range
+from heuncli.base.number_range import is_in_range, range_error
 from heuncli.scene.file_format.format_shapes import MeshShape
-from heuncli.scene.file_format.named_files import RELATIVE, NamedFiles
-from heuncli.scene.file_format.tables import Wrong
+from heuncli.scene.file_format.named_files import RELATIVE_PATH_HINT, NamedFiles
+from heuncli.scene.file_format.tables import TableProblem
 from heuncli.scene.meshes.model import TriangleMesh
-from heuncli.scene.meshes.reading import mesh_of
+from heuncli.scene.meshes.reading import read_closed_mesh
 
-LARGE = 10.0  # [m] a part of machinery is smaller; drawn in millimetres it is larger than so many units
+LARGE_SIZE = 10.0  # [m] machine parts are smaller; one drawn in millimetres has more units than this
 
 
-def surface_of(file: str, files: NamedFiles) -> tuple[TriangleMesh | None, list[Wrong]]:
-    """The mesh in a file, or what is wrong with it."""
+def read_mesh(file: str, files: NamedFiles) -> tuple[TriangleMesh | None, list[TableProblem]]:
+    """Read the mesh of a file, and list what is wrong with it."""
     try:
-        content = files.content(file)
-    except Finding as refused:
-        message = f"the file '{files.path(file)}' cannot be read: {refused.message}"
-        is_large = refused.code == "too-large"
-        hint = "a coarser mesh will do" if is_large else RELATIVE
-        return None, [Wrong(("file",), Finding(refused.code if is_large else "mesh-file", message, hint))]
+        content = files.read_content(file)
+    except Finding as error:
+        message = f"the file '{files.path(file)}' cannot be read: {error.message}"
+        is_large = error.code == "too-large"
+        hint = "a coarser mesh will do" if is_large else RELATIVE_PATH_HINT
+        return None, [TableProblem(("file",), Finding(error.code if is_large else "mesh-file", message, hint))]
     try:
-        return mesh_of(content, file), []
-    except Finding as refused:
-        message = f"the mesh '{files.path(file)}' cannot be a body: {refused.message}"
-        return None, [Wrong(("file",), Finding(refused.code, message, refused.hint))]
+        return read_closed_mesh(content, file), []
+    except Finding as error:
+        message = f"the mesh '{files.path(file)}' cannot be a body: {error.message}"
+        return None, [TableProblem(("file",), Finding(error.code, message, error.hint))]
 
 
-def judged(shape: MeshShape, surface: TriangleMesh) -> Iterator[Wrong]:
-    """Masses and inertias that are not computed with."""
+def check_mesh_mass(shape: MeshShape, surface: TriangleMesh) -> Iterator[TableProblem]:
+    """Yield a problem if mass or inertia of a mesh are outside the range of computation."""
     scale = 1.0 if shape.scale is None else shape.scale
-    given = shape.density if shape.mass is None else shape.mass
-    if scale <= 0.0 or given is None or given <= 0.0:  # told by the rules
+    mass_or_density = shape.density if shape.mass is None else shape.mass
+    if scale <= 0.0 or mass_or_density is None or mass_or_density <= 0.0:  # reported by the rules
         return
-    mass = given if shape.mass is not None else given * surface.volume * scale**3
+    mass = mass_or_density if shape.mass is not None else mass_or_density * surface.volume * scale**3
     if not is_in_range(mass) or not mass:
-        yield Wrong(("file",), out_of_range(mass, "the mass of this shape [kg], its density times its volume,"))
+        yield TableProblem(("file",), range_error(mass, "the mass of this shape [kg], its density times its volume,"))
         return
     reach = scale * max(map(abs, (*surface.low.tolist(), *surface.high.tolist())))
     reach += max(map(abs, shape.at or (0.0,)))
     if not is_in_range(mass * reach**2):
-        what = f"the inertia of this shape [kg m^2], {mass:g} kg times the square of {reach:g} m,"
-        yield Wrong(("file",), out_of_range(mass * reach**2, what))
+        description = f"the inertia of this shape [kg m^2], {mass:g} kg times the square of {reach:g} m,"
+        yield TableProblem(("file",), range_error(mass * reach**2, description))
 
 
-def noted(shape: MeshShape, surface: TriangleMesh | None, files: NamedFiles) -> Iterator[Finding]:
-    """What to say of a mesh all the same: where its file lies, what of it was put right, its size without a scale."""
-    outside = files.outside(shape.file)
+def iter_mesh_warnings(shape: MeshShape, surface: TriangleMesh | None, files: NamedFiles) -> Iterator[Finding]:
+    """Yield warnings about a mesh: a file outside the folder, repairs, and an implausible size without a scale."""
+    outside = files.find_outside_warning(shape.file)
     if outside is not None:
         yield outside
     if surface is None:
@@ -58,6 +58,6 @@ def noted(shape: MeshShape, surface: TriangleMesh | None, files: NamedFiles) -> 
     for note in surface.notes:
         yield Finding("mesh-mended", f"the mesh '{shape.file}': {note}", "export it again, if it is not meant so")
     size = float((surface.high - surface.low).max())
-    if shape.scale is None and size > LARGE:
+    if shape.scale is None and size > LARGE_SIZE:
         message = f"the mesh '{shape.file}' is {size:.4g} m long, for without a scale its unit is the metre"
         yield Finding("mesh-size", message, "scale: 1 mm, if it was drawn in millimetres, or scale: 1 m")

@@ -1,4 +1,4 @@
-"""Attitudes and small tensors in plain floats: what the spec needs before any array exists.
+"""Rotations and small tensors in plain floats: what loading a spec needs, without NumPy.
 
 A rotation R takes components in the turned (body) axes to the fixed (world) axes.
 """
@@ -14,31 +14,31 @@ from heuncli.scene.file_format.models import Matrix, Vec
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-def length(v: Vec) -> float:
-    """Length of a vector, without overflow."""
+def vector_length(v: Vec) -> float:
+    """Return the length of a vector, without overflow."""
     return math.hypot(*v)
 
 
-def unit(v: Vec) -> Vec:
-    """Direction of a vector that is not zero."""
+def unit_vector(v: Vec) -> Vec:
+    """Return the direction of a vector that is not zero."""
     scale = max(map(abs, v))
     x, y, z = v[0] / scale, v[1] / scale, v[2] / scale
     n = math.sqrt(x * x + y * y + z * z)
     return x / n, y / n, z / n
 
 
-def cross(a: Vec, b: Vec) -> Vec:
+def cross_product(a: Vec, b: Vec) -> Vec:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def product(a: Matrix, b: Matrix) -> Matrix:
+def matrix_product(a: Matrix, b: Matrix) -> Matrix:
     rows = [tuple(sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)) for i in range(3)]
     return rows[0], rows[1], rows[2]  # type: ignore[return-value]
 
 
-def about(axis: Vec, angle: float) -> Matrix:
-    """Turn by an angle about a direction that is not zero (Rodrigues)."""
-    x, y, z = unit(axis)
+def rotation_about(axis: Vec, angle: float) -> Matrix:
+    """Return the rotation by an angle about a direction that is not zero (Rodrigues)."""
+    x, y, z = unit_vector(axis)
     s, c = math.sin(angle), math.cos(angle)
     d = 1.0 - c
     return (
@@ -48,8 +48,8 @@ def about(axis: Vec, angle: float) -> Matrix:
     )
 
 
-def of_quaternion(q: tuple[float, float, float, float]) -> Matrix:
-    """Rotation of a quaternion (w, x, y, z), normalised here."""
+def rotation_from_quaternion(q: tuple[float, float, float, float]) -> Matrix:
+    """Return the rotation of a quaternion (w, x, y, z), which is normalised here."""
     n = math.hypot(*q)
     w, x, y, z = (c / n for c in q)
     return (
@@ -59,21 +59,23 @@ def of_quaternion(q: tuple[float, float, float, float]) -> Matrix:
     )
 
 
-def of_unit_quaternion(q: tuple[float, float, float, float]) -> Matrix:
-    """Rotation of a quaternion meant to be of unit length. Raises Finding."""
+def rotation_from_unit_quaternion(q: tuple[float, float, float, float]) -> Matrix:
+    """Return the rotation of a quaternion that should have unit length. Raises Finding [orientation] if it has not."""
     n = math.hypot(*q)
     if abs(n - 1.0) > tolerances.UNIT_TYPED:
         raise Finding("orientation", f"the quaternion has the length {n:.6g} instead of 1", "its order is w, x, y, z")
-    return of_quaternion(q)
+    return rotation_from_quaternion(q)
 
 
-def of_rodrigues(k: Vec) -> Matrix:
-    """Rotation of the Rodrigues vector axis * tan(angle/2) (Heun no. 20)."""
-    return of_quaternion((1.0, *k))
+def rotation_from_rodrigues(k: Vec) -> Matrix:
+    """Return the rotation of the Rodrigues vector axis * tan(angle/2) (Heun no. 20)."""
+    return rotation_from_quaternion((1.0, *k))
 
 
-def of_euler(angles: Vec, sequence: str) -> Matrix:
-    """Turns about axes that turn along: zyx is about z, then the new y, then the new x. Raises Finding."""
+def rotation_from_euler(angles: Vec, sequence: str) -> Matrix:
+    """Return the rotation of turns about moving axes: zyx is about z, then the new y, then the new x. Raises
+    Finding.
+    """
     if (
         len(sequence) != 3
         or not set(sequence) <= set("xyz")
@@ -84,30 +86,32 @@ def of_euler(angles: Vec, sequence: str) -> Matrix:
         raise Finding("orientation", f"'{sequence}' is not a sequence of axes", hint)
     R = IDENTITY
     for letter, angle in zip(sequence, angles, strict=True):
-        R = product(R, about(IDENTITY["xyz".index(letter)], angle))
+        R = matrix_product(R, rotation_about(IDENTITY["xyz".index(letter)], angle))
     return R
 
 
-def of_matrix(m: Matrix) -> Matrix:
-    """The rotation that a matrix typed with some digits means. Raises Finding."""
+def rotation_from_matrix(m: Matrix) -> Matrix:
+    """Return the rotation that a matrix written with a few digits means. Raises Finding."""
     columns = tuple(zip(*m, strict=True))
-    off = max(
+    deviation = max(
         abs(sum(columns[i][k] * columns[j][k] for k in range(3)) - (1.0 if i == j else 0.0))
         for i in range(3)
         for j in range(3)
     )
-    handed = sum(a * b for a, b in zip(cross(m[0], m[1]), m[2], strict=True))
-    if off > tolerances.UNIT_TYPED or handed < 0.0:
-        skew = off > tolerances.UNIT_TYPED
-        what = "its columns are not perpendicular and of length 1" if skew else "it is a mirror, not a turn"
+    determinant = sum(a * b for a, b in zip(cross_product(m[0], m[1]), m[2], strict=True))
+    if deviation > tolerances.UNIT_TYPED or determinant < 0.0:
+        is_skewed = deviation > tolerances.UNIT_TYPED
+        reason = "its columns are not perpendicular and of length 1" if is_skewed else "it is a mirror, not a turn"
         raise Finding(
-            "orientation", f"the matrix is not a rotation: {what}", "columns are the body's axes in world axes"
+            "orientation", f"the matrix is not a rotation: {reason}", "columns are the body's axes in world axes"
         )
-    return m if off <= tolerances.UNIT_EXACT else of_quaternion(to_quaternion(m))
+    return m if deviation <= tolerances.UNIT_EXACT else rotation_from_quaternion(quaternion_from_rotation(m))
 
 
-def to_quaternion(R: Matrix) -> tuple[float, float, float, float]:
-    """Quaternion of a rotation from its largest component (Shepperd); of a matrix nearly one, that of one nearby."""
+def quaternion_from_rotation(R: Matrix) -> tuple[float, float, float, float]:
+    """Return the quaternion of a rotation from its largest component (Shepperd); tolerates a matrix that is nearly a
+    rotation.
+    """
     t = R[0][0] + R[1][1] + R[2][2]
     squares = (1.0 + t, 1.0 + 2.0 * R[0][0] - t, 1.0 + 2.0 * R[1][1] - t, 1.0 + 2.0 * R[2][2] - t)
     k = squares.index(max(squares))
@@ -119,8 +123,8 @@ def to_quaternion(R: Matrix) -> tuple[float, float, float, float]:
     return ((h, a, b, c), (a, h, d, e), (b, d, h, g), (c, e, g, h))[k]
 
 
-def principal(m: Matrix) -> Vec:
-    """Eigenvalues of a symmetric matrix, ascending (Jacobi's turns, which keep small ones accurate)."""
+def symmetric_eigenvalues(m: Matrix) -> Vec:
+    """Return the eigenvalues of a symmetric matrix, ascending (Jacobi rotations, which keep small ones accurate)."""
     a = [list(row) for row in m]
     for _ in range(30):
         if a[0][1] == a[0][2] == a[1][2] == 0.0:

@@ -1,14 +1,14 @@
-"""A spec read once, and again with other values: what hangs on none of them is kept.
+"""Read a spec once, and then again with other values, reusing everything that does not depend on them.
 
-While the spec is read for the first time, it is written down what every entry, table and rule looks up (lookups.py):
-names of parameters and of tables, types of joints, blocks of the document. With other values it is read by the same
-code; an entry whose data are as they were, and for which every lookup would give what it gave, is the entry that it
-was. So are a rule's verdict and what a part of the document means. What is kept is that of the first reading alone, so
-that no variant hangs on another one. Beside it stands what follows from it and is the same whoever asks first: what is
-to be done again for a set of lookups that differ, and how a number is calculated from parameters.
-Where anything is wrong with a variant, it is read once more with nothing kept, and its errors are those.
+The first reading records what every entry, table and rule looks up (lookups.py): names of parameters and tables, types
+of joints, blocks of the document. With other values the spec is read by the same code. An entry is reused if its data
+are unchanged and every recorded lookup gives the same value. The same holds for the verdict of a rule and for the
+resolved meaning of a part of the document. Only results of the first reading are reused, so that no variant depends on
+another one. Cached besides are results that do not depend on the order of the variants: what must be read again for a
+given set of changed lookups, and how a number is calculated from parameters. If a variant has an error, it is read once
+more without any reuse, and the errors of that reading are reported.
 
-Impure: reads the spec's file and those of its tables, when it is made; a table that a variant changes is read again.
+Impure: reads the spec's file and its tables when it is created; a table that a variant changes is read again.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from heuncli.base.errors import SpecError
-from heuncli.base.nearest import begin_file
-from heuncli.scene.file_format.first_reading import FirstReading
-from heuncli.scene.file_format.later_reading import LaterReading
-from heuncli.scene.file_format.load import Loading
+from heuncli.base.nearest import reset_effort
+from heuncli.scene.file_format.first_reading import RecordingLoader
+from heuncli.scene.file_format.later_reading import IncrementalLoader
+from heuncli.scene.file_format.load import SpecLoader
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
-from heuncli.scene.file_format.source import read
+from heuncli.scene.file_format.source import read_source
 
 
 class SpecVariants:
-    """A spec that was read, of which variants are read."""
+    """A spec that was read once and whose variants can be read quickly."""
 
     def __init__(
         self,
@@ -38,37 +38,50 @@ class SpecVariants:
         case: str | None = None,
         files: NamedFiles | None = None,
     ) -> None:
-        """Read the spec as `load` does; overrides: those of all variants; files: those it names. Raises SpecError."""
-        begin_file()
+        """Read the spec like `load`.
+
+        overrides: values that hold in all variants
+        files: the files that the spec names
+
+        Raises SpecError.
+        """
+        reset_effort()
         self.overrides = dict(overrides or {})
-        source = read(str(path), text)
-        self._first = FirstReading(str(path), source, self.overrides, checking, case, files)
-        self.spec = self._first.spec()
+        source = read_source(str(path), text)
+        self._first = RecordingLoader(str(path), source, self.overrides, checking, case, files)
+        self.spec = self._first.load_spec()
 
     def load(self, overrides: Mapping[str, str]) -> Spec:
-        """The scene with other values: what `load` makes of the spec with them, and of its values the same bits.
+        """Load the scene with other values; the result equals that of a plain `load`, bit by bit.
 
-        overrides: parameters or dotted keys with their values as text. Values that are those of the first reading are
-        the same objects. Raises SpecError with all problems.
+        overrides: parameters or dotted keys with their values as text
+
+        Values that are unchanged from the first reading are the same objects. Raises SpecError with all problems.
         """
-        first, given = self._first, {**self.overrides, **overrides}
+        first, all_overrides = self._first, {**self.overrides, **overrides}
         try:
-            return LaterReading(first, given).spec()
+            return IncrementalLoader(first, all_overrides).load_spec()
         except SpecError:
-            begin_file()
-            return Loading(first.path, first.source, given, first.checking, first.case, first.files).spec()
+            reset_effort()
+            return SpecLoader(
+                first.path, first.source, all_overrides, first.checking, first.case, first.files
+            ).load_spec()
 
-    def idle(self, names: Collection[str]) -> frozenset[str]:
-        """The parameters among some names which no entry and no table looks up, nor another parameter that one does.
+    def unused_parameters(self, names: Collection[str]) -> frozenset[str]:
+        """Return the parameters among `names` that no entry and no table uses, directly or through another parameter.
 
-        What is expected of the results does not count.
+        Expectations do not count.
         """
         first = self._first
-        read = [kept.lookups for path, kept in first.entries.items() if path[:1] != ("expect",)]
-        read += [kept.lookups for kept in first.built.values()]
+        lookup_sets = [record.lookups for path, record in first.entry_records.items() if path[:1] != ("expect",)]
+        lookup_sets += [record.lookups for record in first.table_records.values()]
         used: set[object] = set()
-        waiting: set[object] = {lookup.key for lookups in read for lookup in lookups if lookup.of == "parameters"}
-        while waiting:
-            used |= waiting
-            waiting = {name for one in waiting for name in first.known.uses.get(str(one), ())} - used
-        return frozenset(name for name in names if name in first.known.uses and name not in used)
+        pending: set[object] = {
+            lookup.key for lookups in lookup_sets for lookup in lookups if lookup.container == "parameters"
+        }
+        while pending:
+            used |= pending
+            pending = {
+                name for parameter in pending for name in first.evaluated_parameters.uses.get(str(parameter), ())
+            } - used
+        return frozenset(name for name in names if name in first.evaluated_parameters.uses and name not in used)

@@ -1,4 +1,4 @@
-"""What other programs call things, for hints."""
+"""Words of other programs and other mistakes in keys and types, mapped to heun's words and hints."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ KEY_WORDS = {
     "when": "time", "instant": "time", "t": "time", "point": "on", "slack": "tension_only",
     "lifts": "one_sided", "unilateral": "one_sided",
 }  # fmt: skip
-SEVERAL = {  # words that mean one thing here and another there, the likeliest first
+AMBIGUOUS_WORDS = {  # words whose meaning depends on the place, the most likely key first
     "value": ("vector", "is", "value"), "vector": ("value",), "force": ("vector", "value"), "path": ("of",),
     "what": ("of",), "quantity": ("of",), "result": ("of",), "body": ("on",), "at": ("on",), "where": ("on",),
     "damping": ("coefficient",), "coefficient": ("damping",), "c": ("coefficient",), "d": ("coefficient", "damping"),
@@ -63,7 +63,7 @@ SEVERAL = {  # words that mean one thing here and another there, the likeliest f
     "shape": ("shapes",), "a": ("from",), "b": ("to",), "body1": ("from",), "body2": ("to",), "body_a": ("from",),
     "body_b": ("to",), "kind": ("type",), "n_samples": ("samples",), "mode": ("type",),
 }  # fmt: skip
-WORDS = {  # of `type` under analysis, and the like
+VALUE_WORDS = {  # values of `type` under analysis, of `space` and the like
     **dict.fromkeys(("dynamic", "dynamics", "transient", "simulation", "kinematic", "kinematics"), ("motion",)),
     **dict.fromkeys(("static", "statics", "equilibrium", "steady"), ("rest", "state")),
     "2d": ("planar",), "plane": ("planar",), "3d": ("spatial",), "space": ("spatial",), "local": ("body",),
@@ -73,7 +73,7 @@ WORDS = {  # of `type` under analysis, and the like
     **dict.fromkeys(("positions", "velocities", "accelerations", "bodies", "coordinates"), ("motion",)),
     **dict.fromkeys(("supports", "ground", "base"), ("foundation",)), "loads": ("forces",), "blows": ("impulses",),
 }  # fmt: skip
-METHOD_WORDS = {  # of methods, in lower case, without hyphens
+METHOD_WORDS = {  # names of integration methods, in lower case, without hyphens
     "forwardeuler": "Euler", "expliciteuler": "Euler", "improvedeuler": "Heun2", "heun": "Heun2", "midpoint": "Heun2",
     "rk2": "Heun2", "rk3": "Heun3", "rungekutta": "RK4", "rungekutta4": "RK4", "kutta": "RK4", "classical": "RK4",
     "rk45": "DOPRI5", "ode45": "DOPRI5", "dopri": "DOPRI5", "dp5": "DOPRI5", "rkf45": "DOPRI5", "tsit5": "DOPRI5",
@@ -88,7 +88,7 @@ METHOD_WORDS = {  # of methods, in lower case, without hyphens
     "rosenbrock": "Radau5", "generalizedalpha": "Radau5", "bdf": "SciPy-BDF", "lsoda": "SciPy-LSODA",
     "odeint": "SciPy-LSODA", "vode": "SciPy-BDF", "default": "auto", "automatic": "auto", "adaptive": "auto",
 }  # fmt: skip
-FORMS = {  # what the values of some keys look like
+FORM_HINTS = {  # what the values of some keys look like
     "rotor": "what turns in the motor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
     "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
     "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
@@ -104,15 +104,13 @@ FORMS = {  # what the values of some keys look like
     "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
     "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
 }  # fmt: skip
-JOINTS = "a list of joints: [first, second]"  # what `of` is of a coupling
-PLACES = frozenset(
-    {"from", "to", "center", "position", "at"}
-)  # lists of coordinates, in the body's axes or the world's
-FORMS_OF_KINDS = {  # what values look like of which only the kind is known
+JOINT_LIST_HINT = "a list of joints: [first, second]"  # hint for `of` of a coupling
+COORDINATE_KEYS = frozenset({"from", "to", "center", "position", "at"})  # keys of coordinates, in body or world axes
+KIND_HINTS = {  # hints by the kind of value that is expected
     "a mapping": "keys with their values, as {key: value}", "a text": "write a name, or a text in quotes",
     "true or false": "true or false, without quotes", "a number": "as 0.5, \"12 mm\" or \"2*L\"",
 }  # fmt: skip
-MISSING = {  # what a key is that must be there
+MISSING_KEY_HINTS = {  # explanation of required keys
     "length": "the length at which it exerts no force", "vector": "three components, as [0, 0, -10]",
     "on": "the point at which it acts: body.point", "speed": "the rate at which friction is nearly full, as 0.01",
     "axis": "a direction, as [0, 0, 1]", "joint": "the name of the joint in which it acts",
@@ -131,8 +129,15 @@ MISSING = {  # what a key is that must be there
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
-OF_THREADS = ("efficiency", "coefficient", "mu", "radius", "flank_angle", "speed")  # keys of a screw's friction
-MOTOR = {  # what a motor's card has, and what of it is called or written otherwise
+THREAD_FRICTION_KEYS = (
+    "efficiency",
+    "coefficient",
+    "mu",
+    "radius",
+    "flank_angle",
+    "speed",
+)  # keys of a screw's friction
+MOTOR_HINTS = {  # terms of a motor's data sheet, and how the format expresses them
     "stall_torque": "it is called stall here", "no_load_speed": "it is called idle here",
     "idle_speed": "it is called idle here", "speed": "its speed without load is idle",
     "torque": "its torque at standstill is stall",
@@ -149,17 +154,21 @@ MOTOR = {  # what a motor's card has, and what of it is called or written otherw
     "voltage": "currents and voltages are not computed: stall and idle are those at its voltage",
     "current": "currents and voltages are not computed: limit is the torque at the largest current",
 }  # fmt: skip
-BRAKE = dict.fromkeys(("ramp", "rise", "delay"), 'its size may follow time: torque: "8*min(t/0.2, 1)"') | dict.fromkeys(
-    ("size", "value"), "of a given size it has a torque, in a slide a force"
-)
-LATCH = dict.fromkeys(
+BRAKE_HINTS = dict.fromkeys(
+    ("ramp", "rise", "delay"), 'its size may follow time: torque: "8*min(t/0.2, 1)"'
+) | dict.fromkeys(("size", "value"), "of a given size it has a torque, in a slide a force")
+LATCH_HINTS = dict.fromkeys(
     ("until", "opens", "off"), "it lets go where release becomes true: release: t > 1.5"
 ) | dict.fromkeys(
     ("at", "time", "from", "position"), "where it catches is angle or travel, from what on is when: t > 0.1"
 )
-BY_KEYS = ((("stall", "ratio"), MOTOR), (("joint", "speed", "radius"), BRAKE), (("release", "every"), LATCH))
-CV = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
-ELSEWHERE = {  # keys that stand in another place than the one where they were written
+HINTS_BY_KEYS = (
+    (("stall", "ratio"), MOTOR_HINTS),
+    (("joint", "speed", "radius"), BRAKE_HINTS),
+    (("release", "every"), LATCH_HINTS),
+)
+CV_HINT = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
+MISPLACED_KEYS = {  # keys that belong somewhere else, or are expressed differently
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
     "restitution": "it stands at a rod with tension_only, or at a stop",
     "tension_only": "it stands at a joint of type rod",
@@ -177,16 +186,16 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",
-    "cv": CV,
-    "constant_velocity": CV,
-    "homokinetic": CV,
-    "rzeppa": CV,
+    "cv": CV_HINT,
+    "constant_velocity": CV_HINT,
+    "homokinetic": CV_HINT,
+    "rzeppa": CV_HINT,
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
-LATER = {  # of the format, but of a later version: (block or key, word)
+PLANNED_WORDS = {  # words reserved for a later version: (block or key, word)
     ("keys", "sweep"),
 }  # fmt: skip
-TYPES = {  # by the key above the entry: code, what it is called, foreign words
+TYPES = {  # by block: error code, description, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),
     "forces": ("unknown-force-type", "a force type", FORCE_WORDS),
     "couplings": ("unknown-coupling-type", "a coupling type", COUPLING_WORDS),

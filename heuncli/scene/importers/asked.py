@@ -1,15 +1,19 @@
-"""What `heun import` may be asked for, whatever the format: a reader's row says which of it the format has."""
+"""The options of `heun import`, for all formats. `ModelReader.options` says which of them a format supports."""
 
 from __future__ import annotations
 
 from heuncli.base.named_tuples import NamedTuple
 
 
-class ImportAsked(NamedTuple):
-    """free: joints are let go, not held by drives; base_free: the root moves, it does not stand on the ground.
+class ImportOptions(NamedTuple):
+    """The options of one import.
 
-    limits: limits of joints become stops; density [kg/m^3]: of the shapes of what has no inertia; repair: the faults
-    that are repaired, words of REPAIRS in the reader's package; keyframe: of the file's poses that which is the start.
+    free: leave the joints free instead of holding them by drives
+    base_free: let the root move instead of fixing it to the ground
+    limits: turn joint limits into stops
+    density: density of the shapes of links without inertia [kg/m^3]
+    repair: the faults to repair, names from `ModelReader.repairs`
+    keyframe: the pose in the file to start from
     """
 
     free: bool = False

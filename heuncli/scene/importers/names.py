@@ -1,7 +1,8 @@
-"""Names of other programs' files, made names of a spec: a letter, then letters, digits and _; none twice, none taken.
+"""Turn names from other programs' files into valid spec names: a letter, then letters, digits and _; unique and not
+reserved.
 
-A name that is one already stays as it is, of whatever script. Another has its foreign characters replaced by _, and a
-number behind it where that makes two alike.
+A valid name, in any script, stays as it is. In others, invalid characters become _, and a number is appended where two
+names would be equal.
 """
 
 from __future__ import annotations
@@ -11,56 +12,58 @@ import unicodedata
 from collections.abc import Sequence
 
 from heuncli.scene.expressions.grammar import RESERVED
-from heuncli.scene.file_format.names import CAUSES, GROUND, is_name
-from heuncli.scene.file_format.source import WORDS
+from heuncli.scene.file_format.names import CAUSE_NAMES, GROUND, is_name
+from heuncli.scene.file_format.source import WORD_VALUES
 
-LONGEST = 80  # characters of a name: what is longer cannot be read in a table
-FOREIGN = re.compile(r"\W+")
-# What names no entry in any block: one rule for all of them, as a joint's name serves its parameter and its drive, too.
-TAKEN = RESERVED | CAUSES | {GROUND, *(word for word in WORDS if word)}
-NUMBERS = frozenset({"inf", "infinity", "nan"})  # read as numbers that are none, in any case of their letters
+MAX_NAME_LENGTH = 80  # characters; longer names are unreadable in tables
+INVALID_CHARACTERS = re.compile(r"\W+")
+# Names that no entry may have, in any block, as a joint's name is also used for its parameter and its drive.
+RESERVED_WORDS = RESERVED | CAUSE_NAMES | {GROUND, *(word for word in WORD_VALUES if word)}
+NUMBER_WORDS = frozenset({"inf", "infinity", "nan"})  # words that float() accepts, in upper or lower case
 
 
 class Namer:
-    """Gives names that differ; one for each place where they must: the bodies, the joints, the points of a body."""
+    """Assigns unique names within one scope: the bodies, the joints, or the points of one body."""
 
     def __init__(self, kind: str) -> None:
-        """kind: what a name is called that has nothing of its own: `link`, `joint`."""
+        """kind: the word used where a text yields no valid name: `link`, `joint`"""
         self.kind = kind
-        self.given: set[str] = set()
+        self.used_names: set[str] = set()
         self.count: dict[str, int] = {}
 
-    def name(self, wanted: str) -> str:
-        """A name like the wanted one, that was not given before."""
-        base = name = cleaned(wanted, self.kind)
-        while name in self.given:
+    def assign(self, original: str) -> str:
+        """Assign a name like the original that is not assigned yet."""
+        base = name = clean_name(original, self.kind)
+        while name in self.used_names:
             self.count[base] = self.count.get(base, 1) + 1
             name = f"{base}_{self.count[base]}"
-        self.given.add(name)
+        self.used_names.add(name)
         return name
 
 
-def names_of(kind: str, wanted: Sequence[str]) -> list[str]:
-    """Names for these, in their order: those that are names stay as they are, whatever others are made into."""
+def assign_names(kind: str, originals: Sequence[str]) -> list[str]:
+    """Assign unique names in order. Originals that are valid names stay as they are, even if another is cleaned to the
+    same name.
+    """
     namer = Namer(kind)
-    kept = {text for text in wanted if cleaned(text, kind) == text}
-    namer.given |= kept
+    unchanged = {text for text in originals if clean_name(text, kind) == text}
+    namer.used_names |= unchanged
     names: list[str] = []
-    for text in wanted:
-        names.append(text if text in kept else namer.name(text))
-        kept.discard(text)  # of two alike one keeps it
+    for text in originals:
+        names.append(text if text in unchanged else namer.assign(text))
+        unchanged.discard(text)  # only the first of two equal names keeps it
     return names
 
 
-def cleaned(wanted: str, kind: str) -> str:
-    """The name that is meant by a text, as a spec may have it."""
-    # letters that look alike to a reader are one to the program: as Python's own names, and those of expressions
-    text = FOREIGN.sub("_", unicodedata.normalize("NFKC", wanted)).strip("_")[:LONGEST]
-    if not is_name(text):  # it begins with a digit, or is empty; or holds what is no part of a name after all
+def clean_name(original: str, kind: str) -> str:
+    """Turn a text into a valid spec name."""
+    # NFKC unifies letters that look alike, as in Python's names and in expressions
+    text = INVALID_CHARACTERS.sub("_", unicodedata.normalize("NFKC", original)).strip("_")[:MAX_NAME_LENGTH]
+    if not is_name(text):  # it begins with a digit, is empty, or still holds an invalid character
         text = f"{kind}_{''.join(letter for letter in text if is_name(f'a{letter}'))}".rstrip("_")
-    return f"{text}_1" if text in TAKEN or text.lower() in NUMBERS else text
+    return f"{text}_1" if text in RESERVED_WORDS or text.lower() in NUMBER_WORDS else text
 
 
-def called(kind: str, name: str, wanted: str) -> str:
-    """The remark of an entry whose name is not the file's: `link "panda-link1"`."""
-    return "" if name == wanted else f'{kind} "{wanted}"'
+def format_original_name(kind: str, name: str, original: str) -> str:
+    """Make the remark for an entry that is renamed: `link "panda-link1"`. Empty if the name is the file's."""
+    return "" if name == original else f'{kind} "{original}"'

@@ -1,8 +1,8 @@
-"""Which reader a file needs, by its root element: a row each; what is read by none is refused by name.
+"""Select the reader of a model file by its root element. Known formats that have no reader are refused by name.
 
-A reader is found by its name when it is asked for, and with it what it needs:
+Each format is a row. Its reader module, and whatever that needs, is imported when it is used:
 
-    described(content, file, root, asked, sha256) -> DescribedMachine
+    described(content, file, root, options, sha256) -> DescribedMachine
 """
 
 from __future__ import annotations
@@ -12,16 +12,20 @@ from importlib import import_module
 
 from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import nearest
-from heuncli.scene.importers.asked import ImportAsked
+from heuncli.base.nearest import find_similar
+from heuncli.scene.importers.asked import ImportOptions
 from heuncli.scene.importers.described import DescribedMachine
-from heuncli.scene.importers.xml_elements import BEGINS, XACRO, XmlElement
+from heuncli.scene.importers.xml_elements import ROOT_HINT, XACRO_HINT, XmlElement
 
 
 class ModelReader(NamedTuple):
-    """A format: its root element and name; the module of its reader; the fields of ImportAsked that it knows.
+    """A format that can be imported.
 
-    repairs: the words of --repair.
+    root: the tag of the root element
+    form: the name of the format
+    module: the module of the reader, within this package
+    options: the fields of ImportOptions that it supports
+    repairs: the faults that --repair can name
     """
 
     root: str
@@ -30,12 +34,12 @@ class ModelReader(NamedTuple):
     asks: frozenset[str]
     repairs: tuple[str, ...] = ()
 
-    def described(
-        self, content: bytes, file: str, root: XmlElement, asked: ImportAsked, sha256: str
+    def read_machine(
+        self, content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str
     ) -> DescribedMachine:
-        """The machine that a file of this format describes. Raises SpecError."""
+        """Read the machine from a file of this format. Raises SpecError."""
         read: Callable[..., DescribedMachine] = import_module(f"heuncli.scene.importers.{self.module}").described
-        return read(content, file, root, asked, sha256)
+        return read(content, file, root, options, sha256)
 
 
 READERS = (
@@ -48,7 +52,7 @@ READERS = (
     ),
     ModelReader("mujoco", "MJCF", "mjcf.reader", frozenset({"free", "limits", "keyframe"})),
 )
-ELSEWHERE = {  # root elements of formats that are not read, and what to do
+UNREAD_FORMATS = {  # root elements of known formats without a reader, and a hint
     "sdf": "SDF is not read: export the model as URDF",
     "gazebo": "SDF is not read: export the model as URDF",
     "COLLADA": "this is a mesh: the URDF that names it is read",
@@ -58,17 +62,17 @@ ELSEWHERE = {  # root elements of formats that are not read, and what to do
 }
 
 
-def reader_of(root: XmlElement, file: str) -> ModelReader:
-    """The reader of a file. Raises SpecError where there is none."""
+def find_reader(root: XmlElement, file: str) -> ModelReader:
+    """Find the reader of a file by its root element. Raises SpecError [import-format]."""
     for reader in READERS:
         if root.tag == reader.root:
             return reader
     place = SourceLocation(file, root.line, root.column)
     known = {reader.root: reader for reader in READERS}
-    meant = nearest(root.tag, known)
-    hint = ELSEWHERE.get(root.tag) or (f"did you mean <{meant}>?" if meant else BEGINS)
+    suggestion = find_similar(root.tag, known)
+    hint = UNREAD_FORMATS.get(root.tag) or (f"did you mean <{suggestion}>?" if suggestion else ROOT_HINT)
     if root.tag.startswith("xacro:"):
-        hint = XACRO
+        hint = XACRO_HINT
     forms = " or ".join(f"<{reader.root}> ({reader.form})" for reader in READERS)
     message = f"the root element is <{root.tag}>; read are {forms}"
     raise SpecError(Problem("import-format", message, place, hint))

@@ -1,11 +1,16 @@
-"""How an imported machine is moved, told at the head of its spec in the same words whatever the format."""
+"""Explain how to move an imported machine, in the comments at the head of its spec; the same words for all formats."""
 
 from __future__ import annotations
 
 
-def told_moving(parameter: str, another: str, *, free: bool, at_rest: bool) -> tuple[str, ...]:
-    """Lines of comment. parameter: of the first joint; another: a value for it; at_rest: so free joints start."""
-    pose = f'--set {parameter}="{another}"'
+def explain_motion(parameter: str, example_value: str, *, free: bool, at_rest: bool) -> tuple[str, ...]:
+    """Return comment lines on how to move the joints.
+
+    parameter: the parameter of the first joint
+    example_value: a value for it
+    at_rest: whether free joints start at rest
+    """
+    pose = f'--set {parameter}="{example_value}"'
     if free:
         start = "start at rest" if at_rest else "start"
         return (f"The joints are free, and {start} where their parameters say ({pose}).",)

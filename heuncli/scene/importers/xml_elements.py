@@ -1,7 +1,7 @@
-"""XML text -> its elements with their places; nothing of it is looked up elsewhere, nothing grows.
+"""Parse XML text into elements with their locations. Nothing is looked up elsewhere, and nothing expands.
 
-By the standard library's expat. Refused: a DOCTYPE, and with it every entity but the five of XML itself; what is larger
-than the limits below. So neither does a line of text become gigabytes, nor is another file read.
+It uses the standard library's expat. It refuses a DOCTYPE, and with it every entity except the five of XML itself, and
+anything larger than the limits below. So one line of text cannot become gigabytes, and no other file is read.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from xml.parsers import expat
 from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.records import record
 
-LARGEST = 64_000_000  # bytes, as of a spec
-MOST_ELEMENTS = 1_000_000  # 100,000 links and their joints
-DEEPEST = 5000  # levels: URDF has six, a chain of bodies in MJCF one each
-LONGEST_VALUE = 100_000  # characters of an attribute: the points of a mesh in MJCF
-OF_ENCODING = frozenset({expat.errors.codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]})
-ENCODED = "encodings are UTF-8, and UTF-16, ISO-8859-1, US-ASCII where the first line says so: save it as UTF-8"
-POINTER = b"version https://git-lfs"
-BROKEN = "the file is cut off, or was edited by hand near this place"
-XACRO = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
-BEGINS = "a URDF begins with <robot name=...>, a model of MuJoCo's with <mujoco>"
-DOCTYPE = "delete the DOCTYPE and write out what its entities stand for"
+MAX_SIZE = 64_000_000  # bytes, as of a spec
+MAX_ELEMENTS = 1_000_000  # 100,000 links and their joints
+MAX_DEPTH = 5000  # levels: URDF has six, a chain of bodies in MJCF one each
+MAX_ATTRIBUTE_LENGTH = 100_000  # characters of an attribute: the points of a mesh in MJCF
+ENCODING_ERRORS = frozenset({expat.errors.codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]})
+ENCODING_HINT = "encodings are UTF-8, and UTF-16, ISO-8859-1, US-ASCII where the first line says so: save it as UTF-8"
+LFS_POINTER = b"version https://git-lfs"
+BROKEN_HINT = "the file is cut off, or was edited by hand near this place"
+XACRO_HINT = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
+ROOT_HINT = "a URDF begins with <robot name=...>, a model of MuJoCo's with <mujoco>"
+DOCTYPE_HINT = "delete the DOCTYPE and write out what its entities stand for"
 
 
 @record
 class XmlElement:
-    """An element: its tag as written, attributes, elements in it, and the place of its start (line, column from 1)."""
+    """An element: its tag, attributes and child elements, and where it starts (line and column, from 1)."""
 
     tag: str
     attributes: dict[str, str]
@@ -35,14 +35,14 @@ class XmlElement:
     line: int
     column: int
 
-    def all(self, tag: str) -> list[XmlElement]:
-        """The elements in it that have this tag."""
-        return [element for element in self.inner if element.tag == tag]
+    def find_all(self, tag: str) -> list[XmlElement]:
+        """Return the child elements with this tag."""
+        return [element for element in self.children if element.tag == tag]
 
 
-def read_elements(content: bytes, file: str) -> XmlElement:
-    """The root of the elements in a text. Raises SpecError."""
-    return _Reading(file).root_of(content)
+def parse_xml(content: bytes, file: str) -> XmlElement:
+    """Parse a text and return its root element. Raises SpecError."""
+    return _XmlParser(file).parse(content)
 
 
 def _is_utf8(content: bytes) -> bool:
@@ -53,64 +53,66 @@ def _is_utf8(content: bytes) -> bool:
     return True
 
 
-class _Reading:
-    """One text on its way."""
+class _XmlParser:
+    """Parses one text, with handlers for expat."""
 
     def __init__(self, file: str) -> None:
         self.file = file
         self.root: XmlElement | None = None
-        self.open: list[XmlElement] = []
+        self.open_elements: list[XmlElement] = []
         self.count = 0
         self.parser = parser = expat.ParserCreate()
         parser.buffer_text = True
-        parser.StartElementHandler = self.start
-        parser.EndElementHandler = self.end
-        parser.StartDoctypeDeclHandler = self.doctype
+        parser.StartElementHandler = self.start_element
+        parser.EndElementHandler = self.end_element
+        parser.StartDoctypeDeclHandler = self.refuse_doctype
 
-    def root_of(self, content: bytes) -> XmlElement:
+    def parse(self, content: bytes) -> XmlElement:
         if not content.strip():
-            raise self.refused("not-xml", "the file is empty", BEGINS, at=(1, 1))
+            raise self.make_error("not-xml", "the file is empty", ROOT_HINT, position=(1, 1))
         try:
             self.parser.Parse(content, True)
         except expat.ExpatError as error:
-            what = expat.errors.messages.get(error.code, "not well-formed")
-            hint = ENCODED if error.code in OF_ENCODING or not _is_utf8(content) else BROKEN
+            reason = expat.errors.messages.get(error.code, "not well-formed")
+            hint = ENCODING_HINT if error.code in ENCODING_ERRORS or not _is_utf8(content) else BROKEN_HINT
             if b"<" not in content[: error.offset + 1]:
-                hint = BEGINS
-            if content.startswith(POINTER):
+                hint = ROOT_HINT
+            if content.startswith(LFS_POINTER):
                 hint = "it is a pointer of Git LFS: git lfs pull fetches the file"
-            raise self.refused("not-xml", f"not XML: {what}", hint, at=(error.lineno, error.offset + 1)) from None
+            raise self.make_error(
+                "not-xml", f"not XML: {reason}", hint, position=(error.lineno, error.offset + 1)
+            ) from None
         except (LookupError, UnicodeError, ValueError) as error:
             if isinstance(error, SpecError):
                 raise
-            raise self.refused("not-xml", f"not XML: {error}", ENCODED, at=(1, 1)) from None
+            raise self.make_error("not-xml", f"not XML: {error}", ENCODING_HINT, position=(1, 1)) from None
         assert self.root is not None  # expat refuses a text without an element
         return self.root
 
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
+    def start_element(self, tag: str, attributes: dict[str, str]) -> None:
         self.count += 1
-        if self.count > MOST_ELEMENTS:
-            message = f"more than {MOST_ELEMENTS:,} elements; no more are read"
-            raise self.refused("too-large", message, "split what is generated")
-        if len(self.open) >= DEEPEST:
-            raise self.refused("too-deep", f"nested more than {DEEPEST} levels deep", "is an element left open?")
+        if self.count > MAX_ELEMENTS:
+            message = f"more than {MAX_ELEMENTS:,} elements; no more are read"
+            raise self.make_error("too-large", message, "split what is generated")
+        if len(self.open_elements) >= MAX_DEPTH:
+            raise self.make_error("too-deep", f"nested more than {MAX_DEPTH} levels deep", "is an element left open?")
         for name, value in attributes.items():
-            if len(value) > LONGEST_VALUE or len(name) > LONGEST_VALUE:
-                message = f"an attribute of {len(value):,} characters; at most {LONGEST_VALUE:,} are read"
-                raise self.refused("too-large", message, "is it the right file?")
+            if len(value) > MAX_ATTRIBUTE_LENGTH or len(name) > MAX_ATTRIBUTE_LENGTH:
+                message = f"an attribute of {len(value):,} characters; at most {MAX_ATTRIBUTE_LENGTH:,} are read"
+                raise self.make_error("too-large", message, "is it the right file?")
         element = XmlElement(tag, attributes, [], self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
-        if self.open:
-            self.open[-1].inner.append(element)
+        if self.open_elements:
+            self.open_elements[-1].children.append(element)
         else:
             self.root = element
-        self.open.append(element)
+        self.open_elements.append(element)
 
-    def end(self, _tag: str) -> None:
-        self.open.pop()
+    def end_element(self, _tag: str) -> None:
+        self.open_elements.pop()
 
-    def doctype(self, *_given: Any) -> None:
-        raise self.refused("xml-entities", "a DOCTYPE, which may define entities, is not read", DOCTYPE)
+    def refuse_doctype(self, *_given: Any) -> None:
+        raise self.make_error("xml-entities", "a DOCTYPE, which may define entities, is not read", DOCTYPE_HINT)
 
-    def refused(self, code: str, message: str, hint: str, at: tuple[int, int] | None = None) -> SpecError:
-        line, column = at or (self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
+    def make_error(self, code: str, message: str, hint: str, position: tuple[int, int] | None = None) -> SpecError:
+        line, column = position or (self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
         return SpecError(Problem(code, message, SourceLocation(self.file, line, column), hint))

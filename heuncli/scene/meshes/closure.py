@@ -1,8 +1,8 @@
-"""Whether triangles close a surface, which side of it is inside, and of how many shells it consists.
+"""Check that triangles form a closed surface, find its inside, and count its shells.
 
-Closed: every edge runs once one way and once the other. Then each shell has an inside, of positive volume if its
-triangles are counter-clockwise from outside. A shell that lies in no other bounds material, one that lies in another a
-hole; how often a point is enclosed is the solid angle of the shell there over 4 pi (van Oosterom, Strackee, 1983).
+Closed: every edge is used once in each direction. Then each shell has an inside, of positive volume if its triangles
+are counter-clockwise from outside. A shell that lies in no other bounds material; one that lies in another is a hole.
+The number of times that a shell encloses a point is its solid angle there over 4 pi (van Oosterom, Strackee, 1983).
 """
 
 from __future__ import annotations
@@ -14,164 +14,198 @@ import numpy as np
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
-from heuncli.scene.meshes.model import Numbers, Soup, components, crossed, in_order, least, most, numbered
+from heuncli.scene.meshes.model import (
+    IndexArray,
+    TriangleSoup,
+    connected_components,
+    cross_product_rows,
+    max_of_three,
+    min_of_three,
+    number_components,
+    stable_order,
+)
 
-MOST_ANGLES = 50_000_000  # solid angles that are computed to see which shell lies in which
-TRIED = 8  # triangles of a shell, the largest first, for a place that is clear of others
-CLEAR = 0.1  # turns off a whole number: nearer, a place is clear of the other shells' faces
-REPAIR = "repair it in the program that drew it, or export the solid with a finer tolerance"
-ONE_SOLID = "export the solid alone, joined to one; solids that touch are shapes of their own"
-OUTWARD = "recalculate its normals outward in the program that drew it"
+MAX_SOLID_ANGLES = 50_000_000  # most solid angles computed to find which shell lies in which
+TRIED_TRIANGLES = (
+    8  # triangles of a shell, the largest first, whose middles are tried as places clear of the other shells
+)
+MAX_WINDING_ERROR = (
+    0.1  # deviation of the winding number from a whole one, below which a place is clear of the other shell's faces
+)
+REPAIR_HINT = "repair it in the program that drew it, or export the solid with a finer tolerance"
+ONE_SOLID_HINT = "export the solid alone, joined to one; solids that touch are shapes of their own"
+OUTWARD_HINT = "recalculate its normals outward in the program that drew it"
 
 
 class MeshEdges(NamedTuple):
-    """The edges of triangles, 3 a triangle: ends (3 m, 2) as they run, and which of them are one, in order.
+    """The edges of triangles, three for each.
 
-    order: edges put so that those of the same ends stand together; starts: where in it each begins, and counts.
+    ends: (3 m, 2) corners, in the direction of the edge
+    order: edges sorted so that those with the same ends are adjacent
+    starts, counts: where in `order` each distinct edge begins, and how often it occurs
     """
 
-    ends: Numbers
-    order: Numbers
-    starts: Numbers
-    counts: Numbers
+    ends: IndexArray
+    order: IndexArray
+    starts: IndexArray
+    counts: IndexArray
 
 
-def edges_of(triangles: Numbers) -> MeshEdges:
-    """The edges; edge 3 k + i of triangle k runs from its corner i to the next."""
+def find_edges(triangles: IndexArray) -> MeshEdges:
+    """Find the edges; edge 3 k + i of triangle k runs from its corner i to the next."""
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     low, high = np.minimum(ends[:, 0], ends[:, 1]), np.maximum(ends[:, 0], ends[:, 1])
     key = low * (int(triangles.max(initial=0)) + 1) + high
-    order = in_order(key)
+    order = stable_order(key)
     ordered = key[order]
     starts = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1])) if len(key) else np.empty(0, np.intp)
     return MeshEdges(ends, order, starts, np.diff(np.append(starts, len(key))))
 
 
-def loose_corners(edges: MeshEdges) -> Numbers:
-    """The corners of edges that one triangle alone has."""
+def find_open_corners(edges: MeshEdges) -> IndexArray:
+    """Return the corners of edges that belong to only one triangle."""
     return np.unique(edges.ends[edges.order[edges.starts[edges.counts == 1]]])
 
 
-def neighbours(soup: Soup, edges: MeshEdges) -> tuple[Numbers, Numbers]:
-    """The two triangles of each edge. Raises Finding: open, more than two triangles, or not oriented alike."""
+def find_edge_neighbours(soup: TriangleSoup, edges: MeshEdges) -> tuple[IndexArray, IndexArray]:
+    """Find the two triangles of each edge. Raises Finding for open edges, more than two triangles, or opposite
+    orientations.
+    """
     single = edges.counts == 1
     if single.any():
-        own = edges.order[edges.starts[single]]
-        message = f"{_edges(len(own))} open, {_holes(edges.ends[own], len(soup.corners))}"
-        raise Finding("open-mesh", f"the surface is not closed: {message}: {_first(soup, edges.ends[own[0]])}", REPAIR)
-    many = edges.counts > 2
-    if many.any():
-        own = edges.order[edges.starts[many]]
-        message = f"{_edges(len(own))} shared by more than two triangles: {_first(soup, edges.ends[own[0]])}"
-        raise Finding("mesh-crosses-itself", f"the surface touches itself: {message}", ONE_SOLID)
+        wrong_edges = edges.order[edges.starts[single]]
+        message = f"{_format_edge_count(len(wrong_edges))} open, {_format_hole_count(edges.ends[wrong_edges], len(soup.corners))}"
+        raise Finding(
+            "open-mesh",
+            f"the surface is not closed: {message}: {_format_first_edge(soup, edges.ends[wrong_edges[0]])}",
+            REPAIR_HINT,
+        )
+    is_shared = edges.counts > 2
+    if is_shared.any():
+        wrong_edges = edges.order[edges.starts[is_shared]]
+        message = f"{_format_edge_count(len(wrong_edges))} shared by more than two triangles: {_format_first_edge(soup, edges.ends[wrong_edges[0]])}"
+        raise Finding("mesh-crosses-itself", f"the surface touches itself: {message}", ONE_SOLID_HINT)
     one, other = edges.order[edges.starts], edges.order[edges.starts + 1]
-    alike = edges.ends[one, 0] == edges.ends[other, 0]
-    if alike.any():
-        own = one[alike]
-        message = f"beside {_edges(len(own), plain=True)} the triangles turn opposite ways: "
-        raise Finding("mesh-orientation", message + _first(soup, edges.ends[own[0]]), OUTWARD)
+    same_direction = edges.ends[one, 0] == edges.ends[other, 0]
+    if same_direction.any():
+        wrong_edges = one[same_direction]
+        message = f"beside {_format_edge_count(len(wrong_edges), plain=True)} the triangles turn opposite ways: "
+        raise Finding("mesh-orientation", message + _format_first_edge(soup, edges.ends[wrong_edges[0]]), OUTWARD_HINT)
     return one // 3, other // 3
 
 
-def _edges(count: int, plain: bool = False) -> str:
+def _format_edge_count(count: int, plain: bool = False) -> str:
     if plain:
         return f"{count} edge{'s' if count > 1 else ''}"
     return f"{count} edges are" if count > 1 else "1 edge is"
 
 
-def _holes(ends: Numbers, corners: int) -> str:
-    first = components(corners, ends[:, 0], ends[:, 1])
+def _format_hole_count(ends: IndexArray, corners: int) -> str:
+    first = connected_components(corners, ends[:, 0], ends[:, 1])
     holes = len(np.unique(first[ends[:, 0]]))
     return f"around {holes} hole{'s' if holes > 1 else ''}"
 
 
-def _first(soup: Soup, ends: Numbers) -> str:
+def _format_first_edge(soup: TriangleSoup, ends: IndexArray) -> str:
     one, other = (f"({', '.join(f'{x:.6g}' for x in soup.corners[end])})" for end in ends)
     return f"the first from {one} to {other} in the file's units"
 
 
-class Shells(NamedTuple):
-    """Of each triangle its shell (m,), from 0; volume of each (s,); the triangles turned so that all are outward."""
+class MeshShells(NamedTuple):
+    """The shells of a surface.
 
-    number: Numbers
+    number: (m,) for each triangle its shell, from 0
+    volumes: (s,) of each shell
+    triangles: oriented so that all face outward
+    is_reversed: whether they were reversed for that
+    """
+
+    number: IndexArray
     volumes: Array
-    triangles: Numbers
+    triangles: IndexArray
     turned: bool
 
 
-def shells_of(soup: Soup, beside: tuple[Numbers, Numbers], V: Array) -> Shells:
-    """The shells of a surface that does not cross itself. Raises Finding.
+def find_shells(
+    soup: TriangleSoup, edge_neighbours: tuple[IndexArray, IndexArray], tetrahedron_volumes: Array
+) -> MeshShells:
+    """Find the shells of a surface that does not cross itself. Raises Finding [mesh-orientation].
 
-    beside: the two triangles of each edge; V (m,): the volumes that triangles enclose with the middle of all.
+    edge_neighbours: the two triangles of each edge
+    tetrahedron_volumes: (m,) of the tetrahedra between the triangles and the middle of the surface
     """
-    number = numbered(components(len(soup.triangles), *beside))[1]
-    volumes: Array = np.asarray(np.bincount(number, V), dtype=np.float64)
-    whole = float(volumes.sum())
+    number = number_components(connected_components(len(soup.triangles), *edge_neighbours))[1]
+    volumes: Array = np.asarray(np.bincount(number, tetrahedron_volumes), dtype=np.float64)
+    total_volume = float(volumes.sum())
     size = (0.5 * float(np.ptp(soup.corners, axis=0).max())) ** 3
-    if not abs(whole) > size * np.finfo(float).eps * 64.0:
+    if not abs(total_volume) > size * np.finfo(float).eps * 64.0:
         raise Finding("mesh-orientation", "the surface encloses no volume", "a solid has a volume: is it flat?")
     if len(volumes) == 1:
-        turned = whole < 0.0
+        is_reversed = total_volume < 0.0
     else:
-        turned = _is_inward(soup, number, volumes)
-    triangles: Numbers = soup.triangles[:, [0, 2, 1]] if turned else soup.triangles
-    return Shells(number, -volumes if turned else volumes, triangles, turned)
+        is_reversed = _are_inward(soup, number, volumes)
+    triangles: IndexArray = soup.triangles[:, [0, 2, 1]] if is_reversed else soup.triangles
+    return MeshShells(number, -volumes if is_reversed else volumes, triangles, is_reversed)
 
 
-def _is_inward(soup: Soup, number: Numbers, volumes: Array) -> bool:
-    """Whether all shells are turned inside out. Raises Finding where some are and others not."""
+def _are_inward(soup: TriangleSoup, number: IndexArray, volumes: Array) -> bool:
+    """Return whether all shells are inside out. Raises Finding if only some are."""
     order = np.argsort(number, kind="stable")
     starts = np.searchsorted(number[order], np.arange(len(volumes)))
-    own = np.split(order, starts[1:])
+    triangles_by_shell = np.split(order, starts[1:])
     places = soup.corners[soup.triangles]
-    low = np.minimum.reduceat(least(places)[order], starts)
-    high = np.maximum.reduceat(most(places)[order], starts)
+    low = np.minimum.reduceat(min_of_three(places)[order], starts)
+    high = np.maximum.reduceat(max_of_three(places)[order], starts)
     outer, wrong = [], []
-    for k, enclosed in enumerate(_enclosed(places, own, low, high)):
-        if enclosed == 0:
+    for k, enclosing_count in enumerate(_count_enclosing(places, triangles_by_shell, low, high)):
+        if enclosing_count == 0:
             outer.append(k)
-        wrong.append((volumes[k] > 0.0) == (enclosed % 2 == 0))
+        wrong.append((volumes[k] > 0.0) == (enclosing_count % 2 == 0))
     sign = volumes[outer[0]] < 0.0 if outer else False
-    bad = [k for k, right in enumerate(wrong) if right == sign]
+    bad = [k for k, orientation in enumerate(wrong) if orientation == sign]
     if bad:
         where = ", ".join(f"{x:.6g}" for x in 0.5 * (low[bad[0]] + high[bad[0]]))
         message = (
             f"{len(bad)} of {len(volumes)} shells are turned inside out against where they lie, one about ({where})"
         )
-        hint = f"a hole's surface is turned into the hole, a solid within another counts twice; {OUTWARD}"
+        hint = f"a hole's surface is turned into the hole, a solid within another counts twice; {OUTWARD_HINT}"
         raise Finding("mesh-orientation", message, hint)
     return bool(sign)
 
 
-def _enclosed(places: Array, own: list[Numbers], low: Array, high: Array) -> Iterator[int]:
-    """In how many other shells each lies."""
+def _count_enclosing(places: Array, triangles_by_shell: list[IndexArray], low: Array, high: Array) -> Iterator[int]:
+    """Yield for each shell the number of other shells in which it lies."""
     angles = 0
-    for k, triangles in enumerate(own):
-        around = ((low <= low[k]) & (high >= high[k])).all(axis=1)
-        around[k] = False
-        others = [own[j] for j in np.flatnonzero(around).tolist()]
+    for k, triangles in enumerate(triangles_by_shell):
+        may_enclose = ((low <= low[k]) & (high >= high[k])).all(axis=1)
+        may_enclose[k] = False
+        others = [triangles_by_shell[j] for j in np.flatnonzero(may_enclose).tolist()]
         angles += sum(map(len, others))
-        if angles > MOST_ANGLES:
-            raise Finding("too-large", f"{len(own)} shells within each other are not told apart", "a file a solid")
-        yield sum(_lies_in(places[triangles], places[other]) for other in others)
+        if angles > MAX_SOLID_ANGLES:
+            raise Finding(
+                "too-large", f"{len(triangles_by_shell)} shells within each other are not told apart", "a file a solid"
+            )
+        yield sum(_lies_in_shell(places[triangles], places[other]) for other in others)
 
 
-def _lies_in(shell: Array, other: Array) -> bool:
-    """Whether a shell (m, 3, 3) lies in another that it does not cross: by places on it that are clear of the other."""
-    normals = crossed(shell[:, 1] - shell[:, 0], shell[:, 2] - shell[:, 0])
-    largest = np.argsort(-(normals**2).sum(axis=1), kind="stable")[:TRIED]
-    turns = 0.0
+def _lies_in_shell(shell: Array, other: Array) -> bool:
+    """Return whether a shell (m, 3, 3) lies in another that it does not cross, by a place on it that is clear of the
+    other.
+    """
+    normals = cross_product_rows(shell[:, 1] - shell[:, 0], shell[:, 2] - shell[:, 0])
+    largest = np.argsort(-(normals**2).sum(axis=1), kind="stable")[:TRIED_TRIANGLES]
+    windings = 0.0
     for middle in shell[largest].mean(axis=1):
-        turns = abs(winding(other - middle))
-        if abs(turns - round(turns)) < CLEAR:
+        windings = abs(winding_number(other - middle))
+        if abs(windings - round(windings)) < MAX_WINDING_ERROR:
             break
-    return turns > 0.5 + CLEAR
+    return windings > 0.5 + MAX_WINDING_ERROR
 
 
-def winding(places: Array) -> float:
-    """How often triangles (m, 3, 3) enclose the origin: their solid angles over 4 pi."""
+def winding_number(places: Array) -> float:
+    """Compute how often triangles (m, 3, 3) enclose the origin: their solid angles over 4 pi."""
     a, b, c = places.transpose(1, 0, 2)
     la, lb, lc = (np.sqrt((x * x).sum(axis=1)) for x in (a, b, c))
-    up = (a * crossed(b, c)).sum(axis=1)
-    along = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb
-    return float(np.arctan2(up, along).sum() / (2.0 * np.pi))
+    triple_product = (a * cross_product_rows(b, c)).sum(axis=1)
+    denominator = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb
+    return float(np.arctan2(triple_product, denominator).sum() / (2.0 * np.pi))

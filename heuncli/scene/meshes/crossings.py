@@ -1,16 +1,17 @@
-"""Whether triangles of a closed surface cross each other, deeper than the digits of its file.
+"""Check that triangles of a closed surface do not cross each other by more than the digits of its file.
 
-Two surfaces cross where an edge of the one comes out behind a triangle of the other, or they run into each other along
-faces of one plane, which then lie on one another turned alike (turned apart they touch, as two bodies do that stand on
-each other). A corner in the plane counts as before it: so one that stands on a face touches, and an edge that goes on
-behind the face from there crosses.
+Two surfaces cross where an edge of one emerges behind a triangle of the other, or where they overlap along faces of one
+plane that have the same orientation (with opposite orientations they touch, as two bodies that stand on each other). A
+corner in the plane counts as before it: a corner that stands on a face touches, and an edge that continues from there
+behind the face crosses.
 
     u = 2^-24 max |x|    what rounding to float32 moves a coordinate by, so a corner by sqrt(3) u
-    near = 8 u           more than two surfaces come to lie in each other whose corners were rounded twice, 4 sqrt(3) u
-What goes no deeper than near is rounding, and touches. What lies at the rim of a triangle within near may have come
-there by rounding, or touch it, as edges that lie on each other crosswise: whether it crosses is seen where every face
-is moved inward by near/2 (`drawn_in`). Then what touched is apart, and what is deeper by 3 near, a needle by 6, crosses
-still. Planes of triangles that are narrow against near are turned by rounding: they are not asked, their edges are.
+    near = 8 u           more than the overlap of two surfaces whose corners were rounded twice, 4 sqrt(3) u
+An overlap no deeper than near (`tolerance` below) is rounding, and counts as touching. A crossing at the rim of a
+triangle within near may be due to rounding, or only touch, as edges that lie across each other. Whether it is real is
+decided where every face is moved inward by near/2 (`move_faces_inward`): then faces that touched are separate, and
+anything deeper by 3 near, a needle by 6, still crosses. The planes of triangles that are narrow against near are
+rotated by rounding: they are not used, but their edges are.
 """
 
 from __future__ import annotations
@@ -23,170 +24,197 @@ from numpy.typing import NDArray
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
-from heuncli.scene.meshes.boxes import along_curve, overlapping
-from heuncli.scene.meshes.drawn_in import drawn_in
-from heuncli.scene.meshes.model import Numbers, across, along, at_corners, components
-from heuncli.scene.meshes.numbers import refused
+from heuncli.scene.meshes.boxes import iter_overlapping, sort_along_curve
+from heuncli.scene.meshes.drawn_in import move_faces_inward
+from heuncli.scene.meshes.model import IndexArray, connected_components, cross_columns, dot_columns, gather_corners
+from heuncli.scene.meshes.numbers import mesh_file_finding
 
-JOINED = "join its solids to one (a union) in the program that drew it, or give each its own file"
-NEXT = ((0, 1), (1, 2), (2, 0))
-BEGINS, ENDS = np.array([0, 1, 2, 1, 2, 0]), np.array([1, 2, 0, 0, 1, 2])  # of edges, run through both ways
-NARROW = 8.0  # times near: narrower triangles are turned by rounding, 1/16 and more
-JOINING = 64.0  # times near: the corners of such are near one line; so an edge that ends there ends at its neighbours
-MOST_NARROW = 1e-4  # of the whole area, of triangles whose planes are not asked
-HARDLY = 1e-9  # of near: what shared rims may lie apart by the computing
+JOIN_HINT = "join its solids to one (a union) in the program that drew it, or give each its own file"
+EDGE_CORNERS = ((0, 1), (1, 2), (2, 0))
+EDGE_BEGINS, EDGE_ENDS = (
+    np.array([0, 1, 2, 1, 2, 0]),
+    np.array([1, 2, 0, 0, 1, 2]),
+)  # corners of the edges, in both directions
+NARROW_RATIO = 8.0  # times the tolerance: rounding rotates narrower triangles by 1/16 rad and more
+JOINING_RATIO = 64.0  # times the tolerance: such triangles are almost lines, so edges that end there end at neighbours
+MAX_NARROW_SHARE = 1e-4  # largest share of the area in triangles whose planes are not used
+COMPUTING_ERROR = 1e-9  # of the tolerance: computing error in the distance of shared rims
 
 
-class Faces(NamedTuple):
-    """Triangles, all in columns: places (3, 3, m) of their corners, unit normals (3, m), heights (m,) over the origin.
+class TriangleFaces(NamedTuple):
+    """Triangles, all in columns.
 
-    corners (3, m): their numbers; joined (3, m): which of them are one or joined by triangles of hardly a width;
-    double (m,): twice their areas; narrow (m,): which are so narrow that their planes are not asked;
-    joins: whether any corners are joined.
+    places: (3, 3, m) of their corners
+    normals: (3, m) unit normals
+    offsets: (m,) heights of their planes over the origin
+    corners: (3, m) corner numbers
+    joined: (3, m) the same number for corners that are one, or joined by triangles with almost no width
+    double: (m,) twice their areas
+    narrow: (m,) which are too narrow for their planes to be used
+    joins: whether any corners are joined
     """
 
     places: Array
     normals: Array
     offsets: Array
-    corners: Numbers
-    joined: Numbers
+    corners: IndexArray
+    joined: IndexArray
     double: Array
     narrow: Mask
     joins: bool
 
 
-def require_no_crossing(corners: Array, triangles: Numbers, near: float) -> None:
-    """Raise Finding where triangles (m, 3) go deeper into each other than near; each fan with corners of its own."""
-    turned = at_corners(corners @ principal_axes(corners), triangles)  # boxes along long bodies are narrow
-    order = along_curve(turned.sum(axis=0))  # what meets stands together, also in memory
-    triangles, turned = triangles[order], turned[..., order]
-    faces = faces_of(corners, triangles, near)
-    if faces.double[faces.narrow].sum() > MOST_NARROW * faces.double.sum():
+def require_no_crossing(corners: Array, triangles: IndexArray, tolerance: float) -> None:
+    """Raise Finding if triangles (m, 3) cross deeper than the tolerance; each fan of triangles needs corners of its
+    own.
+    """
+    rotated = gather_corners(corners @ principal_axes(corners), triangles)  # so boxes along long bodies are narrow
+    order = sort_along_curve(rotated.sum(axis=0))  # triangles that meet are close in memory
+    triangles, rotated = triangles[order], rotated[..., order]
+    faces = make_faces(corners, triangles, tolerance)
+    if faces.double_areas[faces.is_narrow].sum() > MAX_NARROW_SHARE * faces.double_areas.sum():
         message = "so many of its triangles are narrower than its digits that whether it crosses itself is not seen"
-        raise refused(message, "export it near its origin, and no finer than needed")
-    pairs = [_suspects(faces, a, b, near) for a, b in overlapping(turned.min(axis=0), turned.max(axis=0))]
+        raise mesh_file_finding(message, "export it near its origin, and no finer than needed")
+    pairs = [
+        _find_suspects(faces, a, b, tolerance) for a, b in iter_overlapping(rotated.min(axis=0), rotated.max(axis=0))
+    ]
     a, b = (np.concatenate([pair[i] for pair in pairs] or [np.empty(0, np.intp)]) for i in (0, 1))
     if not len(a):
         return
-    inner = faces_of(drawn_in(corners, triangles, faces.normals.T, ~faces.narrow, 0.5 * near), triangles, near)
-    met = _on_each_other(faces, a, b, near)
+    inner = make_faces(
+        move_faces_inward(corners, triangles, faces.normals.T, ~faces.is_narrow, 0.5 * tolerance), triangles, tolerance
+    )
+    is_crossing = _do_overlap(faces, a, b, tolerance)
     for one, other in ((a, b), (b, a)):
-        met |= _pierced(faces, one, other, near, near) & _pierced(inner, one, other, 0.0, HARDLY * near)
-    if met.any():
-        at = ", ".join(f"{x:.6g}" for x in faces.places[:, :, a[met][0]].mean(axis=0))
-        count = int(met.sum())
-        many = f"{count} pairs of triangles cross" if count > 1 else "2 triangles cross"
-        message = f"the surface crosses itself: {many} each other, about ({at}) in the file's units"
-        raise Finding("mesh-crosses-itself", message, JOINED)
+        is_crossing |= _is_pierced(faces, one, other, tolerance, tolerance) & _is_pierced(
+            inner, one, other, 0.0, COMPUTING_ERROR * tolerance
+        )
+    if is_crossing.any():
+        place_text = ", ".join(f"{x:.6g}" for x in faces.places[:, :, a[is_crossing][0]].mean(axis=0))
+        count = int(is_crossing.sum())
+        count_text = f"{count} pairs of triangles cross" if count > 1 else "2 triangles cross"
+        message = f"the surface crosses itself: {count_text} each other, about ({place_text}) in the file's units"
+        raise Finding("mesh-crosses-itself", message, JOIN_HINT)
 
 
-def faces_of(corners: Array, triangles: Numbers, near: float) -> Faces:
-    """The triangles with their planes."""
-    places, numbers = at_corners(corners, triangles), np.ascontiguousarray(triangles.T)
-    edges = [places[j] - places[i] for i, j in NEXT]
-    normals = across(edges[0], edges[1])
-    double = np.sqrt(along(normals, normals))
-    longest = np.sqrt(np.maximum.reduce([along(edge, edge) for edge in edges]))
-    narrow = double <= NARROW * near * longest
+def make_faces(corners: Array, triangles: IndexArray, tolerance: float) -> TriangleFaces:
+    """Make the triangles with their planes."""
+    places, numbers = gather_corners(corners, triangles), np.ascontiguousarray(triangles.T)
+    edges = [places[j] - places[i] for i, j in EDGE_CORNERS]
+    normals = cross_columns(edges[0], edges[1])
+    double = np.sqrt(dot_columns(normals, normals))
+    longest = np.sqrt(np.maximum.reduce([dot_columns(edge, edge) for edge in edges]))
+    narrow = double <= NARROW_RATIO * tolerance * longest
     normals /= np.where(double > 0.0, double, 1.0)
-    a, b, c = numbers[:, double <= JOINING * near * longest]
-    joined = components(len(corners), np.append(a, b), np.append(b, c))
+    a, b, c = numbers[:, double <= JOINING_RATIO * tolerance * longest]
+    joined = connected_components(len(corners), np.append(a, b), np.append(b, c))
     joins = bool((joined != np.arange(len(corners))).any())
-    return Faces(places, normals, along(normals, places[0]), numbers, joined[numbers], double, narrow, joins)
+    return TriangleFaces(
+        places, normals, dot_columns(normals, places[0]), numbers, joined[numbers], double, narrow, joins
+    )
 
 
 def principal_axes(corners: Array) -> Array:
-    """Columns along which the corners are spread most and least, (3, 3)."""
-    off = corners - corners.mean(axis=0)
-    return np.asarray(np.linalg.eigh(off.T @ off)[1])
+    """Return the axes (3, 3), in columns, along which the corners are spread least to most."""
+    offsets = corners - corners.mean(axis=0)
+    return np.asarray(np.linalg.eigh(offsets.T @ offsets)[1])
 
 
-def _suspects(faces: Faces, a: Numbers, b: Numbers, near: float) -> tuple[Numbers, Numbers]:
-    """The pairs that cross, or seem to at a rim."""
-    a, b = _not_aside(faces, a, b, near)
-    met = _pierced(faces, a, b, near, near) | _pierced(faces, b, a, near, near) | _on_each_other(faces, a, b, near)
-    return a[met], b[met]
+def _find_suspects(
+    faces: TriangleFaces, a: IndexArray, b: IndexArray, tolerance: float
+) -> tuple[IndexArray, IndexArray]:
+    """Return the pairs that cross, or seem to at a rim."""
+    a, b = _find_possible_crossings(faces, a, b, tolerance)
+    is_suspect = (
+        _is_pierced(faces, a, b, tolerance, tolerance)
+        | _is_pierced(faces, b, a, tolerance, tolerance)
+        | _do_overlap(faces, a, b, tolerance)
+    )
+    return a[is_suspect], b[is_suspect]
 
 
-def _not_aside(faces: Faces, a: Numbers, b: Numbers, near: float) -> tuple[Numbers, Numbers]:
-    """The pairs of which the one may go behind the other, or that lie in one plane; none that share an edge."""
-    of_a, of_b = faces.corners.take(a, axis=1), faces.corners.take(b, axis=1)
-    others = 3 - _count(of_a[i] == of_b[j] for i in range(3) for j in range(3))
-    own = np.flatnonzero(others > 1)
-    a, b, others, behind = a[own], b[own], others[own], np.zeros(len(own), dtype=bool)
+def _find_possible_crossings(
+    faces: TriangleFaces, a: IndexArray, b: IndexArray, tolerance: float
+) -> tuple[IndexArray, IndexArray]:
+    """Return the pairs of which one may go behind the other, or that lie in one plane; none that share an edge."""
+    corners_a, corners_b = faces.corners.take(a, axis=1), faces.corners.take(b, axis=1)
+    others = 3 - _count_true(corners_a[i] == corners_b[j] for i in range(3) for j in range(3))
+    selected = np.flatnonzero(others > 1)
+    a, b, others, may_cross = a[selected], b[selected], others[selected], np.zeros(len(selected), dtype=bool)
     for _ in range(2):
-        h = _heights(faces, a, b)  # a corner that they share is neither above nor below
-        above, below = (_count(sides) for sides in (h > near, h < -near))
-        known = ~faces.narrow[b]
-        behind |= ((below > 0) & (below < others) & known) | ((above == 0) & (below == 0))
-        own = np.flatnonzero(((above < others) & (below < others)) | ~known)
-        a, b, others, behind = b[own], a[own], others[own], behind[own]
-    return a[behind], b[behind]
+        h = _corner_heights(faces, a, b)  # a shared corner is neither above nor below
+        above, below = (_count_true(sides) for sides in (h > tolerance, h < -tolerance))
+        has_plane = ~faces.is_narrow[b]
+        may_cross |= ((below > 0) & (below < others) & has_plane) | ((above == 0) & (below == 0))
+        selected = np.flatnonzero(((above < others) & (below < others)) | ~has_plane)
+        a, b, others, may_cross = b[selected], a[selected], others[selected], may_cross[selected]
+    return a[may_cross], b[may_cross]
 
 
-def _count(masks: Iterable[Mask]) -> NDArray[np.int8]:
-    """How many of some masks are true, everywhere."""
+def _count_true(masks: Iterable[Mask]) -> NDArray[np.int8]:
+    """Count how many of some masks are true, elementwise."""
     return np.asarray(sum(mask.view(np.int8) for mask in masks))
 
 
-def _heights(faces: Faces, of: Numbers, over: Numbers) -> Array:
-    """Of the corners of triangles over the planes of others, (3, k)."""
-    normals, offsets = faces.normals.take(over, axis=1), faces.offsets.take(over)
-    return np.stack([along(corner.take(of, axis=1), normals) - offsets for corner in faces.places])
+def _corner_heights(faces: TriangleFaces, triangles: IndexArray, planes: IndexArray) -> Array:
+    """Compute the heights of the corners of triangles over the planes of others, (3, k)."""
+    normals, offsets = faces.normals.take(planes, axis=1), faces.offsets.take(planes)
+    return np.stack([dot_columns(corner.take(triangles, axis=1), normals) - offsets for corner in faces.places])
 
 
-def _pierced(faces: Faces, a: Numbers, b: Numbers, near: float, beside: float) -> Mask:
-    """Whether an edge of a comes out behind b, there or up to `beside` from its rim.
+def _is_pierced(faces: TriangleFaces, a: IndexArray, b: IndexArray, tolerance: float, rim_width: float) -> Mask:
+    """Return whether an edge of a emerges behind b, inside it or up to `rim_width` outside its rim.
 
-    It may start at b, but not at a corner that is one with a corner of b, or is joined to it; nor may both its ends be.
+    The edge may start on b, but not at a corner that is one with a corner of b, or joined to it; nor may both ends be
+    there.
     """
     own_corners = (faces.corners.take(a, axis=1)[:, None] == faces.corners.take(b, axis=1)).any(axis=1)
-    h = np.where(own_corners, 0.0, _heights(faces, a, b))
-    behind, before = h < -near, (h >= -near) & ~faces.narrow[b]
-    edge, own = np.nonzero(before[BEGINS] & behind[ENDS])
-    i, j = BEGINS[edge], ENDS[edge]
-    held = np.flatnonzero((h[i, own] <= near) | faces.joins)
-    at_it = [_is_joined(faces, a[own[held]], k[held], b[own[held]]) for k in (i, j)]
-    free = np.ones(len(own), dtype=bool)
-    free[held] = ~(at_it[0] & (at_it[1] | (h[i[held], own[held]] <= near)))
-    own, i, j = own[free], i[free], j[free]
-    p, q, above = faces.places[i, :, a[own]].T, faces.places[j, :, a[own]].T, np.maximum(h[i, own], 0.0)
-    point = p + above / (above - h[j, own]) * (q - p)
-    met = np.zeros(len(a), dtype=bool)
-    met[own[_inside(faces, point, b[own], beside)]] = True
-    return met
+    h = np.where(own_corners, 0.0, _corner_heights(faces, a, b))
+    behind, before = h < -tolerance, (h >= -tolerance) & ~faces.is_narrow[b]
+    edge, pair = np.nonzero(before[EDGE_BEGINS] & behind[EDGE_ENDS])
+    i, j = EDGE_BEGINS[edge], EDGE_ENDS[edge]
+    to_check = np.flatnonzero((h[i, pair] <= tolerance) | faces.has_joined_corners)
+    is_joined = [_is_joined(faces, a[pair[to_check]], k[to_check], b[pair[to_check]]) for k in (i, j)]
+    is_free = np.ones(len(pair), dtype=bool)
+    is_free[to_check] = ~(is_joined[0] & (is_joined[1] | (h[i[to_check], pair[to_check]] <= tolerance)))
+    pair, i, j = pair[is_free], i[is_free], j[is_free]
+    p, q, above = faces.places[i, :, a[pair]].T, faces.places[j, :, a[pair]].T, np.maximum(h[i, pair], 0.0)
+    point = p + above / (above - h[j, pair]) * (q - p)
+    is_crossing = np.zeros(len(a), dtype=bool)
+    is_crossing[pair[_find_inside(faces, point, b[pair], rim_width)]] = True
+    return is_crossing
 
 
-def _is_joined(faces: Faces, a: Numbers, corner: Numbers, b: Numbers) -> Mask:
-    """Whether a corner of a is one with any of b, or joined to it."""
-    return np.asarray((faces.joined[corner, a] == faces.joined.take(b, axis=1)).any(axis=0))
+def _is_joined(faces: TriangleFaces, a: IndexArray, corner: IndexArray, b: IndexArray) -> Mask:
+    """Return whether a corner of a is one with any corner of b, or joined to it."""
+    return np.asarray((faces.joined_corners[corner, a] == faces.joined_corners.take(b, axis=1)).any(axis=0))
 
 
-def _inside(faces: Faces, points: Array, b: Numbers, beside: float) -> Numbers:
-    """Which of points (3, k) in the planes of triangles lie in them, or not farther than `beside` outside."""
+def _find_inside(faces: TriangleFaces, points: Array, b: IndexArray, rim_width: float) -> IndexArray:
+    """Return which of points (3, k) in the planes of triangles lie in them, or at most `rim_width` outside."""
     found = np.arange(len(b))
-    for i, j in NEXT:
+    for i, j in EDGE_CORNERS:
         first, normals = faces.places[i].take(b, axis=1), faces.normals.take(b, axis=1)
         edge = faces.places[j].take(b, axis=1) - first
-        inward = along(across(normals, edge), points - first)
-        on = np.flatnonzero(inward >= -beside * np.sqrt(along(edge, edge)))
-        found, points, b = found[on], points.take(on, axis=1), b[on]
+        inward = dot_columns(cross_columns(normals, edge), points - first)
+        selected = np.flatnonzero(inward >= -rim_width * np.sqrt(dot_columns(edge, edge)))
+        found, points, b = found[selected], points.take(selected, axis=1), b[selected]
     return found
 
 
-def _on_each_other(faces: Faces, a: Numbers, b: Numbers, near: float) -> Mask:
-    """Whether two triangles of one plane, turned alike, have an area in common."""
-    on = np.flatnonzero(along(faces.normals.take(a, axis=1), faces.normals.take(b, axis=1)) > 0.0)
-    on = on[np.abs(_heights(faces, a[on], b[on])).max(axis=0) <= near]
-    on = on[~(faces.narrow[a[on]] | faces.narrow[b[on]])]
-    for one, other in ((a, b), (b, a)):  # no edge of either keeps them apart
-        for i, j in NEXT:
-            first, normals = faces.places[i].take(one[on], axis=1), faces.normals.take(one[on], axis=1)
-            edge = faces.places[j].take(one[on], axis=1) - first
-            length = np.sqrt(along(edge, edge))
-            inward = across(normals, edge) / np.where(length > 0.0, length, 1.0)
-            reach = [along(corner.take(other[on], axis=1) - first, inward) for corner in faces.places]
-            on = on[np.maximum.reduce(reach) > near]
-    met = np.zeros(len(a), dtype=bool)
-    met[on] = True
-    return met
+def _do_overlap(faces: TriangleFaces, a: IndexArray, b: IndexArray, tolerance: float) -> Mask:
+    """Return whether two triangles of one plane and the same orientation have an area in common."""
+    selected = np.flatnonzero(dot_columns(faces.normals.take(a, axis=1), faces.normals.take(b, axis=1)) > 0.0)
+    selected = selected[np.abs(_corner_heights(faces, a[selected], b[selected])).max(axis=0) <= tolerance]
+    selected = selected[~(faces.is_narrow[a[selected]] | faces.is_narrow[b[selected]])]
+    for one, other in ((a, b), (b, a)):  # no edge of either separates them
+        for i, j in EDGE_CORNERS:
+            first, normals = faces.places[i].take(one[selected], axis=1), faces.normals.take(one[selected], axis=1)
+            edge = faces.places[j].take(one[selected], axis=1) - first
+            length = np.sqrt(dot_columns(edge, edge))
+            inward = cross_columns(normals, edge) / np.where(length > 0.0, length, 1.0)
+            reach = [dot_columns(corner.take(other[selected], axis=1) - first, inward) for corner in faces.places]
+            selected = selected[np.maximum.reduce(reach) > tolerance]
+    is_overlapping = np.zeros(len(a), dtype=bool)
+    is_overlapping[selected] = True
+    return is_overlapping

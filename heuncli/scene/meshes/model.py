@@ -1,8 +1,8 @@
-"""Closed surfaces of triangles, and what of them follows from the divergence theorem.
+"""Closed surfaces of triangles, and their volume and moments by the divergence theorem.
 
     V = sum a.(b x c)/6     sum m x = V/4 (a + b + c)     sum m x x^T = V/20 (s s^T + sum a a^T),   s = a + b + c
 of the tetrahedra between a point and the triangles a, b, c, counter-clockwise from outside; here the point is the
-middle of the surface, so that what is far from the origin loses no digits.
+middle of the surface, so that a surface far from the origin loses no digits.
 """
 
 from __future__ import annotations
@@ -13,19 +13,23 @@ from numpy.typing import NDArray
 from heuncli.base.records import record
 from heuncli.results.results import Array
 
-Numbers = NDArray[np.intp]
+IndexArray = NDArray[np.intp]
 
 
 @record
 class TriangleMesh:
-    """A closed surface: corners (n, 3), triangles (m, 3) of their numbers, counter-clockwise from outside.
+    """A closed surface, in the units of its file.
 
-    In the units of its file. shells: of how many separate surfaces it consists; volume: what it encloses; low, high
-    (3,): its extent; notes: what was put right, in sentences.
+    corners: (n, 3)
+    triangles: (m, 3) of corner numbers, counter-clockwise from outside
+    shells: the number of separate surfaces
+    volume: the enclosed volume
+    low, high: (3,) its extent
+    notes: what was corrected, in sentences
     """
 
     corners: Array
-    triangles: Numbers
+    triangles: IndexArray
     shells: int
     volume: float
     low: Array
@@ -34,62 +38,66 @@ class TriangleMesh:
 
 
 @record
-class Soup:
+class TriangleSoup:
     """Triangles as a file has them, each with corners of its own or sharing those of a list: (n, 3) and (m, 3)."""
 
     corners: Array
-    triangles: Numbers
+    triangles: IndexArray
 
 
-def along(a: Array, b: Array) -> Array:
-    """a . b of columns (3, ...)."""
+def dot_columns(a: Array, b: Array) -> Array:
+    """Compute a . b of columns (3, ...)."""
     return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
-def across(a: Array, b: Array) -> Array:
-    """a x b of columns (3, ...)."""
+def cross_columns(a: Array, b: Array) -> Array:
+    """Compute a x b of columns (3, ...)."""
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def at_corners(places: Array, triangles: Numbers) -> Array:
-    """Places (n, 3) of the corners of triangles, in columns: (3 corners, 3 axes, m)."""
+def gather_corners(places: Array, triangles: IndexArray) -> Array:
+    """Return the places (n, 3) of the corners of triangles, in columns: (3 corners, 3 axes, m)."""
     columns = np.ascontiguousarray(places.T)
     return np.stack([columns.take(numbers, axis=1) for numbers in triangles.T])
 
 
-def tetrahedra(corners: Array, triangles: Numbers, middle: Array) -> tuple[Array, Array]:
-    """Corners (3, 3, m) from the middle on, in columns, and volumes (m,) of the tetrahedra between it and triangles."""
-    places = at_corners(corners - middle, triangles)
+def make_tetrahedra(corners: Array, triangles: IndexArray, middle: Array) -> tuple[Array, Array]:
+    """Return the corners (3, 3, m) relative to the middle, in columns, and the volumes (m,) of the tetrahedra on
+    triangles.
+    """
+    places = gather_corners(corners - middle, triangles)
     a, b, c = places
-    return places, along(a, across(b, c)) / 6.0
+    return places, dot_columns(a, cross_columns(b, c)) / 6.0
 
 
-def middle_of(corners: Array) -> Array:
-    """The middle of the extent, (3,)."""
+def middle_of_extent(corners: Array) -> Array:
+    """Return the middle of the extent, (3,)."""
     return np.asarray(0.5 * (corners.min(axis=0) + corners.max(axis=0)))
 
 
-def moments(corners: Array, triangles: Numbers) -> tuple[float, Array, Array]:
-    """Volume, and its first (3,) and second moments (3, 3) about the middle of the corners."""
-    (a, b, c), V = tetrahedra(corners, triangles, middle_of(corners))
+def volume_moments(corners: Array, triangles: IndexArray) -> tuple[float, Array, Array]:
+    """Compute the volume, and its first (3,) and second moments (3, 3) about the middle of the corners."""
+    (a, b, c), V = make_tetrahedra(corners, triangles, middle_of_extent(corners))
     s = a + b + c
     first = 0.25 * (s @ V)
     second = sum((V * x) @ x.T for x in (s, a, b, c)) / 20.0
     return float(V.sum()), first, np.asarray(second)
 
 
-def least(triangles: Array) -> Array:
-    """The least of three along the second axis, (m, ...); a reduction along so short an axis takes twice as long."""
+def min_of_three(triangles: Array) -> Array:
+    """Return the least of three along the second axis, (m, ...); a NumPy reduction along so short an axis takes twice
+    as long.
+    """
     return np.asarray(np.minimum(np.minimum(triangles[:, 0], triangles[:, 1]), triangles[:, 2]))
 
 
-def most(triangles: Array) -> Array:
-    """The largest of three along the second axis, (m, ...)."""
+def max_of_three(triangles: Array) -> Array:
+    """Return the largest of three along the second axis, (m, ...)."""
     return np.asarray(np.maximum(np.maximum(triangles[:, 0], triangles[:, 1]), triangles[:, 2]))
 
 
-def crossed(a: Array, b: Array) -> Array:
-    """a x b of rows (..., 3)."""
+def cross_product_rows(a: Array, b: Array) -> Array:
+    """Compute a x b of rows (..., 3)."""
     out = np.empty(np.broadcast(a, b).shape)
     out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
     out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
@@ -97,33 +105,39 @@ def crossed(a: Array, b: Array) -> Array:
     return out
 
 
-def components(count: int, a: Numbers, b: Numbers) -> Numbers:
-    """For each of `count` things the least number of those that pairs (a, b) join it to (Shiloach, Vishkin, 1982)."""
+def connected_components(count: int, a: IndexArray, b: IndexArray) -> IndexArray:
+    """For each of `count` items, return the least number among those that pairs (a, b) connect to it (Shiloach,
+    Vishkin, 1982).
+    """
     first = np.arange(count)
     while True:
         one, other = first[a], first[b]
-        apart = one != other
-        if not apart.any():
+        is_separate = one != other
+        if not is_separate.any():
             return first
-        a, b = a[apart], b[apart]
-        low, high = np.minimum(one[apart], other[apart]), np.maximum(one[apart], other[apart])
-        first[high] = low  # of several joined to one the last; the others are met again
+        a, b = a[is_separate], b[is_separate]
+        low, high = np.minimum(one[is_separate], other[is_separate]), np.maximum(one[is_separate], other[is_separate])
+        first[high] = low  # if several are joined to one, the last wins; the others are handled in the next round
         while True:
-            further = first[first]
-            if (further == first).all():
+            next_first = first[first]
+            if (next_first == first).all():
                 break
-            first = further
+            first = next_first
 
 
-def in_order(keys: Numbers) -> Numbers:
-    """The stable order of whole numbers from 0 on: with their places behind them, where both have room in 63 bits."""
+def stable_order(keys: IndexArray) -> IndexArray:
+    """Return the stable sort order of whole numbers from 0 on. Key and place are packed into 63 bits if they fit, which
+    is faster.
+    """
     bits = len(keys).bit_length()
     if int(keys.max(initial=0)) >> (63 - bits):
         return np.argsort(keys, kind="stable")
     return np.asarray(np.sort((keys << bits) | np.arange(len(keys))) & ((1 << bits) - 1))
 
 
-def numbered(first: Numbers) -> tuple[Numbers, Numbers]:
-    """Of things joined as `components` has them the first of each component (k,), and of each thing its component."""
-    begins = first == np.arange(len(first))
-    return np.flatnonzero(begins), (np.cumsum(begins) - 1)[first]
+def number_components(first: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """For items joined by `connected_components`, return the first of each component (k,), and the component of each
+    item.
+    """
+    is_first = first == np.arange(len(first))
+    return np.flatnonzero(is_first), (np.cumsum(is_first) - 1)[first]

@@ -1,4 +1,4 @@
-"""Faces of three and more corners as triangles from the first corner."""
+"""Divide faces of three and more corners into triangles from the first corner."""
 
 from __future__ import annotations
 
@@ -6,34 +6,34 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.scene.meshes.model import Numbers
-from heuncli.scene.meshes.numbers import refused, whole_numbers
+from heuncli.scene.meshes.model import IndexArray
+from heuncli.scene.meshes.numbers import mesh_file_finding, parse_integers
 
-MOST_CORNERS = 10_000  # of one face
+MAX_CORNERS = 10_000  # of one face
 
 
-def fans(rows: Sequence[Sequence[bytes]]) -> Numbers:
-    """Triangles (m, 3) of faces given by the words of their corners. Raises Finding."""
+def triangulate_words(rows: Sequence[Sequence[bytes]]) -> IndexArray:
+    """Divide faces given by the words of their corners into triangles (m, 3). Raises Finding."""
     counts = np.fromiter(map(len, rows), np.intp, len(rows))
     require_faces(counts)
-    found = []
+    triangles = []
     for count in np.unique(counts).tolist():
-        own = rows if (counts == count).all() else [rows[i] for i in np.flatnonzero(counts == count).tolist()]
-        flat = whole_numbers([word for row in own for word in row], "face")
-        found.append(triangles_of(flat.reshape(-1, count)))
-    return np.concatenate(found)
+        same_count = rows if (counts == count).all() else [rows[i] for i in np.flatnonzero(counts == count).tolist()]
+        flat = parse_integers([word for row in same_count for word in row], "face")
+        triangles.append(triangulate(flat.reshape(-1, count)))
+    return np.concatenate(triangles)
 
 
-def require_faces(counts: Numbers) -> None:
-    """Raise Finding where a face has fewer corners than three, or more than are read."""
-    few = (counts < 3) | (counts > MOST_CORNERS)
-    if few.any():
-        k = int(few.argmax())
-        raise refused(f"face {k + 1} has {int(counts[k])} corners", "a face has three corners, or some more")
+def require_faces(counts: IndexArray) -> None:
+    """Raise Finding for a face with fewer than three corners, or with more than are read."""
+    is_wrong = (counts < 3) | (counts > MAX_CORNERS)
+    if is_wrong.any():
+        k = int(is_wrong.argmax())
+        raise mesh_file_finding(f"face {k + 1} has {int(counts[k])} corners", "a face has three corners, or some more")
 
 
-def triangles_of(faces: Numbers) -> Numbers:
-    """Triangles (m (c - 2), 3) of m faces of c corners, (m, c)."""
+def triangulate(faces: IndexArray) -> IndexArray:
+    """Divide m faces of c corners, (m, c), into triangles (m (c - 2), 3)."""
     m, c = faces.shape
     fan = np.stack([np.broadcast_to(faces[:, :1], (m, c - 2)), faces[:, 1:-1], faces[:, 2:]], axis=-1)
     return np.asarray(fan.reshape(-1, 3))

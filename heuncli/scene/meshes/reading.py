@@ -1,4 +1,4 @@
-"""Files of surfaces -> closed meshes: STL, OBJ, PLY, told apart by what stands in them. No file is opened here."""
+"""Read surface files into closed meshes: STL, OBJ, PLY, distinguished by their contents. No file is opened here."""
 
 from __future__ import annotations
 
@@ -8,44 +8,46 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.base.number_range import are_in_range
-from heuncli.scene.meshes.closure import edges_of, loose_corners, neighbours, shells_of
+from heuncli.scene.meshes.closure import find_edge_neighbours, find_edges, find_open_corners, find_shells
 from heuncli.scene.meshes.crossings import require_no_crossing
-from heuncli.scene.meshes.drawn_in import parted
-from heuncli.scene.meshes.model import Soup, TriangleMesh, middle_of, tetrahedra
-from heuncli.scene.meshes.numbers import refused
+from heuncli.scene.meshes.drawn_in import separate_fans
+from heuncli.scene.meshes.model import TriangleMesh, TriangleSoup, make_tetrahedra, middle_of_extent
+from heuncli.scene.meshes.numbers import mesh_file_finding
 from heuncli.scene.meshes.obj import read_obj
 from heuncli.scene.meshes.ply import read_ply
 from heuncli.scene.meshes.stl import read_stl
-from heuncli.scene.meshes.welding import resolution, welded, welded_near
+from heuncli.scene.meshes.welding import coordinate_resolution, weld_equal_corners, weld_near_corners
 
-MOST_TRIANGLES = 2_000_000
-READERS: dict[str, Callable[[bytes], Soup]] = {"stl": read_stl, "obj": read_obj, "ply": read_ply}
-OTHERS = {
+MAX_TRIANGLES = 2_000_000
+MESH_READERS: dict[str, Callable[[bytes], TriangleSoup]] = {"stl": read_stl, "obj": read_obj, "ply": read_ply}
+UNREAD_FORMATS = {
     "step": "STEP", "stp": "STEP", "iges": "IGES", "igs": "IGES", "dae": "COLLADA", "3mf": "3MF", "glb": "glTF",
     "gltf": "glTF", "off": "OFF", "amf": "AMF",
 }  # fmt: skip
-KINDS = "STL, OBJ or PLY, named so: rod.stl"
+FORMAT_HINT = "STL, OBJ or PLY, named so: rod.stl"
 
 
-def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
-    """The closed mesh in a file of this name. Raises Finding: mesh-file, open-mesh and the like."""
-    soup = welded(soup_of(bytes(content), name))
+def read_closed_mesh(content: bytes | bytearray, name: str) -> TriangleMesh:
+    """Read the closed mesh in a file of this name. Raises Finding: mesh-file, open-mesh and the like."""
+    soup = weld_equal_corners(read_soup(bytes(content), name))
     notes: list[str] = []
-    edges = edges_of(soup.triangles)
-    loose = loose_corners(edges)
-    if len(loose):
-        before = len(soup.corners)
-        soup = welded_near(soup, loose)
-        edges = edges_of(soup.triangles)
-        if len(soup.corners) < before and not len(loose_corners(edges)):
-            notes.append(f"corners less than {resolution(soup.corners):.2g} of its units apart were taken as one")
+    edges = find_edges(soup.triangles)
+    open_corners = find_open_corners(edges)
+    if len(open_corners):
+        corner_count = len(soup.corners)
+        soup = weld_near_corners(soup, open_corners)
+        edges = find_edges(soup.triangles)
+        if len(soup.corners) < corner_count and not len(find_open_corners(edges)):
+            notes.append(
+                f"corners less than {coordinate_resolution(soup.corners):.2g} of its units apart were taken as one"
+            )
     _require_triangles(soup)
-    beside = neighbours(soup, edges)
-    V = tetrahedra(soup.corners, soup.triangles, middle_of(soup.corners))[1]
-    turned = soup.triangles[:, ::-1] if V.sum() < 0.0 else soup.triangles
-    require_no_crossing(*parted(soup.corners, turned, beside), resolution(soup.corners))
-    shells = shells_of(soup, beside, V)
-    if shells.turned:
+    edge_neighbours = find_edge_neighbours(soup, edges)
+    V = make_tetrahedra(soup.corners, soup.triangles, middle_of_extent(soup.corners))[1]
+    outward = soup.triangles[:, ::-1] if V.sum() < 0.0 else soup.triangles
+    require_no_crossing(*separate_fans(soup.corners, outward, edge_neighbours), coordinate_resolution(soup.corners))
+    shells = find_shells(soup, edge_neighbours, V)
+    if shells.is_reversed:
         notes.append("its triangles were turned inward; they are taken as outward")
     return TriangleMesh(
         soup.corners, shells.triangles, len(shells.volumes), float(shells.volumes.sum()),
@@ -53,36 +55,36 @@ def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
     )  # fmt: skip
 
 
-def soup_of(content: bytes, name: str) -> Soup:
-    """The triangles of a file, of coordinates that are computed with. Raises Finding."""
-    soup = _reader(content, name)(content)
+def read_soup(content: bytes, name: str) -> TriangleSoup:
+    """Read the triangles of a file, and check that their coordinates are in range. Raises Finding."""
+    soup = _find_reader(content, name)(content)
     _require_triangles(soup)
-    if len(soup.triangles) > MOST_TRIANGLES:
-        message = f"{len(soup.triangles):,} triangles; at most {MOST_TRIANGLES:,} are read"
+    if len(soup.triangles) > MAX_TRIANGLES:
+        message = f"{len(soup.triangles):,} triangles; at most {MAX_TRIANGLES:,} are read"
         raise Finding("too-large", message, "a coarser mesh will do: mass and inertia err as the square of its size")
-    own = soup.corners[soup.triangles.ravel()] if len(soup.corners) > 3 * len(soup.triangles) else soup.corners
-    wrong = ~np.isfinite(own)
-    if wrong.any() or not are_in_range(own).all():
-        raise refused("a coordinate is no finite number, or beyond what is computed with", "save it again")
+    used_corners = soup.corners[soup.triangles.ravel()] if len(soup.corners) > 3 * len(soup.triangles) else soup.corners
+    is_not_finite = ~np.isfinite(used_corners)
+    if is_not_finite.any() or not are_in_range(used_corners).all():
+        raise mesh_file_finding("a coordinate is no finite number, or beyond what is computed with", "save it again")
     return soup
 
 
-def _require_triangles(soup: Soup) -> None:
+def _require_triangles(soup: TriangleSoup) -> None:
     if not len(soup.triangles):
-        raise refused("there are no triangles in it", "a solid's surface, in triangles")
+        raise mesh_file_finding("there are no triangles in it", "a solid's surface, in triangles")
 
 
-def _reader(content: bytes, name: str) -> Callable[[bytes], Soup]:
-    """By the name's ending; of others by how the file begins. Raises Finding."""
+def _find_reader(content: bytes, name: str) -> Callable[[bytes], TriangleSoup]:
+    """Find the reader by the name's ending, otherwise by the beginning of the file. Raises Finding."""
     end = name.rpartition(".")[2].lower()
     if content[:4] in (b"ply\n", b"ply\r"):
         return read_ply
-    if end in READERS and end != "ply":
-        return READERS[end]
+    if end in MESH_READERS and end != "ply":
+        return MESH_READERS[end]
     if end == "ply":
-        raise refused("a PLY file begins with 'ply'", KINDS)
-    if end in OTHERS:
-        raise refused(f"{OTHERS[end]} is not read", f"export its surface as {KINDS}")
+        raise mesh_file_finding("a PLY file begins with 'ply'", FORMAT_HINT)
+    if end in UNREAD_FORMATS:
+        raise mesh_file_finding(f"{UNREAD_FORMATS[end]} is not read", f"export its surface as {FORMAT_HINT}")
     if content.lstrip()[:5].lower() == b"solid":
         return read_stl
-    raise refused("of which kind it is cannot be told", KINDS)
+    raise mesh_file_finding("of which kind it is cannot be told", FORMAT_HINT)

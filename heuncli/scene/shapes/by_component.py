@@ -1,8 +1,8 @@
-"""Vectors of bodies at many instants, each component in a row of its own: long sums in place of many short ones.
+"""Compute with vectors of bodies at many instants component by component: few long sums in place of many short ones.
 
-Vectors (n, 3, n_t) and matrices (n, 3, 3, n_t) of n bodies, where elsewhere instants come first: a sum over three
-components is then three loops over all instants. Products are added up in a fixed order, that in which NumPy's einsum
-adds those of (n_t, n, 3).
+Vectors are (n, 3, n_t) and matrices (n, 3, 3, n_t) for n bodies, while elsewhere instants come first. A sum over three
+components is then three loops over all instants. Products are summed in a fixed order, that of NumPy's einsum for (n_t,
+n, 3).
 """
 
 from __future__ import annotations
@@ -12,58 +12,64 @@ import numpy as np
 from heuncli.results.results import Array
 
 
-def rows(values: Array) -> Array:
-    """Values (n_t, ...) with the instants last and next to each other, (..., n_t)."""
+def instants_last(values: Array) -> Array:
+    """Return values (n_t, ...) with the instants last and contiguous, (..., n_t)."""
     return np.ascontiguousarray(values.transpose(*range(1, values.ndim), 0))
 
 
 def instants_first(values: Array) -> Array:
-    """Values (..., n_t) as they are elsewhere, (n_t, ...)."""
+    """Return values (..., n_t) with the instants first, (n_t, ...)."""
     last = values.ndim - 1
     return np.ascontiguousarray(values.transpose(last, *range(last)))
 
 
-def body_by_body(values: Array) -> Array:
-    """Values (n, ..., n_t) as (n_t, n, ...), in memory one body behind the other."""
+def bodies_contiguous(values: Array) -> Array:
+    """Return values (n, ..., n_t) as (n_t, n, ...), stored in memory one body after another."""
     last = values.ndim - 1
     return np.ascontiguousarray(values.transpose(0, last, *range(1, last))).swapaxes(0, 1)
 
 
-NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # of each component those behind it, in turn
+NEXT_COMPONENT, AFTER_NEXT_COMPONENT = (
+    np.array([1, 2, 0]),
+    np.array([2, 0, 1]),
+)  # the next and the second next component, cyclic
 
 
-def cross(a: Array, b: Array) -> Array:
-    """a x b, (n, 3, n_t)."""
-    return np.asarray(a.take(NEXT, 1) * b.take(LAST, 1) - a.take(LAST, 1) * b.take(NEXT, 1))
+def cross_components(a: Array, b: Array) -> Array:
+    """Compute a x b, (n, 3, n_t)."""
+    return np.asarray(
+        a.take(NEXT_COMPONENT, 1) * b.take(AFTER_NEXT_COMPONENT, 1)
+        - a.take(AFTER_NEXT_COMPONENT, 1) * b.take(NEXT_COMPONENT, 1)
+    )
 
 
-def turned(R: Array, vectors: Array) -> Array:
-    """R v, (n, 3, n_t)."""
-    each = R * vectors[:, None]
-    return np.asarray(each[:, :, 0] + each[:, :, 2] + each[:, :, 1])
+def rotate_components(R: Array, vectors: Array) -> Array:
+    """Compute R v, (n, 3, n_t)."""
+    products = R * vectors[:, None]
+    return np.asarray(products[:, :, 0] + products[:, :, 2] + products[:, :, 1])
 
 
-def turned_back(R: Array, vectors: Array) -> Array:
-    """R^T v, (n, 3, n_t)."""
-    each = R * vectors[:, :, None]
-    return np.asarray(each[:, 0] + each[:, 1] + each[:, 2])
+def rotate_components_back(R: Array, vectors: Array) -> Array:
+    """Compute R^T v, (n, 3, n_t)."""
+    products = R * vectors[:, :, None]
+    return np.asarray(products[:, 0] + products[:, 1] + products[:, 2])
 
 
-def form(x: Array, J: Array) -> Array:
-    """x . J x of vectors and matrices (n, 3, 3), (n, n_t)."""
-    each = (x[:, :, None] * J[..., None] * x[:, None]).reshape(len(x), 9, x.shape[2])
-    found = each[:, 0] + each[:, 1]
+def quadratic_form(x: Array, J: Array) -> Array:
+    """Compute x . J x of vectors (n, 3, n_t) and matrices (n, 3, 3), (n, n_t)."""
+    products = (x[:, :, None] * J[..., None] * x[:, None]).reshape(len(x), 9, x.shape[2])
+    total = products[:, 0] + products[:, 1]
     for k in range(2, 9):
-        found += each[:, k]
-    return np.asarray(found)
+        total += products[:, k]
+    return np.asarray(total)
 
 
-def squares(vectors: Array) -> Array:
-    """v . v, (n, n_t)."""
-    each = vectors * vectors
-    return np.asarray(each[:, 0] + each[:, 1] + each[:, 2])
+def squared_lengths(vectors: Array) -> Array:
+    """Compute v . v, (n, n_t)."""
+    products = vectors * vectors
+    return np.asarray(products[:, 0] + products[:, 1] + products[:, 2])
 
 
-def largest(values: Array) -> Array:
-    """The largest magnitude of values (..., n_t) at each instant, (n_t,)."""
+def largest_magnitude(values: Array) -> Array:
+    """Return the largest magnitude of values (..., n_t) at each instant, (n_t,)."""
     return np.asarray(np.abs(values).reshape(-1, values.shape[-1]).max(axis=0, initial=0.0))

@@ -1,4 +1,4 @@
-"""What planes that cut a shape meet of it: circles and rings, rectangles, other outlines, or what is not known."""
+"""The kinds of figures in which planes cut a shape: circles and rings, rectangles, other outlines, or unknown."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ Flags = NDArray[np.bool_]
 
 @record
 class CuttingPlanes:
-    """Planes n.x = d (k,) and e1 in them; beside (k,): a hair before or beyond each, which decides what it meets."""
+    """Planes n.x = d (k,), with e1 in them.
+
+    shifted_d: (k,) offsets slightly before or behind each plane, which decide what the plane meets
+    """
 
     n: Array
     e1: Array
@@ -24,8 +27,8 @@ class CuttingPlanes:
 
 
 @record
-class Round:
-    """Circles or rings, where planes meet a shape: centres (k, 3), radii (k,)."""
+class RoundFigure:
+    """Circles or rings where planes meet a shape (is_met): centres (k, 3), outer and inner radii (k,) [m]."""
 
     met: Flags
     center: Array
@@ -34,8 +37,8 @@ class Round:
 
 
 @record
-class Rectangle:
-    """Rectangles of one size with sides along e1 (width) and e2 (height), centres (k, 3)."""
+class RectangleFigure:
+    """Rectangles of one size with sides along e1 (width) and e2 (height) [m], centres (k, 3)."""
 
     met: Flags
     center: Array
@@ -44,20 +47,24 @@ class Rectangle:
 
 
 @record
-class Unknown:
-    """Other figures, and what they are."""
+class UnknownFigure:
+    """Figures of no other kind, and the reason."""
 
     met: Flags
     why: str
 
 
 @record
-class Profile:
-    """Figures of any outline: their properties (k,) by name, and why those of some are not known, by their numbers."""
+class ProfileFigure:
+    """Figures of any outline.
+
+    values: their properties (k,) by name
+    missing: by plane number, why the properties of a figure are not known
+    """
 
     met: Flags
     values: Mapping[str, Array]
     missing: Mapping[int, str]
 
 
-Figure = Round | Rectangle | Profile | Unknown
+Figure = RoundFigure | RectangleFigure | ProfileFigure | UnknownFigure

@@ -1,10 +1,11 @@
-"""A cylinder, tube or cone cut by any plane.
+"""Cut a cylinder, tube or cone by any plane.
 
-Local axes at the start: z along the axis, x towards the part of the normal across it, n = (s, 0, c). At height z the
-plane cuts the ring between the radii q(z) < r(z) along x = u(z) = (d - c z)/s; what is beyond is a difference of two
-circular segments, whose moments have closed forms. Their integral over z is smooth between the heights where u = +-r or
-+-q; there it starts like a power 3/2, which the quadrature removes. Differences of outer and inner circle are never
-taken as such: all terms carry the factor r - q, so that thin walls lose nothing. Across the axis all is exact.
+Local axes at the start: z along the axis, x towards the part of the normal perpendicular to it, n = (s, 0, c). At
+height z the plane cuts the ring between the radii q(z) < r(z) along x = u(z) = (d - c z)/s; the part behind it is a
+difference of two circular segments, whose moments have closed forms. Their integral over z is smooth between the
+heights where u = +-r or +-q; there it starts like a power 3/2, which the quadrature removes. Outer and inner circle are
+never subtracted as such: all terms carry the factor r - q, so that thin walls lose no digits. For a cut perpendicular
+to the axis all is exact.
 """
 
 from __future__ import annotations
@@ -14,22 +15,22 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array
-from heuncli.scene.shapes.inertia import assembled
-from heuncli.scene.shapes.outlines import SIDES, Corners, Flags, Outline, Planes, circle
-from heuncli.scene.shapes.quadrature import Owners, adaptive, gauss
-from heuncli.scene.shapes.rotations import perpendicular
-from heuncli.scene.shapes.solids import Thick
+from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
+from heuncli.scene.shapes.outlines import SIDES, Corners, Flags, Outline, Planes, circle_corners
+from heuncli.scene.shapes.quadrature import Owners, gauss_rule, integrate_adaptively
+from heuncli.scene.shapes.rotations import perpendicular_pair
+from heuncli.scene.shapes.solids import ThickSolid
 
 
-def segments(u: Array, r: Array, q: Array) -> tuple[Array, Array, Array, Array]:
-    """Area, sum x, sum x^2, sum y^2 of the part x > u of a ring between the radii q < r."""
+def ring_segments(u: Array, r: Array, q: Array) -> tuple[Array, Array, Array, Array]:
+    """Compute area, sum x, sum x^2, sum y^2 of the part x > u of a ring between the radii q < r."""
     a, b = np.clip(u, -r, r), np.clip(u, -q, q)
     h, g = np.sqrt((r - a) * (r + a)), np.sqrt((q - b) * (q + b))  # half chords
     ring = (r - q) * (r + q)
-    both = g > 0.0
-    chord = np.where(both, ring / np.where(both, h + g, 1.0), h)  # h - g
+    is_ring = g > 0.0
+    chord = np.where(is_ring, ring / np.where(is_ring, h + g, 1.0), h)  # h - g
     angle = np.arctan2(h, a)
-    turn = np.arctan2(np.where(both, a * chord, h * b), a * b + h * g)  # angle - arctan2(g, b)
+    turn = np.arctan2(np.where(is_ring, a * chord, h * b), a * b + h * g)  # angle - arctan2(g, b)
     cubes = chord * (h * h + h * g + g * g)  # h^3 - g^3
     squares = a * (ring * h + q * q * chord)  # r^2 h a - q^2 g b
     quads = a * (a * a * chord - cubes)  # h a (a^2 - h^2) - g b (b^2 - g^2)
@@ -38,8 +39,10 @@ def segments(u: Array, r: Array, q: Array) -> tuple[Array, Array, Array, Array]:
     return area, cubes * (2.0 / 3.0), 0.25 * (turns - quads), 0.25 * turns - squares / 3.0 + quads / 12.0
 
 
-def bounds(constants: Array, slopes: Array) -> tuple[Array, Array]:
-    """From where to where all lines constants + slopes x (k, j) are positive, (k,) each; where nowhere, to < from."""
+def positive_interval(constants: Array, slopes: Array) -> tuple[Array, Array]:
+    """Return from where to where all lines constants + slopes x (k, j) are positive, (k,) each; if nowhere, to <
+    from.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         roots = -constants / slopes
     empty = ((slopes == 0.0) & (constants < 0.0)).any(axis=-1)
@@ -49,8 +52,8 @@ def bounds(constants: Array, slopes: Array) -> tuple[Array, Array]:
 
 
 @record
-class Lines:
-    """The planes in local axes: n = (s, 0, c), x along e, y along f, offsets from the start (k,)."""
+class LocalPlanes:
+    """The planes in local axes: n = (s, 0, c), x along e, y along f, offsets d from the start (k,)."""
 
     s: float
     c: float
@@ -60,11 +63,15 @@ class Lines:
 
 
 @record
-class Chord:
-    """The middle lines of cuts through a round shape, end to end: x, z (k, 2) and the room r - x, r + x (2, k, 2).
+class CutMidlines:
+    """The middle lines of cuts through a round shape, from end to end.
 
-    All of them are linear in between, and so free of the rounding of r - x where a cut is small. met: whether there is
-    a cut, through: whether it leaves the shape through both ends, length [m], (k,) each.
+    is_met: (k,) whether there is a cut
+    leaves_both_ends: (k,) whether it leaves the shape through both end faces
+    length: (k,) [m]
+    x, z: (k, 2) at the two ends
+    room: (2, k, 2) r - x and r + x at the two ends. All of them are linear in between, so that r - x has no rounding
+    error where a cut is small.
     """
 
     met: Flags
@@ -74,15 +81,19 @@ class Chord:
     z: Array
     room: Array
 
-    def at(self, t: Array, owner: Owners) -> tuple[Array, Array, Array]:
-        """x, z and the half width of the cut at parts t (i, m), 0 to 1, of the lines of these owners (i,)."""
-        x, z, left, right = (a[owner, :1] + t * np.diff(a[owner], axis=-1) for a in (self.x, self.z, *self.room))
+    def evaluate(self, fractions: Array, line_numbers: Owners) -> tuple[Array, Array, Array]:
+        """Return x, z and the half width of the cut at fractions (i, m), 0 to 1, of the lines of these numbers (i,)."""
+        x, z, left, right = (
+            a[line_numbers, :1] + fractions * np.diff(a[line_numbers], axis=-1) for a in (self.x, self.z, *self.room)
+        )
         return x, z, np.sqrt(left * right)
 
 
 @record
-class Frustum(Thick):
-    """A ring-shaped body about an axis: radii at its start and end, outer and inner (0: full), density [kg/m3]."""
+class Frustum(ThickSolid):
+    """A ring-shaped body about an axis: outer and inner radii at its start and end (inner 0: solid), density
+    [kg/m3].
+    """
 
     start: Array
     axis: Array
@@ -96,164 +107,177 @@ class Frustum(Thick):
         (r0, r1), (q0, q1) = self.outer, self.inner
         return r0 + (r1 - r0) * t, q0 + (q1 - q0) * t
 
-    def lines(self, n: Array, d: Array) -> Lines:
+    def localize_planes(self, n: Array, d: Array) -> LocalPlanes:
         c = float(n @ self.axis)
-        across = np.cross(self.axis, n)
-        s = float(np.sqrt(across @ across))
-        f = across / s if s > tolerances.OFF_AXIS else perpendicular(self.axis)[1]
-        f = f - (f @ self.axis) * self.axis  # a small s has left little of the product's right angle
+        normal_part = np.cross(self.axis, n)
+        s = float(np.sqrt(normal_part @ normal_part))
+        f = normal_part / s if s > tolerances.OFF_AXIS else perpendicular_pair(self.axis)[1]
+        f = f - (f @ self.axis) * self.axis  # with a small s the cross product is not quite perpendicular
         f = f / np.sqrt(f @ f)
-        return Lines(s, c, np.cross(f, self.axis), f, d - n @ self.start)
+        return LocalPlanes(s, c, np.cross(f, self.axis), f, d - n @ self.start)
 
-    def placed(self, line: Lines, moments: Array) -> Array:
-        """Pseudo-inertia about the body's origin of local moments 1, z, z^2, x, z x, x^2, y^2, (k, 7)."""
+    def pseudo_inertia_from_moments(self, planes: LocalPlanes, moments: Array) -> Array:
+        """Compute the pseudo-inertia about the body's origin of local moments 1, z, z^2, x, z x, x^2, y^2, (k, 7)."""
         one, z, zz, x, zx, xx, yy = (self.density * moments).T
-        none = np.zeros_like(one)
-        P = assembled(
+        zero = np.zeros_like(one)
+        P = assemble_pseudo_inertia(
             one,
-            np.stack([x, none, z], axis=-1),
-            np.stack([xx, none, zx, none, yy, none, zx, none, zz], axis=-1).reshape(-1, 3, 3),
+            np.stack([x, zero, z], axis=-1),
+            np.stack([xx, zero, zx, zero, yy, zero, zx, zero, zz], axis=-1).reshape(-1, 3, 3),
         )
         G = np.eye(4)
-        G[:3] = np.stack([line.e, line.f, self.axis, self.start], axis=-1)
+        G[:3] = np.stack([planes.e, planes.f, self.axis, self.start], axis=-1)
         return np.asarray(G @ P @ G.T)
 
-    def slices(self, low: Array, high: Array) -> Array:
-        """Local moments (k, 7) of the full rings between two heights (k,); exact."""
-        t, w = gauss(3)
+    def slice_moments(self, low: Array, high: Array) -> Array:
+        """Compute the local moments (k, 7) of the full rings between two heights (k,), exactly."""
+        t, w = gauss_rule(3)
         z = low[:, None] + (high - low)[:, None] * t
         w = np.pi * (high - low)[:, None] * w
         r, q = self.radii(z)
         ring = w * (r - q) * (r + q)
-        round_ = 0.25 * ring * (r * r + q * q)
-        none = np.zeros_like(z)
-        terms = [ring, ring * z, ring * z * z, none, none, round_, round_]
+        diametral = 0.25 * ring * (r * r + q * q)
+        zero = np.zeros_like(z)
+        terms = [ring, ring * z, ring * z * z, zero, zero, diametral, diametral]
         return np.asarray(np.stack(terms, axis=-1).sum(axis=1))
 
-    def whole(self) -> Array:
-        line = self.lines(self.axis, np.zeros(1))
-        return np.asarray(self.placed(line, self.slices(np.zeros(1), np.full(1, self.length)))[0])
+    def whole_inertia(self) -> Array:
+        planes = self.localize_planes(self.axis, np.zeros(1))
+        return np.asarray(
+            self.pseudo_inertia_from_moments(planes, self.slice_moments(np.zeros(1), np.full(1, self.length)))[0]
+        )
 
-    def beyond(self, n: Array, d: Array, side: Array, near: float) -> Array:
-        line = self.lines(n, d)
-        s, c, k = line.s, line.c, len(d)
-        none, full = np.zeros(k), np.full(k, self.length)
+    def piece_inertia(self, n: Array, d: Array, side: Array, tolerance: float) -> Array:
+        planes = self.localize_planes(n, d)
+        s, c, k = planes.s, planes.c, len(d)
+        zero, full = np.zeros(k), np.full(k, self.length)
         if s <= tolerances.OFF_AXIS:
-            at = np.clip(line.d / c, 0.0, self.length)
-            return self.placed(line, self.slices(at, full) if c > 0.0 else self.slices(none, at))
+            height = np.clip(planes.d / c, 0.0, self.length)
+            return self.pseudo_inertia_from_moments(
+                planes, self.slice_moments(height, full) if c > 0.0 else self.slice_moments(zero, height)
+            )
 
-        def moments(z: Array, owner: Owners) -> Array:
+        def segment_moments(z: Array, owner: Owners) -> Array:
             r, q = self.radii(z)
-            area, x, xx, yy = segments((line.d[owner, None] - c * z) / s, r, q)
+            area, x, xx, yy = ring_segments((planes.d[owner, None] - c * z) / s, r, q)
             return np.stack([area, area * z, area * z * z, x, x * z, xx, yy], axis=-1)
 
         signs = np.array([1.0, -1.0])
         radii = np.array([self.outer, self.inner])
         slopes = c + s * np.outer(signs, (radii[:, 1] - radii[:, 0]) / self.length)
         with np.errstate(divide="ignore", invalid="ignore"):
-            breaks = (line.d[:, None, None] - s * np.outer(signs, radii[:, 0])) / slopes
-        V, _, zz, _, _, xx, yy = self.slices(none[:1], full[:1])[0]
+            breaks = (planes.d[:, None, None] - s * np.outer(signs, radii[:, 0])) / slopes
+        V, _, zz, _, _, xx, yy = self.slice_moments(zero[:1], full[:1])[0]
         R = max(self.outer)
         scale = np.array([V, V * self.length, zz, V * R, V * R * self.length, xx, yy])
-        return self.placed(line, adaptive(moments, none, full, breaks.reshape(k, 4), scale))
+        return self.pseudo_inertia_from_moments(
+            planes, integrate_adaptively(segment_moments, zero, full, breaks.reshape(k, 4), scale)
+        )
 
     def extent(self, n: Array) -> tuple[float, float]:
-        line = self.lines(n, np.zeros(1))
-        middle = n @ self.start + line.c * np.array([0.0, self.length])
-        reach = line.s * np.array(self.outer)
+        planes = self.localize_planes(n, np.zeros(1))
+        middle = n @ self.start + planes.c * np.array([0.0, self.length])
+        reach = planes.s * np.array(self.outer)
         return float((middle - reach).min()), float((middle + reach).max())
 
     def corners(self, n: Array) -> Array:
-        line = self.lines(n, np.zeros(1))
-        middle = n @ self.start + line.c * np.array([0.0, self.length])
-        rims = line.s * np.array([self.outer, self.inner])
+        planes = self.localize_planes(n, np.zeros(1))
+        middle = n @ self.start + planes.c * np.array([0.0, self.length])
+        rims = planes.s * np.array([self.outer, self.inner])
         return np.concatenate([(middle - rims).ravel(), (middle + rims).ravel()])
 
-    def along(self, line: Lines, radii: tuple[float, float]) -> tuple[Array, Array, Flags]:
-        """From where to where (k,) the cut's middle line, x = d s + c p, z = d c - s p, is within these radii and ends.
+    def midline_interval(self, planes: LocalPlanes, radii: tuple[float, float]) -> tuple[Array, Array, Flags]:
+        """Return from where to where (k,) the cut's middle line, x = d s + c p, z = d c - s p, is within these radii
+        and the ends.
 
-        Also whether it leaves through both ends, (k,).
+        Also returns whether it leaves through both ends, (k,).
         """
-        s, c, d = line.s, line.c, line.d
+        s, c, d = planes.s, planes.c, planes.d
         slope = (radii[1] - radii[0]) / self.length
         x, z = d * s, d * c
-        wide = radii[0] + slope * z
-        constants = np.stack([z, self.length - z, wide - x, wide + x], axis=-1)
+        radius = radii[0] + slope * z
+        constants = np.stack([z, self.length - z, radius - x, radius + x], axis=-1)
         slopes = np.broadcast_to(np.array([-s, s, -slope * s - c, -slope * s + c]), constants.shape)
-        low, high = bounds(constants, slopes)
-        ends_low, ends_high = bounds(constants[:, :2], slopes[:, :2])
+        low, high = positive_interval(constants, slopes)
+        ends_low, ends_high = positive_interval(constants[:, :2], slopes[:, :2])
         return low, high, (low == ends_low) & (high == ends_high) & (high > low)
 
-    def chord(self, line: Lines, radii: tuple[float, float]) -> Chord:
-        """The middle line of the cuts through the full shape with these radii."""
-        low, high, through = self.along(line, radii)
-        met = high > low
-        ends = np.where(met, [low, high], 0.0).T
-        x, z = line.d[:, None] * line.s + line.c * ends, line.d[:, None] * line.c - line.s * ends
+    def find_midlines(self, planes: LocalPlanes, radii: tuple[float, float]) -> CutMidlines:
+        """Find the middle lines of the cuts through the full shape with these radii."""
+        low, high, leaves_both_ends = self.midline_interval(planes, radii)
+        is_met = high > low
+        ends = np.where(is_met, [low, high], 0.0).T
+        x, z = planes.d[:, None] * planes.s + planes.c * ends, planes.d[:, None] * planes.c - planes.s * ends
         r = radii[0] + (radii[1] - radii[0]) / self.length * z
         room = np.maximum(np.stack([r - x, r + x]), 0.0)
-        return Chord(met, through & met, ends[:, 1] - ends[:, 0], x, z, room)
+        return CutMidlines(is_met, leaves_both_ends & is_met, ends[:, 1] - ends[:, 0], x, z, room)
 
-    def conic(self, line: Lines, radii: tuple[float, float]) -> Array:
-        """Area of the cuts through the full shape with these radii, and the area's moments in x and z, (k, 3)."""
-        chord = self.chord(line, radii)
+    def full_section_moments(self, planes: LocalPlanes, radii: tuple[float, float]) -> Array:
+        """Compute the area of the cuts through the full shape with these radii, and its moments in x and z, (k, 3)."""
+        midlines = self.find_midlines(planes, radii)
 
-        def moments(t: Array, owner: Owners) -> Array:
-            x, z, half = chord.at(t, owner)
+        def strip_moments(t: Array, owner: Owners) -> Array:
+            x, z, half = midlines.evaluate(t, owner)
             return np.stack([half, half * x, half * z], axis=-1)
 
-        k = len(line.d)
-        widest = np.sqrt(chord.room.max(axis=-1).prod(axis=0))
-        scale = widest[:, None] * np.array([1.0, max(radii), self.length])
-        integrals = adaptive(moments, np.zeros(k), np.ones(k), np.empty((k, 0)), scale)
-        return 2.0 * chord.length[:, None] * integrals
+        k = len(planes.d)
+        max_half_width = np.sqrt(midlines.room.max(axis=-1).prod(axis=0))
+        scale = max_half_width[:, None] * np.array([1.0, max(radii), self.length])
+        integrals = integrate_adaptively(strip_moments, np.zeros(k), np.ones(k), np.empty((k, 0)), scale)
+        return 2.0 * midlines.length[:, None] * integrals
 
-    def area(self, n: Array, d: Array) -> tuple[Array, Array]:
-        line = self.lines(n, d)
-        if line.s <= tolerances.OFF_AXIS:
-            z = line.d / line.c
+    def section_area(self, n: Array, d: Array) -> tuple[Array, Array]:
+        planes = self.localize_planes(n, d)
+        if planes.s <= tolerances.OFF_AXIS:
+            z = planes.d / planes.c
             r, q = self.radii(z)
             areas = np.where((z > 0.0) & (z < self.length), np.pi * (r - q) * (r + q), 0.0)
             return areas, areas[:, None] * (self.start + z[:, None] * self.axis)
-        section = self.conic(line, self.outer)
+        section = self.full_section_moments(planes, self.outer)
         if max(self.inner) > 0.0:
-            section = section - self.conic(line, self.inner)
+            section = section - self.full_section_moments(planes, self.inner)
         areas, x, z = section.T
-        return areas, np.outer(x, line.e) + np.outer(z, self.axis) + np.outer(areas, self.start)
+        return areas, np.outer(x, planes.e) + np.outer(z, self.axis) + np.outer(areas, self.start)
 
-    def outlines(self, n: Array, d: Array) -> tuple[Outline, ...]:
-        line = self.lines(n, d)
-        if line.s <= tolerances.OFF_AXIS:
-            z = line.d / line.c
+    def section_outlines(self, n: Array, d: Array) -> tuple[Outline, ...]:
+        local_planes = self.localize_planes(n, d)
+        if local_planes.s <= tolerances.OFF_AXIS:
+            z = local_planes.d / local_planes.c
             r, q = self.radii(z)
 
             def rim(radii: Array) -> Corners:
-                return lambda planes: circle(n, self.start + z[planes, None] * self.axis, radii[planes])
+                return lambda planes: circle_corners(n, self.start + z[planes, None] * self.axis, radii[planes])
 
-            met = (z > 0.0) & (z < self.length)
-            return (Outline(met, rim(r), rim(q), met & (q > 0.0)) if max(self.inner) > 0.0 else Outline(met, rim(r)),)
-        outer, inner = self.chord(line, self.outer), self.chord(line, self.inner)
+            is_met = (z > 0.0) & (z < self.length)
+            return (
+                Outline(is_met, rim(r), rim(q), is_met & (q > 0.0))
+                if max(self.inner) > 0.0
+                else Outline(is_met, rim(r)),
+            )
+        outer, inner = self.find_midlines(local_planes, self.outer), self.find_midlines(local_planes, self.inner)
 
-        def around(chord: Chord) -> Corners:
-            return lambda planes: np.concatenate(self.rims(line, chord, planes), axis=1)
+        def whole_outline(chord: CutMidlines) -> Corners:
+            return lambda planes: np.concatenate(self.section_rims(local_planes, chord, planes), axis=1)
 
         def strip(side: int) -> Corners:
             def corners(planes: Planes) -> Array:
-                far, near = (self.rims(line, chord, planes)[side] for chord in (outer, inner))
+                far, near = (self.section_rims(local_planes, chord, planes)[side] for chord in (outer, inner))
                 return np.concatenate([far, near[:, [-1, 0]]], axis=1)
 
             return corners
 
         if max(self.inner) == 0.0:
-            return (Outline(outer.met, around(outer)),)
-        hole, through = around(inner), inner.through
-        ring = Outline(outer.met & ~through, around(outer), hole, inner.met)
-        return (ring, *(Outline(through, strip(side), hole, through) for side in (0, 1)))
+            return (Outline(outer.is_met, whole_outline(outer)),)
+        hole, leaves_both_ends = whole_outline(inner), inner.leaves_both_ends
+        ring = Outline(outer.is_met & ~leaves_both_ends, whole_outline(outer), hole, inner.is_met)
+        return (ring, *(Outline(leaves_both_ends, strip(side), hole, leaves_both_ends) for side in (0, 1)))
 
-    def rims(self, line: Lines, chord: Chord, planes: Planes) -> tuple[Array, Array]:
-        """The cuts' outlines at some planes: one side of the middle line up, the other down, (c, SIDES/2, 3) each."""
+    def section_rims(self, local_planes: LocalPlanes, midlines: CutMidlines, planes: Planes) -> tuple[Array, Array]:
+        """Compute the outlines of cuts at some planes: one side of the middle line up, the other down, (c, SIDES/2, 3)
+        each.
+        """
         t = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SIDES // 2))
-        x, z, half = chord.at(np.broadcast_to(t, (len(planes), len(t))), planes)
-        middle = self.start + x[..., None] * line.e + z[..., None] * self.axis
-        side = half[..., None] * line.f
+        x, z, half = midlines.evaluate(np.broadcast_to(t, (len(planes), len(t))), planes)
+        middle = self.start + x[..., None] * local_planes.e + z[..., None] * self.axis
+        side = half[..., None] * local_planes.f
         return middle + side, (middle - side)[:, ::-1]

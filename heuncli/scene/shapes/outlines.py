@@ -1,6 +1,6 @@
-"""The figures in which planes meet a body: convex outlines, and the number of separate regions they form.
+"""Find the convex outlines in which planes meet a body, and the number of separate regions that they form.
 
-Only for a warning: two figures nearer to each other than 1e-3 of their size count as one.
+Only for a warning: two figures closer to each other than 1e-3 of their size count as one.
 """
 
 from __future__ import annotations
@@ -13,21 +13,24 @@ from numpy.typing import NDArray
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import perpendicular
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
 Flags = NDArray[np.bool_]
 Planes = NDArray[np.intp]
 Corners = Callable[[Planes], Array]
 
-SIDES = 96  # of the polygons for curved outlines: 5e-4 of a radius off
+SIDES = 96  # corners of the polygons for curved outlines: error 5e-4 of a radius
 
 
 @record
 class Outline:
-    """Convex figures, one a plane: whether the plane meets the shape (k,), and its corners (c, m, 3) [m] at c planes.
+    """Convex figures, one a plane.
 
-    A ring has a hole where `hollow` (k,). Corners are asked for only where a plane meets several shapes, or only rods.
-    part: of what the figures are regions, each apart from the others of it; None: of nothing else.
+    is_met: (k,) whether the plane meets the shape
+    corners: returns the corners (c, m, 3) [m] at c planes; called only where a plane meets several shapes, or only rods
+    hole: returns the corners of a ring's hole
+    hollow: (k,) where there is a hole
+    part: identifies the shape of which the figures are separate regions; None: they belong to no other figure
     """
 
     met: Flags
@@ -37,28 +40,30 @@ class Outline:
     part: int | None = None
 
 
-def circle(n: Array, centers: Array, radii: Array) -> Array:
-    """Corners (k, SIDES, 3) on circles about n."""
-    e, f = perpendicular(n)
+def circle_corners(n: Array, centers: Array, radii: Array) -> Array:
+    """Return corners (k, SIDES, 3) on circles about n."""
+    e, f = perpendicular_pair(n)
     angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
     directions = np.cos(angle)[:, None] * e + np.sin(angle)[:, None] * f
     return centers[:, None, :] + radii[:, None, None] * directions
 
 
-def polygon(n: Array, points: Array, present: Flags) -> Array:
-    """Points (k, m, 3) of convex figures put in order about n; those not present (k, m) repeat one that is."""
+def sort_polygon_corners(n: Array, points: Array, present: Flags) -> Array:
+    """Sort the corners (k, m, 3) of convex figures about n; absent ones (k, m) repeat one that is present."""
     first = np.take_along_axis(points, np.argmax(present, axis=1)[:, None, None], axis=1)
     points = np.where(present[..., None], points, first)
     count = np.maximum(present.sum(axis=1), 1)[:, None, None]
-    arm = points - np.where(present[..., None], points, 0.0).sum(axis=1, keepdims=True) / count
-    e, f = perpendicular(n)
-    order = np.argsort(np.arctan2(arm @ f, arm @ e), axis=1)
+    from_center = points - np.where(present[..., None], points, 0.0).sum(axis=1, keepdims=True) / count
+    e, f = perpendicular_pair(n)
+    order = np.argsort(np.arctan2(from_center @ f, from_center @ e), axis=1)
     return np.take_along_axis(points, order[..., None], axis=1)
 
 
 @record
-class Shadow:
-    """Polygons in the plane's own coordinates (k, m, 2), with centre and the circles inside and outside about it."""
+class PlanarPolygons:
+    """Polygons in the plane's own coordinates (k, m, 2), with centre and the inscribed and circumscribed circles about
+    it.
+    """
 
     corners: Array
     center: Array
@@ -66,57 +71,64 @@ class Shadow:
     outer: Array
 
 
-def shadow(points: Array, e: Array, f: Array) -> Shadow:
+def project_polygons(points: Array, e: Array, f: Array) -> PlanarPolygons:
     corners = np.stack([points @ e, points @ f], axis=-1)
     center = corners.mean(axis=1)
     arms = corners - center[:, None, :]
     normals = edge_normals(corners)
-    reach = np.where(normals.any(axis=-1), np.abs((normals * arms).sum(axis=-1)), np.inf).min(axis=1)
-    return Shadow(corners, center, np.where(np.isinf(reach), 0.0, reach), np.sqrt((arms**2).sum(axis=-1)).max(axis=1))
+    edge_distance = np.where(normals.any(axis=-1), np.abs((normals * arms).sum(axis=-1)), np.inf).min(axis=1)
+    return PlanarPolygons(
+        corners,
+        center,
+        np.where(np.isinf(edge_distance), 0.0, edge_distance),
+        np.sqrt((arms**2).sum(axis=-1)).max(axis=1),
+    )
 
 
 def edge_normals(corners: Array) -> Array:
-    """Unit normals (..., m, 2) of the edges that start at the corners; zero for an edge without length."""
+    """Compute the unit normals (..., m, 2) of the edges that start at the corners; zero for an edge without length."""
     edge = np.roll(corners, -1, axis=-2) - corners
     length = np.sqrt((edge**2).sum(axis=-1, keepdims=True))
     return np.stack([edge[..., 1], -edge[..., 0]], axis=-1) / np.where(length > 0.0, length, 1.0)
 
 
-def apart(A: Array, B: Array, gap: Array) -> NDArray[np.bool_]:
-    """Whether a line along an edge of one of two convex polygons (k, m, 2) keeps them more than the gap (k,) apart."""
-    found = np.zeros(len(gap), dtype=bool)
+def are_separate(A: Array, B: Array, gap: Array) -> NDArray[np.bool_]:
+    """Return whether a line along an edge of one of two convex polygons (k, m, 2) separates them by more than the gap
+    (k,).
+    """
+    separated = np.zeros(len(gap), dtype=bool)
     for corners in (A, B):
         normals = np.swapaxes(edge_normals(corners), -1, -2)
         a, b = A @ normals, B @ normals
-        beyond = (a.min(axis=1) > b.max(axis=1) + gap[:, None]) | (b.min(axis=1) > a.max(axis=1) + gap[:, None])
-        found |= beyond.any(axis=1)
-    return found
+        is_gap = (a.min(axis=1) > b.max(axis=1) + gap[:, None]) | (b.min(axis=1) > a.max(axis=1) + gap[:, None])
+        separated |= is_gap.any(axis=1)
+    return separated
 
 
 def lies_in_hole(A: Array, hole: Array, gap: float) -> bool:
-    """Whether the polygon A lies in the hole, nowhere nearer than the gap to its edge."""
+    """Return whether polygon A lies in the hole, with at least the gap to its edge everywhere."""
     normals = edge_normals(hole)
     outward = np.sign(((hole - hole.mean(axis=0)) * normals).sum(axis=-1))[:, None] * normals
     return bool(np.all((A @ outward.T).max(axis=0) <= (hole * outward).sum(axis=-1) - gap))
 
 
-def count_regions(outlines: Sequence[Outline], n: Array, near: float) -> NDArray[np.intp]:
-    """Number of separate regions in which each plane meets the body, (k,); two that touch or are `near` [m] are one."""
-    count = np.sum([outline.met for outline in outlines], axis=0)
-    several = np.flatnonzero(count > 1)
-    if len(several):
-        count[several] = count_joined(outlines, several, n, near)
+def count_regions(outlines: Sequence[Outline], n: Array, tolerance: float) -> NDArray[np.intp]:
+    """Count the separate regions in which each plane meets the body, (k,); those within the tolerance [m] are one."""
+    count = np.sum([outline.is_met for outline in outlines], axis=0)
+    multiple = np.flatnonzero(count > 1)
+    if len(multiple):
+        count[multiple] = count_joined_regions(outlines, multiple, n, tolerance)
     return np.asarray(count)
 
 
-def count_joined(outlines: Sequence[Outline], planes: Planes, n: Array, near: float) -> NDArray[np.intp]:
-    """`count_regions` at some planes: outlines that touch are joined, each set of joined ones labelled by its first."""
-    e, f = perpendicular(n)
-    shadows = [shadow(outline.corners(planes), e, f) for outline in outlines]
-    holes = [None if outline.hole is None else shadow(outline.hole(planes), e, f) for outline in outlines]
+def count_joined_regions(outlines: Sequence[Outline], planes: Planes, n: Array, tolerance: float) -> NDArray[np.intp]:
+    """Count regions at some planes: outlines that touch are joined, and each joined set is labelled by its first."""
+    e, f = perpendicular_pair(n)
+    shadows = [project_polygons(outline.corners(planes), e, f) for outline in outlines]
+    holes = [None if outline.hole is None else project_polygons(outline.hole(planes), e, f) for outline in outlines]
     hollow = [None if outline.hollow is None else outline.hollow[planes] for outline in outlines]
-    met = np.stack([outline.met[planes] for outline in outlines], axis=1)
-    label = np.broadcast_to(np.arange(len(outlines)), met.shape).copy()
+    is_met = np.stack([outline.is_met[planes] for outline in outlines], axis=1)
+    labels = np.broadcast_to(np.arange(len(outlines)), is_met.shape).copy()
 
     def in_hole(i: int, j: int, cut: int, gap: float) -> bool:
         hole, there = holes[j], hollow[j]
@@ -128,19 +140,21 @@ def count_joined(outlines: Sequence[Outline], planes: Planes, n: Array, near: fl
         for j, B in enumerate(shadows[:i]):
             if outlines[i].part is not None and outlines[i].part == outlines[j].part:
                 continue
-            one = met[:, i] & met[:, j] & (label[:, i] != label[:, j])  # what is joined by others needs no look
-            if not one.any():
+            is_joined = (
+                is_met[:, i] & is_met[:, j] & (labels[:, i] != labels[:, j])
+            )  # figures that are joined already need no test
+            if not is_joined.any():
                 continue
             distance = np.sqrt(((A.center - B.center) ** 2).sum(axis=1))
-            gap = tolerances.OUTLINES_APART * (A.outer + B.outer) + near
-            one &= distance <= A.outer + B.outer + gap
-            full = holes[i] is None and holes[j] is None
-            unsure = np.flatnonzero(one & (distance > A.inner + B.inner) if full else one)
-            if len(unsure):
-                one[unsure] = ~apart(A.corners[unsure], B.corners[unsure], gap[unsure])
-            for cut in [] if full else unsure[one[unsure]].tolist():
-                one[cut] = not (in_hole(i, j, cut, gap[cut]) or in_hole(j, i, cut, gap[cut]))
-            joined = label[one]
-            low, high = np.sort(joined[:, [i, j]], axis=1).T[:, :, None]
-            label[one] = np.where(joined == high, low, joined)
-    return np.asarray((met & (label == np.arange(len(outlines)))).sum(axis=1))
+            gap = tolerances.OUTLINES_APART * (A.outer + B.outer) + tolerance
+            is_joined &= distance <= A.outer + B.outer + gap
+            without_holes = holes[i] is None and holes[j] is None
+            undecided = np.flatnonzero(is_joined & (distance > A.inner + B.inner) if without_holes else is_joined)
+            if len(undecided):
+                is_joined[undecided] = ~are_separate(A.corners[undecided], B.corners[undecided], gap[undecided])
+            for cut in [] if without_holes else undecided[is_joined[undecided]].tolist():
+                is_joined[cut] = not (in_hole(i, j, cut, gap[cut]) or in_hole(j, i, cut, gap[cut]))
+            joined_labels = labels[is_joined]
+            low, high = np.sort(joined_labels[:, [i, j]], axis=1).T[:, :, None]
+            labels[is_joined] = np.where(joined_labels == high, low, joined_labels)
+    return np.asarray((is_met & (labels == np.arange(len(outlines)))).sum(axis=1))

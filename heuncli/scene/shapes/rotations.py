@@ -1,4 +1,4 @@
-"""Rotations as 3x3 matrices and unit quaternions (w, x, y, z); R takes components in turned axes to the fixed ones."""
+"""Rotations as 3x3 matrices and unit quaternions (w, x, y, z). R takes components in rotated axes to the fixed axes."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.results.results import Array
 
-SERIES = 1e-4  # [rad] below it the first term of a series is exact and the closed form cancels
+SERIES_THRESHOLD = 1e-4  # [rad] below this the first term of the series is exact, and the closed form loses digits
 
 
-def hat(a: Array) -> Array:
-    """Matrix of the cross product, (3, 3): hat(a) @ b = a x b."""
+def cross_matrix(a: Array) -> Array:
+    """Return the matrix of the cross product, (3, 3): cross_matrix(a) @ b = a x b."""
     x, y, z = a.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
-def about(axis: Array, angle: float) -> Array:
-    """Rotation by `angle` [rad] about the unit vector `axis`, (3, 3)."""
+def rotation_matrix_about(axis: Array, angle: float) -> Array:
+    """Return the rotation by `angle` [rad] about the unit vector `axis`, (3, 3)."""
     s, c = math.sin(angle), math.cos(angle)
     x, y, z = axis.tolist()
-    k, i, o = 1.0 - c, c * 1.0 + s * 0.0, c * 0.0  # in the order in which c 1 + s hat(n) + (1 - c) n n' is added up
+    k, i, o = 1.0 - c, c * 1.0 + s * 0.0, c * 0.0  # summed in the order of c 1 + s cross_matrix(n) + (1 - c) n n'
     return np.array([
         [i + k * (x * x), o + s * -z + k * (x * y), o + s * y + k * (x * z)],
         [o + s * z + k * (y * x), i + k * (y * y), o + s * -x + k * (y * z)],
@@ -30,28 +30,32 @@ def about(axis: Array, angle: float) -> Array:
     ])  # fmt: skip
 
 
-def from_vector(turn: Array) -> Array:
-    """Rotation by the vector axis * angle [rad], (3, 3)."""
+def rotation_from_vector(turn: Array) -> Array:
+    """Return the rotation by the vector axis * angle [rad], (3, 3)."""
     angle = math.sqrt(float(turn @ turn))
-    return about(turn / angle, angle) if angle > 0.0 else np.eye(3)
+    return rotation_matrix_about(turn / angle, angle) if angle > 0.0 else np.eye(3)
 
 
-def to_vector(R: Array) -> Array:
-    """Axis * angle of a rotation, (3,) [rad], angle in [0, pi]."""
-    return vector_of_quaternion(to_quaternion(R))
+def vector_from_rotation(R: Array) -> Array:
+    """Return axis * angle of a rotation, (3,) [rad], angle in [0, pi]."""
+    return vector_from_quaternion(quaternion_from_matrix(R))
 
 
 def inverse_jacobian(phi: Array) -> Array:
-    """d phi = this @ w dt, for exp(phi) turned on by w (fixed axes), (3, 3)."""
+    """Return the matrix (3, 3) in d phi = matrix @ w dt, for a rotation exp(phi) with angular velocity w (fixed
+    axes).
+    """
     angle2 = float(phi @ phi)
     angle = math.sqrt(angle2)
-    factor = 1.0 / 12.0 if angle < SERIES else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
-    V = hat(phi)
+    factor = 1.0 / 12.0 if angle < SERIES_THRESHOLD else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
+    V = cross_matrix(phi)
     return np.eye(3) - 0.5 * V + factor * (V @ V)
 
 
-def to_quaternion(R: Array) -> Array:
-    """Unit quaternion of a rotation, (4,), from its largest component (Shepperd's choice: no cancellation)."""
+def quaternion_from_matrix(R: Array) -> Array:
+    """Return the unit quaternion of a rotation, (4,), from its largest component (Shepperd's choice: no
+    cancellation).
+    """
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()
     t = xx + yy + zz
     squares = (1.0 + t, 1.0 + 2.0 * xx - t, 1.0 + 2.0 * yy - t, 1.0 + 2.0 * zz - t)
@@ -70,14 +74,14 @@ def to_quaternion(R: Array) -> Array:
     return q_ / math.sqrt(float(q_ @ q_))
 
 
-def turn_onto(a: Array, b: Array) -> Array:
-    """Smallest rotation that takes the unit vector a onto the unit vector b, (3, 3).
+def rotation_between(a: Array, b: Array) -> Array:
+    """Return the smallest rotation that takes the unit vector a to the unit vector b, (3, 3).
 
-    Opposite vectors (to PARALLEL): half a turn about the coordinate axis most nearly perpendicular to them.
+    For opposite vectors (to PARALLEL): half a turn about the coordinate axis most nearly perpendicular to them.
     """
-    v = cross(a, b)
+    v = cross_vectors(a, b)
     c = float(a @ b)
-    if c >= 0.0:  # 1 + hat(v) + hat(v)^2 / (1 + c)
+    if c >= 0.0:  # 1 + V + V^2 / (1 + c), V = cross_matrix(v)
         x, y, z = v.tolist()
         f = 1.0 / (1.0 + c)
         return np.array(
@@ -93,33 +97,35 @@ def turn_onto(a: Array, b: Array) -> Array:
         v[int(np.argmin(np.abs(a)))] = 1.0
     e = v - (v @ a) * a
     e = e / math.sqrt(float(e @ e))
-    return turn_onto(-a, b) @ (2.0 * np.outer(e, e) - np.eye(3))
+    return rotation_between(-a, b) @ (2.0 * np.outer(e, e) - np.eye(3))
 
 
-def perpendicular(n: Array) -> tuple[Array, Array]:
-    """Two unit vectors that make (e, f, n) right-handed with the unit vector n; a fixed choice."""
+def perpendicular_pair(n: Array) -> tuple[Array, Array]:
+    """Return two unit vectors that make (e, f, n) right-handed with the unit vector n; a fixed choice."""
     c = n.tolist()
     k = min(range(3), key=lambda i: abs(c[i]))
-    size = math.sqrt(c[(k + 1) % 3] ** 2 + c[(k + 2) % 3] ** 2)  # of the axis k without its part along n, times |n|
+    size = math.sqrt(c[(k + 1) % 3] ** 2 + c[(k + 2) % 3] ** 2)  # length of axis k without its part along n, times |n|
     e = -c[k] * n / size
     e[k] += 1.0 / size
-    return e, cross(n, e)
+    return e, cross_vectors(n, e)
 
 
-def cross(a: Array, b: Array) -> Array:
-    """a x b of two single vectors, (3,); np.cross costs twenty times as much."""
+def cross_vectors(a: Array, b: Array) -> Array:
+    """Return a x b of two single vectors, (3,); np.cross costs twenty times as much."""
     a1, a2, a3 = a.tolist()
     b1, b2, b3 = b.tolist()
     return np.array([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1])
 
 
-def orthonormal(R: Array) -> Array:
-    """The rotation nearest to one that is off by rounding, (3, 3)."""
+def orthonormalize(R: Array) -> Array:
+    """Return the rotation nearest to a matrix that deviates from one by rounding, (3, 3)."""
     return 1.5 * R - 0.5 * (R @ (R.T @ R))
 
 
 def cross_rows(a: Array, b: Array) -> Array:
-    """a x b along the last axes, (..., 3), of arrays that broadcast; to the bit np.cross, at a third of its cost."""
+    """Return a x b along the last axes, (..., 3), of arrays that broadcast; bit-identical to np.cross, at a third of
+    its cost.
+    """
     out = np.empty(np.broadcast(a, b).shape)
     out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
     out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
@@ -127,26 +133,28 @@ def cross_rows(a: Array, b: Array) -> Array:
     return out
 
 
-def about_axis(n: Array, angle: Array) -> Array:
-    """The quaternions (..., 4) of turns by angles (...) about a unit vector."""
+def quaternions_about(n: Array, angle: Array) -> Array:
+    """Return the quaternions (..., 4) of rotations by angles (...) [rad] about a unit vector."""
     half = 0.5 * angle[..., None]
     return np.concatenate([np.cos(half), np.sin(half) * n], axis=-1)
 
 
 def quaternion_from_vector(turn: Array) -> Array:
-    """The unit quaternions (..., 4) of rotations by the vectors axis * angle (..., 3) [rad]."""
+    """Return the unit quaternions (..., 4) of rotations by the vectors axis * angle (..., 3) [rad]."""
     half = 0.5 * np.sqrt(np.sum(turn * turn, axis=-1, keepdims=True))
     return np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * turn], axis=-1)
 
 
-def vector_of_quaternion(q: Array) -> Array:
-    """The vector axis * angle (3,) [rad] of the rotation by a unit quaternion (4,), angle in [0, pi]."""
+def vector_from_quaternion(q: Array) -> Array:
+    """Return the vector axis * angle (3,) [rad] of the rotation by a unit quaternion (4,), angle in [0, pi]."""
     w, v = (float(q[0]), q[1:]) if q[0] >= 0.0 else (-float(q[0]), -q[1:])
     s = math.sqrt(float(v @ v))
     return np.asarray(v * (2.0 * math.atan2(s, w) / s)) if s > 0.0 else np.zeros(3)
 
 
 def quaternion_product(p: Array, q: Array) -> Array:
-    """The turn q, then p: Hamilton's product along the last axes, (..., 4), of arrays that broadcast."""
+    """Return the rotation q followed by p: Hamilton's product along the last axes, (..., 4), of arrays that
+    broadcast.
+    """
     w, v, x, u = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
     return np.concatenate([w * x - np.sum(v * u, axis=-1, keepdims=True), w * u + x * v + cross_rows(v, u)], axis=-1)

@@ -1,7 +1,8 @@
-"""Numbers of a motion over time with every turning point, between the samples, too: what collectives are counted from.
+"""Histories of numbers over a motion, with every turning point between the samples: load collectives are counted from
+them.
 
-A history has the asked instants, those at which the search for extremes looks, both sides of every jump, and where the
-number turns between two of these the turn. It is refused where some of it is not known: what is left out is no cycle.
+A history has the requested instants, the instants of the search for extremes, both sides of every jump, and the turning
+points between them. It is refused if any part of it is unknown, because a missing part would hide cycles.
 """
 
 from __future__ import annotations
@@ -13,108 +14,112 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.results.results import Array, Mask, Results
-from heuncli.results.results_paths import find
-from heuncli.results.results_schema import BLOWS, REPORTS, with_shared
-from heuncli.study.ask.measure import NOT_CLAIMED, NotOneNumber, is_even, report_of, several
+from heuncli.results.results_paths import find_values
+from heuncli.results.results_schema import IMPULSES, REPORTS, add_shared_reports
+from heuncli.study.ask.measure import NOT_CLAIMED, NotOneNumber, find_reports, is_magnitude, make_several_error
 from heuncli.study.ask.study import Study
 from heuncli.study.load_cycles.counted import LoadHistory
 from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, distinct, finite
-from heuncli.study.search.turnings import with_turnings
+from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, replace_non_finite, sort_distinct
+from heuncli.study.search.turnings import add_turning_points
 
 CODE = "no-collective"
-EVENLY = 256  # intervals of a run that are looked into, whatever its steps
-MOST_INSTANTS = 400_000  # of a grid: a hundred thousand steps
+MIN_INTERVALS = 256  # intervals of a run that are sampled, whatever its steps
+MAX_INSTANTS = 400_000  # of a grid: a hundred thousand steps
 
 
-def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str]) -> list[LoadHistory]:
-    """The numbers at some paths over the motion; errors, units: of each, SI.
+def make_histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str]) -> list[LoadHistory]:
+    """Return the histories of the numbers at some paths over the motion; errors, units: of each path, SI.
 
-    A vector counts by its magnitude. Raises NotOneNumber for what is no one number over a motion, SpecError
-    [unknown-path], SolveError where some of it is open, not known, or beyond the horizon, LimitError where it
+    A vector counts by its magnitude. Raises NotOneNumber where a path is no single number over a motion, SpecError
+    [unknown-path], SolveError where some of it is indeterminate, unknown, or beyond the horizon, LimitError where it
     turns too often.
     """
     paths = list(errors)
     for path in paths:
         require_history(study, path)
     require_claimed(study, paths)
-    even = np.array([is_even(study.numbers(path)) for path in paths])
-    reports = [report_of(path) for path in paths]
-    wanted = frozenset[str]().union(*(frozenset(REPORTS) if report is None else report for report in reports))
+    is_square = np.array([is_magnitude(study.find_numbers(path)) for path in paths])
+    reports = [find_reports(path) for path in paths]
+    needed_reports = frozenset[str]().union(*(frozenset(REPORTS) if report is None else report for report in reports))
     error = np.array([errors[path] for path in paths])
-    searched = ColumnSearch(lambda results: columns(study, results, paths, even), [], error, even)
-    sampled = StudyColumns(study, searched, with_shared(wanted), None)
-    grid, enough = study.close_times(MOST_INSTANTS)
-    grid = distinct(np.concatenate([grid, np.linspace(grid[0], grid[-1], EVENLY + 1)]))
-    rows = sampled.columns(grid) if enough else np.zeros((len(grid), len(paths)))
-    largest = finite(np.abs(rows), 0.0).max(axis=0)
-    error = np.maximum(error, tolerances.CONSTANT * np.where(even, np.sqrt(largest), largest))
-    times, rows, complete = with_turnings(sampled.columns, grid, rows, error, even)
-    require_known(times, rows, paths, frozenset(sampled.unknown))
-    if not (enough and complete):
-        message = f"{', '.join(paths)}: the motion turns too often: more than {MOST_INSTANTS} instants to look at"
+    search = ColumnSearch(lambda results: read_columns(study, results, paths, is_square), [], error, is_square)
+    study_columns = StudyColumns(study, search, add_shared_reports(needed_reports), None)
+    grid, is_close_enough = study.find_close_times(MAX_INSTANTS)
+    grid = sort_distinct(np.concatenate([grid, np.linspace(grid[0], grid[-1], MIN_INTERVALS + 1)]))
+    rows = study_columns.sample(grid) if is_close_enough else np.zeros((len(grid), len(paths)))
+    largest = replace_non_finite(np.abs(rows), 0.0).max(axis=0)
+    error = np.maximum(error, tolerances.CONSTANT * np.where(is_square, np.sqrt(largest), largest))
+    times, rows, complete = add_turning_points(study_columns.sample, grid, rows, error, is_square)
+    require_known(times, rows, paths, frozenset(study_columns.unknown))
+    if not (is_close_enough and complete):
+        message = f"{', '.join(paths)}: the motion turns too often: more than {MAX_INSTANTS} instants to look at"
         raise LimitError(Problem("too-many-turns", message, hint="a shorter motion; or one period, and --repeat"))
-    values = np.where(even, np.sqrt(np.abs(rows)), rows)
-    whole = (1.0 + GOOD_ENOUGH) * error  # a turn is found to within a part of the error
+    values = np.where(is_square, np.sqrt(np.abs(rows)), rows)
+    total_error = (1.0 + GOOD_ENOUGH) * error  # a turning point is found to within a part of the error
     return [
-        LoadHistory(path, units[path], times, values[:, k], float(whole[k]), squared, study.numbers(path).of_vectors)
-        for k, (path, squared) in enumerate(zip(paths, even.tolist(), strict=True))
+        LoadHistory(
+            path, units[path], times, values[:, k], float(total_error[k]), squared, study.find_numbers(path).is_vector
+        )
+        for k, (path, squared) in enumerate(zip(paths, is_square.tolist(), strict=True))
     ]
 
 
-def columns(study: Study, results: Results, paths: Sequence[str], even: Mask) -> Array:
-    """The numbers at paths, (n_t, n); of vectors and magnitudes the squares, which are smooth where these are zero."""
+def read_columns(study: Study, results: Results, paths: Sequence[str], is_square: Mask) -> Array:
+    """Return the numbers at paths, (n_t, n); of vectors and magnitudes the squares, which are smooth where these are
+    zero.
+    """
     rows = []
-    for path, squared in zip(paths, even.tolist(), strict=True):
-        there = study.numbers(path) if results is study.results else find(results, path)
-        values = there.values.reshape(len(there.values), -1)
+    for path, squared in zip(paths, is_square.tolist(), strict=True):
+        numbers = study.find_numbers(path) if results is study.results else find_values(results, path)
+        values = numbers.values.reshape(len(numbers.values), -1)
         rows.append(np.einsum("nk,nk->n", values, values) if squared else values[:, 0])
     return np.stack(rows, axis=1)
 
 
 def require_history(study: Study, path: str) -> None:
-    """Raise NotOneNumber for what is no one number or vector over a motion."""
-    numbers = study.numbers(path)
-    if study.of_one_instant:
+    """Raise NotOneNumber for a path that is no single number or vector over a motion."""
+    numbers = study.find_numbers(path)
+    if study.has_one_instant:
         message = f"{path}: a collective is counted over a motion, and this analysis is none"
         raise NotOneNumber(message, "give analysis.duration: --set analysis.duration=2")
-    if numbers.keys[:1] == (BLOWS,):
+    if numbers.keys[:1] == (IMPULSES,):
         raise NotOneNumber(
             f"{path} is of one blow: an impulse has no course in time", "a path of the motion: joints.NAME.force"
         )
-    if not numbers.timed:
+    if not numbers.is_timed:
         raise NotOneNumber(f"{path} has no instants to be counted over", f"such as heun run SPEC --measure {path}")
-    if numbers.axes and not (numbers.of_vectors and len(numbers.axes) == 1):
-        raise several(path, numbers)
+    if numbers.axes and not (numbers.is_vector and len(numbers.axes) == 1):
+        raise make_several_error(path, numbers)
 
 
 def require_claimed(study: Study, paths: Sequence[str]) -> None:
-    """Raise SolveError for a motion that goes on beyond its horizon: what comes there is not known."""
+    """Raise SolveError for a motion that continues beyond its horizon, where no number is claimed."""
     horizon = study.results.horizon
     if horizon is not None and study.results.time[-1] >= horizon:
         end = f"the motion goes to t = {study.results.time[-1]:.6g} s"
         message = f"{', '.join(paths)}: {NOT_CLAIMED.format(horizon)}, and {end}"
         hint = f"a motion that ends before it: --set analysis.duration={0.99 * horizon:.3g}; or a smaller --tolerance"
-        raise SolveError(Problem(CODE, message, hint=hint, about="analysis"))
+        raise SolveError(Problem(CODE, message, hint=hint, entry_path="analysis"))
 
 
 def require_known(times: Array, rows: Array, paths: Sequence[str], unknown: frozenset[float]) -> None:
-    """Raise SolveError for each path at which a number is open at some instant, or beside a singular pose."""
+    """Raise SolveError for each path whose number is indeterminate at some instant, or too close to a singular pose."""
     problems = []
     for k, path in enumerate(paths):
         gaps = np.isnan(rows[:, k])
         if gaps.any():
-            at = float(times[int(gaps.argmax())])
-            if at in unknown:
+            time = float(times[int(gaps.argmax())])
+            if time in unknown:
                 why, hint = (
-                    f"is not known at t = {at:.6g} s, beside a singular pose",
+                    f"is not known at t = {time:.6g} s, beside a singular pose",
                     "heun probe tells where such poses are",
                 )
             else:
                 why, hint = (
-                    f"is open at t = {at:.6g} s: redundant supports leave it open",
+                    f"is open at t = {time:.6g} s: redundant supports leave it open",
                     "--least-norm, or stiffness, chooses a split",
                 )
-            problems.append(Problem(CODE, f"{path} {why}", hint=hint, about=path))
+            problems.append(Problem(CODE, f"{path} {why}", hint=hint, entry_path=path))
     if problems:
         raise SolveError(*problems)

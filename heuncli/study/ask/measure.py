@@ -1,4 +1,4 @@
-"""One number of a run, such as the largest of sections.middle.M1 or energy.kinetic at 0.5 s."""
+"""Measure one number of a run, such as the largest of sections.middle.M1 or energy.kinetic at 0.5 s."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results import results_schema
-from heuncli.results.results import Array, Place, Results
-from heuncli.results.results_paths import Numbers, find
+from heuncli.results.results import Array, CutPosition, Results
+from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import (
-    BLOWS,
     CUT,
     EVENTS,
+    IMPULSES,
     MAGNITUDES,
     SHARES,
     SPACE,
-    beside_magnitudes,
-    kind_of_error,
-    quantity,
-    spelled_first,
+    error_kind_of_path,
+    find_quantity,
+    first_element_suffix,
+    independent_axes,
 )  # fmt: skip
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import BOTH, ColumnSearch, no_columns
+from heuncli.study.search.extremes import BOTH_SIDES, ColumnSearch, make_no_columns
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
 
 
 class NotOneNumber(HeunError):
-    """What is to be measured is no single number of this run."""
+    """The path to be measured is no single number of this run."""
 
     exit_code = 2
 
@@ -43,197 +43,213 @@ class NotOneNumber(HeunError):
 
 
 class NotInThisRun(NotOneNumber):
-    """What is to be measured does not happen in this run; in another one of the scene it may."""
+    """The event or instant to be measured does not occur in this run; in another run of the scene it may."""
 
 
 class MeasureRequest(NamedTuple):
-    """What is measured; how is empty for a number that has no instants, abs for the largest magnitude."""
+    """A number to measure.
+
+    how: the reducer; empty for a number that has no instants, abs for the largest magnitude
+    time [s]: of the reducer `at`
+    """
 
     how: Literal["", "max", "min", "abs", "first", "final", "at"]
     path: str
     at: float | None = None
 
 
-def report_of(path: str) -> frozenset[str] | None:
-    """Which report a path needs; None where its first word does not say."""
+def find_reports(path: str) -> frozenset[str] | None:
+    """Return the reports that a path needs; None if its first word does not say."""
     words = path.split(".")
-    report = results_schema.report_of(words[0])
+    report = results_schema.find_report(words[0])
     return frozenset({report, SHARES} if results_schema.names_shares(words) else {report}) if report else None
 
 
-def value(asked: MeasureRequest, study: Study) -> Peak:
-    """The number, its instant and place if it has them; nan is open. Raises NotOneNumber."""
-    results, path = study.results, asked.path
-    there = study.numbers(path)
-    if there.keys[0] == BLOWS:
-        return struck(asked, there, study)
-    if there.keys[0] == EVENTS and asked.how:
-        return of_event(asked, there)
-    if not there.timed:
-        if asked.how:
+def measure_value(request: MeasureRequest, study: Study) -> Peak:
+    """Measure a number: its value, its instant and place if it has them; nan is indeterminate. Raises NotOneNumber."""
+    results, path = study.results, request.path
+    numbers = study.find_numbers(path)
+    if numbers.keys[0] == IMPULSES:
+        return measure_impulse(request, numbers, study)
+    if numbers.keys[0] == EVENTS and request.how:
+        return measure_event(request, numbers)
+    if not numbers.is_timed:
+        if request.how:
             raise NotOneNumber(f"{path} has no instants", f"give the path alone: {path}")
-        if there.values.size != 1:
-            raise several(path, there)
-        return Peak(float(there.values.reshape(())), None)
-    if asked.how in ("max", "min", "abs"):
-        return of_all(peak(study, path, asked.how))
-    if asked.how == "at":
-        at = instant_of(asked, results.time)
-        there = find(study.resample(np.array([at])), path)
-        return Peak(one_number(path, there, 0), at)
-    if asked.how or len(results.time) == 1:
-        k = -1 if asked.how == "final" else 0
-        return Peak(one_number(path, there, k), float(results.time[k]))
+        if numbers.values.size != 1:
+            raise make_several_error(path, numbers)
+        return Peak(float(numbers.values.reshape(())), None)
+    if request.how in ("max", "min", "abs"):
+        return mark_indeterminate(find_peak(study, path, request.how))
+    if request.how == "at":
+        time = require_instant(request, results.time)
+        numbers = find_values(study.resample(np.array([time])), path)
+        return Peak(read_one_number(path, numbers, 0), time)
+    if request.how or len(results.time) == 1:
+        k = -1 if request.how == "final" else 0
+        return Peak(read_one_number(path, numbers, k), float(results.time[k]))
     message = f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T"
     raise NotOneNumber(message, f"such as 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
 
 
-def lost_from(asked: MeasureRequest, study: Study) -> float | None:
-    """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
+def find_exceeded_horizon(request: MeasureRequest, study: Study) -> float | None:
+    """Return the horizon if the requested number lies, or may lie, beyond it; otherwise None."""
     results = study.results
-    horizon, there = results.horizon, study.numbers(asked.path)
-    if horizon is not None and there.keys[0] == BLOWS:
-        return float(horizon) if time_of_blow(results, there) >= horizon else None
-    if there.keys[0] == EVENTS:  # of a run that goes on beyond its horizon more may follow
-        certain = horizon is None or not there.axes or (asked.how == "first" and there.values.size)
-        return None if certain else horizon
-    if horizon is None or asked.path.split(".")[0] == "time" or not (there.timed or there.instant is not None):
+    horizon, numbers = results.horizon, study.find_numbers(request.path)
+    if horizon is not None and numbers.keys[0] == IMPULSES:
+        return float(horizon) if find_impulse_time(results, numbers) >= horizon else None
+    if numbers.keys[0] == EVENTS:  # if the run continues beyond its horizon, more events may follow
+        is_certain = horizon is None or not numbers.axes or (request.how == "first" and numbers.values.size)
+        return None if is_certain else horizon
+    if horizon is None or request.path.split(".")[0] == "time" or not (numbers.is_timed or numbers.instant is not None):
         return None
-    last = results.time[0 if asked.how == "first" else -1]
-    if there.instant is not None:
-        last = results.time[there.instant]
-    elif asked.how == "at":
-        last = instant_of(asked, results.time)
+    last = results.time[0 if request.how == "first" else -1]
+    if numbers.instant is not None:
+        last = results.time[numbers.instant]
+    elif request.how == "at":
+        last = require_instant(request, results.time)
     return float(horizon) if last >= horizon else None
 
 
-def of_event(asked: MeasureRequest, there: Numbers) -> Peak:
-    """The first or last of what is told of an event."""
-    if not there.axes:
-        raise NotOneNumber(f"{asked.path} has no instants", f"give the path alone: {asked.path}")
-    if asked.how not in ("first", "final"):
-        hint = f"'first {asked.path}', 'final {asked.path}', or its place: {asked.path}.0"
-        raise NotOneNumber(f"{asked.path} is told of an event, once for each change", hint)
-    if not there.values.size:
-        raise NotInThisRun(f"{asked.path}: the event does not happen in this run", "run longer, or set another limit")
-    return Peak(float(there.values[0 if asked.how == "first" else -1]), None)
+def measure_event(request: MeasureRequest, numbers: PathValues) -> Peak:
+    """Return the first or last value of an event."""
+    if not numbers.axes:
+        raise NotOneNumber(f"{request.path} has no instants", f"give the path alone: {request.path}")
+    if request.how not in ("first", "final"):
+        hint = f"'first {request.path}', 'final {request.path}', or its place: {request.path}.0"
+        raise NotOneNumber(f"{request.path} is told of an event, once for each change", hint)
+    if not numbers.values.size:
+        raise NotInThisRun(f"{request.path}: the event does not happen in this run", "run longer, or set another limit")
+    return Peak(float(numbers.values[0 if request.how == "first" else -1]), None)
 
 
-def struck(asked: MeasureRequest, there: Numbers, study: Study) -> Peak:
-    """A number of one blow, with its instant; of a run of cuts the largest. A vector counts by its magnitude."""
-    path, at = asked.path, time_of_blow(study.results, there)
-    if asked.how in ("first", "final", "at"):
+def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
+    """Return a number of one impulse, with its instant; along a run of cuts the extreme. A vector counts by its
+    magnitude.
+    """
+    path, time = request.path, find_impulse_time(study.results, numbers)
+    if request.how in ("first", "final", "at"):
         raise NotOneNumber(f"{path} has one instant, that of the blow", f"give the path alone, or 'max abs {path}'")
-    require_extreme(path, there)
-    if CUT in there.axes and asked.how:
-        return struck_along(asked, there, study)
-    values = np.sqrt(np.sum(np.square(there.values), axis=-1)) if there.of_vectors else there.values
-    if values.size > 1 and not asked.how:
-        raise several(path, there)
-    result = float(np.abs(values).max() if asked.how == "abs" else values.min() if asked.how == "min" else values.max())
-    return Peak(result + 0.0, at)
+    require_extreme(path, numbers)
+    if CUT in numbers.axes and request.how:
+        return measure_impulse_along_cuts(request, numbers, study)
+    values = np.sqrt(np.sum(np.square(numbers.values), axis=-1)) if numbers.is_vector else numbers.values
+    if values.size > 1 and not request.how:
+        raise make_several_error(path, numbers)
+    result = float(
+        np.abs(values).max() if request.how == "abs" else values.min() if request.how == "min" else values.max()
+    )
+    return Peak(result + 0.0, time)
 
 
-def struck_along(asked: MeasureRequest, there: Numbers, study: Study) -> Peak:
-    """The extreme of one blow along a run of cuts, over its whole stretch."""
-    from heuncli.study.search.stretches import at_one_instant, stretch_named  # where there are runs of cuts
+def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
+    """Return the extreme of one impulse along a run of cuts, over its whole length."""
+    from heuncli.study.search.stretches import find_stretch, find_summits  # where there are runs of cuts
 
-    setup = study.stretched(False)
-    whole = replace(study.results, impulses=study.impulses(setup))
-    name = there.keys[3]
-    values = find(whole, asked.path).values
-    if there.of_vectors:
+    setup = study.with_whole_cuts(False)
+    whole = replace(study.results, impulses=study.make_impulse_blocks(setup))
+    name = numbers.keys[3]
+    values = find_values(whole, request.path).values
+    if numbers.is_vector:
         values = np.sum(np.square(values), axis=-1)
-    nodes = find(whole, f"{BLOWS}.{there.keys[1]}.sections.{name}.s").values
-    low, high = at_one_instant(stretch_named(setup, name), nodes, values)
-    lower = asked.how == "min" or (asked.how == "abs" and abs(low.value) > abs(high.value))
+    nodes = find_values(whole, f"{IMPULSES}.{numbers.keys[1]}.sections.{name}.s").values
+    low, high = find_summits(find_stretch(setup, name), nodes, values)
+    lower = request.how == "min" or (request.how == "abs" and abs(low.value) > abs(high.value))
     value, place = low if lower else high
-    value = float(np.sqrt(np.abs(value))) if there.of_vectors else abs(value) if asked.how == "abs" else value
-    return Peak(value, time_of_blow(study.results, there), place)
+    value = float(np.sqrt(np.abs(value))) if numbers.is_vector else abs(value) if request.how == "abs" else value
+    return Peak(value, find_impulse_time(study.results, numbers), place)
 
 
-def time_of_blow(results: Results, there: Numbers) -> float:
-    """When the blow was whose number it is [s]."""
-    return float(results.impulses[int(there.keys[1])]["time"])
+def find_impulse_time(results: Results, numbers: PathValues) -> float:
+    """Return the time of the impulse whose number it is [s]."""
+    return float(results.impulses[int(numbers.keys[1])]["time"])
 
 
 class Peak(NamedTuple):
-    """An extreme with its instant, and in a run of cuts its place; open_at: an instant at which it is open, if any."""
+    """An extreme with its time, and along a run of cuts its place; open_at: an instant at which the number is
+    indeterminate, if any.
+    """
 
     value: float
     at: float | None
-    place: Place | None = None
+    place: CutPosition | None = None
     open_at: float | None = None
 
 
-SIDES = {"min": (-1.0,), "max": (1.0,), "abs": BOTH}
+SIDES = {"min": (-1.0,), "max": (1.0,), "abs": BOTH_SIDES}
 
 
-def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
-    """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too; where, when.
+def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
+    """Find the highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too,
+    with its time and place.
 
-    A vector counts by its magnitude, a run of cuts over its whole stretch. times: of these instants alone.
+    A vector counts by its magnitude, a run of cuts over its whole length. times: restricts the search to these
+    instants.
     """
-    asked = study.numbers(path)
-    if not asked.timed:
+    asked = study.find_numbers(path)
+    if not asked.is_timed:
         raise NotOneNumber(f"{path} has no instants, of which one could be the largest", f"give the path alone: {path}")
     require_extreme(path, asked)
-    even = is_even(asked)
+    even = is_magnitude(asked)
     open_at: list[float] = []
 
     def columns(results: Results) -> Array:
-        values = (asked if results is study.results else find(results, path)).values
+        values = (asked if results is study.results else find_values(results, path)).values
         is_open = np.isnan(values)
         if is_open.any():
             left = is_open.reshape(len(values), -1).any(axis=1)
             open_at.extend(results.time[left & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
         # the square of a magnitude is smooth where the magnitude is zero
-        if asked.of_vectors:
+        if asked.is_vector:
             values = np.einsum("...k,...k->...", values, values)
         elif even:
             values = values * values
         return values.reshape(len(values), -1)
 
-    if study.of_one_instant and CUT not in asked.axes:
+    if study.has_one_instant and CUT not in asked.axes:
         at = float((study.results.time if times is None else times)[0])
-        low, high = lowest_and_highest(columns(study.results)[0], at)
+        low, high = find_lowest_and_highest(columns(study.results)[0], at)
     else:
-        low, high = searched(study, path, columns, SIDES["max" if even and how == "abs" else how], times)
-    lower = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
-    found = low if lower else high
+        low, high = search_peaks(study, path, columns, SIDES["max" if even and how == "abs" else how], times)
+    is_low = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
+    found = low if is_low else high
     result = (abs(found.value) if how == "abs" else found.value) + 0.0
     value = float(np.sqrt(np.abs(result))) if even else result
     return found._replace(value=value, open_at=float(min(open_at)) if open_at else None)
 
 
-def is_even(asked: Numbers) -> bool:
-    """Whether the squares of its numbers are searched: those of magnitudes, which are smooth where these are zero."""
-    return asked.of_vectors or asked.keys[-1] in MAGNITUDES
+def is_magnitude(numbers: PathValues) -> bool:
+    """Whether the numbers are magnitudes: their squares are searched, which are smooth where the magnitudes are
+    zero.
+    """
+    return numbers.is_vector or numbers.keys[-1] in MAGNITUDES
 
 
-def lowest_and_highest(values: Array, at: float) -> tuple[Peak, Peak]:
-    """The lowest and the highest of some values (n,) at an instant; nan where all are open."""
+def find_lowest_and_highest(values: Array, time: float) -> tuple[Peak, Peak]:
+    """Return the lowest and the highest of some values (n,) at an instant; nan if all are indeterminate."""
     known = values[~np.isnan(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
-    return Peak(low, at), Peak(high, at)
+    return Peak(low, time), Peak(high, time)
 
 
-def searched(
+def search_peaks(
     study: Study, path: str, columns: Callable[[Results], Array], sides: tuple[float, ...], times: Array | None
 ) -> tuple[Peak, Peak]:
-    """The lowest and the highest of a motion, between the samples too; along a run of cuts with its place."""
-    asked = study.numbers(path)
-    even = is_even(asked)
-    error = np.nan_to_num(np.array([stated_error(study, asked.keys)]), nan=np.nan, posinf=np.nan)
+    """Search the lowest and the highest value of a motion, between the samples too; along a run of cuts with its
+    place.
+    """
+    numbers = study.find_numbers(path)
+    is_square = is_magnitude(numbers)
+    error = np.nan_to_num(np.array([stated_error(study, numbers.keys)]), nan=np.nan, posinf=np.nan)
     n = columns(study.results).shape[1]
-    search = ColumnSearch(columns, [list(range(n))], error, np.array([even]), sides=sides)
-    if CUT in asked.axes:
-        name = asked.keys[1]
+    search = ColumnSearch(columns, [list(range(n))], error, np.array([is_square]), sides=sides)
+    if CUT in numbers.axes:
+        name = numbers.keys[1]
         search = search._replace(
-            columns=no_columns, groups=[], along=lambda results: [(name, columns(results))], bent=asked.bent,
-            sides=BOTH,
+            columns=make_no_columns, groups=[], cut_columns=lambda results: [(name, columns(results))], bent=numbers.is_nonlinear,
+            sides=BOTH_SIDES,
         )  # fmt: skip
-    bounds = study.extremes(search, report_of(path), times=times)
+    bounds = study.search_extremes(search, find_reports(path), times=times)
     lowest, highest = bounds.places[0] if bounds.places else (None, None)
     return (
         Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest),
@@ -241,53 +257,55 @@ def searched(
     )
 
 
-def of_all(found: Peak) -> Peak:
-    """The extreme of a whole run: open where the quantity is open at some instant, for there it may be any number."""
-    return found if found.open_at is None else found._replace(value=math.nan, at=found.open_at, place=None)
+def mark_indeterminate(extreme: Peak) -> Peak:
+    """Return the extreme of a whole run: nan if the quantity is indeterminate at some instant, where it may have any
+    value.
+    """
+    return extreme if extreme.open_at is None else extreme._replace(value=math.nan, time=extreme.open_at, place=None)
 
 
 def stated_error(study: Study, keys: Sequence[str]) -> float:
-    """The error of the quantity under some keys, as the tables state it; nan where they state none.
+    """Return the error of the quantity under some keys, as the tables state it; nan where they state none.
 
-    Where what turns has another unit than what slides, the less of the two.
+    If angles and travels have different units, it is the smaller of the two errors.
     """
-    row, of = quantity(keys), study.magnitudes
+    row, magnitudes = find_quantity(keys), study.magnitudes
     if row is None:
         return np.nan
-    kind, lost = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), of.lost()
-    own = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in of.errors else kind
-    known = [(of.errors.get((own, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
+    kind, lost = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1]), magnitudes.rounding_errors()
+    error_kind = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in magnitudes.errors else kind
+    known = [(magnitudes.errors.get((error_kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
     return min(map(max, known)) or np.nan
 
 
-def one_number(path: str, there: Numbers, k: int) -> float:
-    """The number at an instant, or the magnitude of the vector. Raises NotOneNumber."""
-    values = there.values[k]
+def read_one_number(path: str, numbers: PathValues, k: int) -> float:
+    """Return the number at instant k, or the magnitude of the vector. Raises NotOneNumber."""
+    values = numbers.values[k]
     if values.size == 1:
         return float(values.reshape(()))
-    if there.axes == (SPACE,):
+    if numbers.axes == (SPACE,):
         return float(np.linalg.norm(values))
-    raise several(path, there)
+    raise make_several_error(path, numbers)
 
 
-def require_extreme(path: str, there: Numbers) -> None:
-    """Raise NotOneNumber for lists of which no one number counts, as of a vector its magnitude does."""
-    if beside_magnitudes(there.axes):
-        raise several(path, there)
+def require_extreme(path: str, numbers: PathValues) -> None:
+    """Raise NotOneNumber for lists that no single number represents, as the magnitude represents a vector."""
+    if independent_axes(numbers.axes):
+        raise make_several_error(path, numbers)
 
 
-def several(path: str, there: Numbers) -> NotOneNumber:
-    """The error of a path that leads to several numbers."""
-    count = int(np.prod(there.values.shape[1 if there.timed else 0 :]))
-    hint = f"name one of them: {path}{spelled_first(there.axes)}" if count else "there is none in this run"
+def make_several_error(path: str, numbers: PathValues) -> NotOneNumber:
+    """Return the error of a path that leads to several numbers."""
+    count = int(np.prod(numbers.values.shape[1 if numbers.is_timed else 0 :]))
+    hint = f"name one of them: {path}{first_element_suffix(numbers.axes)}" if count else "there is none in this run"
     return NotOneNumber(f"{path} is {count} numbers: say which", hint)
 
 
-def instant_of(asked: MeasureRequest, times: Array) -> float:
-    """The instant asked for, if the run has it. Raises NotOneNumber."""
-    at = float(asked.at or 0.0)
+def require_instant(request: MeasureRequest, times: Array) -> float:
+    """Return the requested instant if it lies within the run. Raises NotInThisRun."""
+    time = float(request.time or 0.0)
     slack = tolerances.SAME_INSTANT * float(np.ptp(times))
-    if not times[0] - slack <= at <= times[-1] + slack:
-        hint = f"such as 'at {times[-1]:.6g} {asked.path}'"
-        raise NotInThisRun(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
-    return float(np.clip(at, times[0], times[-1]))
+    if not times[0] - slack <= time <= times[-1] + slack:
+        hint = f"such as 'at {times[-1]:.6g} {request.path}'"
+        raise NotInThisRun(f"{request.path} at {time:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
+    return float(np.clip(time, times[0], times[-1]))

@@ -1,4 +1,4 @@
-"""Numbers that stand where smoothed friction is not yet at its value, of a solved scene."""
+"""Find numbers of a solved scene at instants at which smoothed friction has not reached its full value."""
 
 from __future__ import annotations
 
@@ -10,30 +10,30 @@ import numpy as np
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.smoothed_friction import (
     PartialFriction,
+    depends_on_friction,
     describe_partial,
-    hangs_on_friction,
     has_smoothed_friction,
-    partial_friction_at,
+    list_partial_friction,
 )
 
 NONE: frozenset[str] = frozenset()
 
 
-def partial_friction(study: Study, times: Iterable[float]) -> dict[float, list[PartialFriction]]:
-    """The friction that is not at its value, by instant; of those instants alone at which there is some."""
+def find_partial_friction(study: Study, times: Iterable[float]) -> dict[float, list[PartialFriction]]:
+    """Return the friction that is below its full value, by instant; instants without any are left out."""
     mechanism = study.setup.scene.mechanism
     instants = np.array(sorted({t for t in times if math.isfinite(t)}))
     if not len(instants) or not has_smoothed_friction(mechanism) or study.setup.rest is not None:
         return {}
-    if study.of_one_instant:
+    if study.has_one_instant:
         instants = study.results.time
-    return partial_friction_at(mechanism, study.recovery_at(instants, NONE).recovered)
+    return list_partial_friction(mechanism, study.find_recovery(instants, NONE).solutions)
 
 
-def friction_warning(study: Study, path: str, at: float | None) -> str | None:
-    """What to say of a number at an instant where friction that it hangs on is not at its value; None: nothing."""
-    if at is None or not hangs_on_friction(path):
+def make_friction_warning(study: Study, path: str, time: float | None) -> str | None:
+    """Return the warning on a number that depends on friction below its full value at an instant, or None."""
+    if time is None or not depends_on_friction(path):
         return None
-    found = partial_friction(study, [at])
+    found = find_partial_friction(study, [time])
     partial = next(iter(found.values()), None)
-    return f"{path} at t = {at:.6g} s: {describe_partial(partial)}" if partial else None
+    return f"{path} at t = {time:.6g} s: {describe_partial(partial)}" if partial else None

@@ -1,4 +1,4 @@
-"""A solved scene, of which more can be asked: its results at other instants, their extremes between the samples."""
+"""A solved scene that answers further queries: its results at other instants, their extremes between the samples."""
 
 from __future__ import annotations
 
@@ -10,112 +10,123 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.base.records import record
-from heuncli.results.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
-from heuncli.results.results_paths import Numbers, find
-from heuncli.results.results_schema import REPORTS, SHARED, SHARES, with_shared
+from heuncli.results.results import Accuracy, Array, Block, CutPosition, Extremes, Magnitudes, Results
+from heuncli.results.results_paths import PathValues, find_values
+from heuncli.results.results_schema import REPORTS, SHARED_BLOCKS, SHARES, add_shared_reports
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.finiteness import require_finite
 from heuncli.study.compose.recovery import Recovery, recover
-from heuncli.study.compose.results import compose, known_blocks
-from heuncli.study.compose.warnings import left_out
+from heuncli.study.compose.results import compose, make_known_blocks
+from heuncli.study.compose.warnings import warn_left_out
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.study.search.instants import MOST_SEARCHED as MOST_INSTANTS
-from heuncli.study.search.instants import search_times
+from heuncli.study.search.instants import MAX_INSTANTS as MOST_INSTANTS
+from heuncli.study.search.instants import choose_search_times
 from heuncli.study.solve.history import History, resample
 
-if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
-    from heuncli.motion.integration.check.changes import Changes
+if TYPE_CHECKING:  # loaded only if there are conditions or impulses
+    from heuncli.motion.integration.check.changes import ConditionChanges
     from heuncli.study.compose.impulses import Impulses
-    from heuncli.study.compose.near_singular import TellsOpen
+    from heuncli.study.compose.near_singular import OpenMarker
 
-MOST_SEARCHED = 5_000_000  # numbers to look at for the extremes of a whole report, a second; a measure has no bound
+MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NONE: frozenset[str] = frozenset()
-CHUNK = 200_000  # body-instants whose answers are kept at a time
+CHUNK = 200_000  # body-instants whose solutions are in memory at a time
 TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
 CUT_SHORT = "the search for extremes was ended before all was looked at that may lie higher"
 
 
 @record
 class Study:
-    """A solved scene: `results` at the asked instants, `resample` for any others of the same run.
+    """A solved scene: `results` at the requested instants, `resample` for any other instants of the same run.
 
-    Impure: keeps what its answers at other instants are warned of.
+    Impure: collects the warnings of later queries.
     """
 
     spec: Spec
     options: Options
     setup: Setup
     history: History
-    composed: Recovery | None  # what the results were composed of; None where that went part by part
+    composed: Recovery | None  # the results were composed of it; None if they were composed part by part
     results: Results
     struck: Impulses | None = None
-    changes: Mapping[str, Changes] = MappingProxyType({})
+    changes: Mapping[str, ConditionChanges] = MappingProxyType({})
 
     @cached_property
     def recovery(self) -> Recovery:
-        """What follows from the answers at the asked instants."""
-        return self.composed or recover(self.setup, self.history.recovered, self.options.least_norm)
+        """The loads and motions recovered from the kernel's solutions at the requested instants."""
+        return self.result_recovery or recover(self.setup, self.history.solutions, self.options.least_norm)
 
     @property
     def magnitudes(self) -> Magnitudes:
-        """What the numbers at the asked instants, and those of blows, are summed from, and their errors."""
-        own = self.recovery.magnitudes
-        errors = {**self.history.errors, **self.results.errors_of_places(own.size)}
-        if self.struck is None:
-            return own._replace(errors=errors)
-        return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)
+        """The sizes of the terms that the numbers at the requested instants and those of impulses are summed from, and
+        their errors.
+        """
+        magnitudes = self.recovery.magnitudes
+        errors = {**self.history.errors, **self.results.position_errors(magnitudes.size)}
+        if self.impulse_results is None:
+            return magnitudes._replace(errors=errors)
+        return magnitudes._replace(
+            by_unit={**self.impulse_results.magnitudes_by_unit, **magnitudes.by_unit},
+            errors=errors | self.impulse_results.errors,
+        )
 
     @property
     def load_magnitudes(self) -> Magnitudes:
-        """As much of them as errors of loads hang on."""
-        if self.struck is not None:
+        """The part of the magnitudes that errors of loads depend on."""
+        if self.impulse_results is not None:
             return self.magnitudes
         return self.recovery.load_magnitudes._replace(errors=dict(self.history.errors))
 
     @property
-    def of_one_instant(self) -> bool:
-        """Whether there is no motion: a state, or a blow."""
-        return self.history.checked is None
+    def has_one_instant(self) -> bool:
+        """Whether there is no motion: a state, or an impulse."""
+        return self.history.checked_run is None
 
-    def numbers(self, path: str) -> Numbers:
-        """The numbers at a path of the results, found once. Raises SpecError [unknown-path]."""
+    def find_numbers(self, path: str) -> PathValues:
+        """Return the numbers at a path of the results, cached. Raises SpecError [unknown-path]."""
         found = self._numbers.get(path)
         if found is None:
-            found = self._numbers[path] = find(self.results, path)
+            found = self._numbers[path] = find_values(self.results, path)
         return found
 
     @cached_property
-    def _numbers(self) -> dict[str, Numbers]:
+    def _numbers(self) -> dict[str, PathValues]:
         return {}
 
     @cached_property
     def search_times(self) -> Array:
         """Instants close enough to bracket every extreme, (n,) ascending."""
-        times, enough = self.close_times()
+        times, enough = self.find_close_times()
         if not enough:
             self.later_warnings[TOO_FEW.format(len(times))] = None
         return times
 
-    def close_times(self, most: int = MOST_INSTANTS) -> tuple[Array, bool]:
-        """Instants close enough to bracket every turn, (n,) ascending, so many at most; whether that is enough."""
-        times, enough = search_times(self.setup, self.history, most)
+    def find_close_times(self, most: int = MOST_INSTANTS) -> tuple[Array, bool]:
+        """Return instants close enough to bracket every turning point, (n,) ascending, at most `most`; and whether
+        these are enough.
+        """
+        times, is_enough = choose_search_times(self.setup, self.history, most)
         if self.setup.cuts and len(times) > 1:
-            from heuncli.study.search.passages import may_pass, passages  # where there are sections
+            from heuncli.study.search.passages import find_passages, has_moving_joints  # where there are sections
 
-            if may_pass(self.setup):
-                times = extremes.distinct(np.concatenate([times, passages(lambda at: self._recovery(at, NONE), times)]))
-        return extremes.filled(times), enough
+            if has_moving_joints(self.setup):
+                times = extremes.sort_distinct(
+                    np.concatenate([times, find_passages(lambda at: self._recovery(at, NONE), times)])
+                )
+        return extremes.fill_short_stretches(times), is_enough
 
     def resample(self, times: Array) -> Results:
-        """The results of the run at other instants within it, (n,) ascending; of a state those of its one instant."""
-        if self.of_one_instant:
+        """Return the results of the run at other instants within it, (n,) ascending; a state always has its one
+        instant.
+        """
+        if self.has_one_instant:
             return self.results
-        wanted = self.options.reports
-        results = compose(self.setup, self.history, self._recovery(times, wanted), wanted, self.struck)
+        reports = self.options.reports
+        results = compose(self.setup, self.history, self._recovery(times, reports), reports, self.impulse_results)
         results.work["seconds"] = dict(self.results.work["seconds"])
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later_warnings.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
@@ -123,126 +134,157 @@ class Study:
 
     @cached_property
     def later_warnings(self) -> dict[str, None]:
-        """What was warned of since the run, at other instants and in searches: sentences, in their order."""
+        """Warnings since the run, from other instants and from searches, in their order; a dict used as an ordered
+        set.
+        """
         return {}
 
     @cached_property
     def unknown(self) -> set[float]:
-        """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
+        """The instants seen since the run that lie so close to a singular pose that rounding decides some numbers."""
         return set(self.results.accuracy.get("unknown", ()))
 
     @cached_property
     def left_out(self) -> set[float]:
-        """The instants that searches for extremes left out, with what lies between them and their neighbours."""
+        """The instants that searches for extremes left out, with the intervals to their neighbours."""
         return set()
 
-    def impulses(self, setup: Setup | None = None) -> list[Block]:
-        """The blocks of the blows; setup: with other cuts."""
-        if self.struck is None:
+    def make_impulse_blocks(self, setup: Setup | None = None) -> list[Block]:
+        """Return the blocks of the impulses; setup: with other cuts."""
+        if self.impulse_results is None:
             return []
-        return (self.struck if setup is None else self.struck.cut_by(setup)).blocks()
+        return (self.impulse_results if setup is None else self.impulse_results.with_cuts(setup)).make_blocks()
 
-    def struck_along(self, quantities: Sequence[str]) -> list[dict[str, Extremes]]:
-        """The lowest and highest of some quantities along whole runs of cuts: a mapping by run for each blow."""
+    def find_impulse_extremes(self, quantities: Sequence[str]) -> list[dict[str, Extremes]]:
+        """Return the lowest and highest of some quantities along whole runs of cuts: one mapping by run for each
+        impulse.
+        """
         if not any(cuts.s is not None for cuts in self.setup.cuts):
             return []
-        from heuncli.study.search.stretches import extremes_at_a_blow  # only runs of cuts are worth it
+        from heuncli.study.search.stretches import find_impulse_extremes  # only runs of cuts are worth it
 
-        setup = self.stretched(False)
-        return [extremes_at_a_blow(setup, block, quantities) for block in self.impulses(setup)]
+        setup = self.with_whole_cuts(False)
+        return [find_impulse_extremes(setup, block, quantities) for block in self.make_impulse_blocks(setup)]
 
-    def reports_at(self, times: Array, wanted: frozenset[str], setup: Setup | None = None) -> Results:
-        """Some reports' blocks at other instants of the same run, and nothing beside them; setup: with other cuts."""
-        return self.reports_of(self.recovery_at(times, wanted, setup), wanted)
+    def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
+        """Return only the blocks of some reports at other instants of the same run; setup: with other cuts."""
+        return self.compose_reports(self.find_recovery(times, reports, setup), reports)
 
-    def reports_of(self, recovery: Recovery, wanted: frozenset[str], tells: TellsOpen | None = None) -> Results:
-        """Some reports' blocks of what was recovered; tells: puts in what is open, where that was not looked for."""
-        own = self.results
-        shown, unknown = known_blocks(self.history, recovery, wanted, tells)
-        accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
-        times = recovery.recovered.times
-        results = Results(own.title, own.spec, own.version, own.model, own.status, times, accuracy=accuracy, **shown)
-        return require_finite(results)
+    def compose_reports(
+        self, recovery: Recovery, reports: frozenset[str], open_marker: OpenMarker | None = None
+    ) -> Results:
+        """Return the blocks of some reports from a recovery.
 
-    def recovery_at(
-        self, times: Array, wanted: frozenset[str], setup: Setup | None = None, *, keep: bool = False
-    ) -> Recovery:
-        """What follows from the kernel's answers at some instants of the run, (n,) ascending; setup: with other cuts.
-
-        keep: for the next search, which begins at the same instants.
+        open_marker: marks indeterminate numbers where the recovery did not look for them
         """
-        key = times.tobytes(), SHARES in wanted
-        found = self.kept.get(key)
-        if found is None:
-            found = self._recovery(times, wanted)
+        results = self.results
+        blocks, unknown = make_known_blocks(self.history, recovery, reports, open_marker)
+        accuracy: Accuracy = {"unknown": unknown.tolist()} if len(unknown) else {}
+        times = recovery.solutions.times
+        composed = Results(
+            results.title,
+            results.spec,
+            results.version,
+            results.model,
+            results.status,
+            times,
+            accuracy=accuracy,
+            **blocks,
+        )
+        return require_finite(composed)
+
+    def find_recovery(
+        self, times: Array, reports: frozenset[str], setup: Setup | None = None, *, keep: bool = False
+    ) -> Recovery:
+        """Return the recovery at some instants of the run, (n,) ascending, from the cache or anew; setup: with other
+        cuts.
+
+        keep: cache it for the next search, which begins at the same instants
+        """
+        key = times.tobytes(), SHARES in reports
+        recovery = self.recovery_cache.get(key)
+        if recovery is None:
+            recovery = self._recovery(times, reports)
             if keep:
-                self.kept[key] = found
-        return found if setup is None else found.with_cuts(setup)
+                self.recovery_cache[key] = recovery
+        return recovery if setup is None else recovery.with_cuts(setup)
 
     @cached_property
-    def kept(self) -> dict[tuple[bytes, bool], Recovery]:
-        """What was recovered and is asked for again, by its instants and whether loads are told by cause."""
+    def recovery_cache(self) -> dict[tuple[bytes, bool], Recovery]:
+        """The recoveries to be reused, by their instants and whether loads are split by cause."""
         return {}
 
-    def shares_at(self, times: Array) -> Results:
-        """Loads by cause at other instants of the same run, (n,) ascending."""
-        return self.reports_at(times, self.options.reports & (SHARED | {SHARES}))
+    def compute_shares(self, times: Array) -> Results:
+        """Return the loads by cause at other instants of the same run, (n,) ascending."""
+        return self.compute_reports(times, self.options.reports & (SHARED_BLOCKS | {SHARES}))
 
-    def shares_along(self, name: str, times: Array, places: Sequence[Place]) -> Results:
-        """Loads by cause of a run of cuts at other instants, (n,) ascending, cut at some places along it."""
-        from heuncli.study.search.stretches import at_places
+    def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
+        """Return the loads by cause of a run of cuts at other instants, (n,) ascending, cut at some places along it."""
+        from heuncli.study.search.stretches import cut_at_places
 
-        return self.reports_at(times, frozenset({"sections", SHARES}), at_places(self.setup, name, places))
+        return self.compute_reports(times, frozenset({"sections", SHARES}), cut_at_places(self.setup, name, places))
 
-    def _recovery(self, times: Array, wanted: frozenset[str]) -> Recovery:
-        recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in wanted)
+    def _recovery(self, times: Array, reports: frozenset[str]) -> Recovery:
+        recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
         return recover(self.setup, recovered, self.options.least_norm)
 
     @property
-    def instants_at_once(self) -> int:
-        """How many instants are answered in one go: so many that memory holds their numbers."""
+    def chunk_size(self) -> int:
+        """How many instants are solved in one call, so that their numbers fit into memory."""
         mechanism = self.setup.scene.mechanism
         causes = len(mechanism.loads) + 3 if SHARES in self.options.reports else 0
         return max(50, CHUNK // max(1, len(mechanism.bodies) * (1 + causes)))
 
-    def stretched(self, bent: bool) -> Setup:
-        """The scene with its runs of cuts as whole stretches; bent: for what is no polynomial of the loads."""
-        from heuncli.study.search.stretches import stretched  # only runs of cuts are worth it
+    def with_whole_cuts(self, bent: bool) -> Setup:
+        """Return the setup with its runs of cuts as whole lengths; bent: for numbers that are no polynomial of the
+        loads.
+        """
+        from heuncli.study.search.stretches import replace_runs  # only runs of cuts are worth it
 
-        return stretched(self.setup, bent)
+        return replace_runs(self.setup, bent)
 
     def is_searched(self, columns: int) -> bool:
-        """Whether the extremes of so many columns of a whole report are sought between the asked instants, too."""
-        return columns <= extremes.MOST_COLUMNS and columns * len(self.search_times) <= MOST_SEARCHED
+        """Whether the extremes of that many columns of a whole report are searched between the requested instants,
+        too.
+        """
+        return columns <= extremes.MAX_COLUMNS and columns * len(self.search_times) <= MOST_SEARCHED
 
-    def extremes(
-        self, searched: ColumnSearch, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
+    def search_extremes(
+        self,
+        search: ColumnSearch,
+        report_names: frozenset[str] | None,
+        *,
+        whole: bool = False,
+        times: Array | None = None,
     ) -> Extremes:
-        """The extremes over the run, before its horizon, of the columns made of its results.
+        """Search the extremes over the run, before its horizon, of columns made of its results.
 
-        wanted: the reports that the columns are made of, None for any. whole: of a whole report, where
-        there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
-        times: of these instants alone.
+        report_names: the reports that the columns are made of, None for any
+        whole: of a whole report, which may have so many columns that a search would take longer than the run: then the
+        extremes are those of the requested instants
+        times: restricts the search to these instants
         """
         between = times is None
         times = self.search_times if times is None else times
-        if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
+        if whole and len(search.errors) * len(times) > MOST_SEARCHED:
             times, between = self.results.time, False
         horizon = self.results.horizon
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
-        reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
-        # of closed chains it is told, too, where numbers are open on the other side
-        one = searched.sides != extremes.BOTH and not self.setup.scene.layout.rows
-        sides = searched.sides if one else extremes.BOTH
-        sampled = StudyColumns(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
-        found = extremes.search(
-            sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
-            most=extremes.MOST_COLUMNS if whole else None, sides=sides,
+        reports = frozenset(REPORTS) if report_names is None else add_shared_reports(report_names)
+        # closed chains need both sides, to report where numbers are indeterminate
+        is_one_sided = search.sides != extremes.BOTH_SIDES and not self.setup.scene.layout.rows
+        sides = search.sides if is_one_sided else extremes.BOTH_SIDES
+        study_columns = StudyColumns(
+            self, search, reports, self.with_whole_cuts(search.bent) if search.cut_columns else None
+        )
+        bounds = extremes.search_extremes(
+            study_columns.sample, times, study_columns.groups, errors=search.errors, even=search.even, search_between=between,
+            max_groups=extremes.MAX_COLUMNS if whole else None, sides=sides,
         )  # fmt: skip
-        found = sampled.placed(found)
-        self.left_out.update(sampled.unknown)
-        self.later_warnings.update(dict.fromkeys(left_out(sampled.unknown)))
-        if not found.complete:
+        bounds = study_columns.add_places(bounds)
+        self.left_out.update(study_columns.unknown)
+        self.later_warnings.update(dict.fromkeys(warn_left_out(study_columns.unknown)))
+        if not bounds.is_complete:
             self.later_warnings[CUT_SHORT] = None
-        return found
+        return bounds

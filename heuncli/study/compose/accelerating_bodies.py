@@ -1,7 +1,7 @@
-"""A state that is not at rest: which bodies its loads set going, so that a forgotten cylinder is seen.
+"""Report which bodies the loads of a state accelerate, so that a forgotten cylinder is noticed.
 
-Looked at where everything stands still, or where drives alone turn at constant rates and nothing moves against what
-they carry. What moves already, or is driven to change, was meant to.
+This is checked only where everything stands still, or where drives alone turn at constant rates and nothing moves
+against the bodies they carry. Other motion is intended.
 """
 
 from __future__ import annotations
@@ -14,75 +14,81 @@ from heuncli.multibody.mechanism.model import GROUND
 from heuncli.results.results import Array
 from heuncli.study.compose.recovery import Recovery
 
-NAMED = 3  # bodies that are named
+MAX_NAMED = 3  # bodies that are named
 UNITS = {"angle": "rad/s\u00b2", "travel": "m/s\u00b2"}
 HINT = "not at rest; analysis: {type: rest} looks for the pose at rest"
 
 
-def moves(recovery: Recovery) -> list[str]:
-    """A sentence on a state that its loads set going; recovery: of one instant."""
+def describe_accelerations(recovery: Recovery) -> list[str]:
+    """Return a sentence on a state that its loads set in motion; recovery: of one instant."""
     setup = recovery.setup
     if setup.spec.analysis.type != "state" or not setup.model["freedoms"]:
         return []
     mechanism, states = setup.scene.mechanism, recovery.states
-    t = float(recovery.recovered.times[0])
+    t = float(recovery.solutions.times[0])
     jets = [law.value.derivatives(t) for law in mechanism.laws]
     if any(second != 0.0 for _, _, second in jets):
         return []
     speed = np.abs(states.v_centre[0]).max() / setup.scene.layout.size + np.abs(states.omega[0]).max()
     if any(rate != 0.0 for _, rate, _ in jets):
-        found = against_drives(recovery)
+        found = list_accelerated_coordinates(recovery)
     else:
-        found = of_bodies(recovery) if speed <= tolerances.AT_REST else []
+        found = list_accelerated_bodies(recovery) if speed <= tolerances.AT_REST else []
     if not found:
         return []
-    more = f" and {len(found) - NAMED} more" if len(found) > NAMED else ""
-    return [f"{', '.join(found[:NAMED])}{more}: {HINT}"]
+    more = f" and {len(found) - MAX_NAMED} more" if len(found) > MAX_NAMED else ""
+    return [f"{', '.join(found[:MAX_NAMED])}{more}: {HINT}"]
 
 
-def of_bodies(recovery: Recovery) -> list[str]:
-    """The bodies that are accelerated from rest, the fastest first: of the centre of mass, or turning."""
+def list_accelerated_bodies(recovery: Recovery) -> list[str]:
+    """List the bodies that are accelerated from rest, the fastest first: of the centre of mass, or turning."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
     mass = np.array([b.mass for b in mechanism.bodies])
     radius = np.sqrt(np.array([np.trace(b.inertia) for b in mechanism.bodies]) / mass)
     shift, turn = (np.sqrt(np.sum(a[0] ** 2, axis=1)) for a in (states.a_centre, states.alpha))
     fastest = np.maximum(shift, turn * radius)
-    going = fastest > tolerances.SET_GOING * load_scale(recovery) / mass
+    is_accelerated = fastest > tolerances.SET_GOING * load_scale(recovery) / mass
     return [
         f"{mechanism.bodies[i].name} " + (f"{shift[i]:.3g} m/s\u00b2" if shift[i] >= turn[i] * radius[i]
                                           else f"{turn[i]:.3g} rad/s\u00b2")
         for i in np.argsort(-fastest, kind="stable").tolist()
-        if going[i]
+        if is_accelerated[i]
     ]  # fmt: skip
 
 
-def against_drives(recovery: Recovery) -> list[str]:
-    """The coordinates that are accelerated where only drives move, at constant rates."""
+def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
+    """List the coordinates that are accelerated where only drives move, at constant rates."""
     layout = recovery.setup.scene.layout
-    own = recovery.recovered.freedoms[0]
+    freedom_rows = recovery.solutions.freedoms[0]
     size = layout.size
-    free = [(f, row) for f, row in zip(layout.freedoms, own, strict=True) if f.q >= 0]
-    levers = [size if f.quantity == "angle" else 1.0 for f, _ in free]
-    if layout.bodies["ball"].any() or any(f.joint < 0 or f.quantity not in UNITS for f, _ in free):
-        return []  # what is free in space has no rate against a drive
-    if any(abs(row["u"]) * lever > tolerances.AT_REST * size for (_, row), lever in zip(free, levers, strict=True)):
+    free_freedoms = [(f, row) for f, row in zip(layout.freedoms, freedom_rows, strict=True) if f.q >= 0]
+    levers = [size if f.quantity == "angle" else 1.0 for f, _ in free_freedoms]
+    if layout.bodies["ball"].any() or any(f.joint < 0 or f.quantity not in UNITS for f, _ in free_freedoms):
+        return []  # a body that is free in space has no rate relative to a drive
+    if any(
+        abs(row["u"]) * lever > tolerances.AT_REST * size for (_, row), lever in zip(free_freedoms, levers, strict=True)
+    ):
         return []
     mass = np.array([b.mass for b in layout.mechanism.bodies])
     least = tolerances.SET_GOING * float((load_scale(recovery) / mass).max())
-    found = [(abs(row["udot"]) * lever, f, abs(row["udot"])) for (f, row), lever in zip(free, levers, strict=True)]
+    found = [
+        (abs(row["udot"]) * lever, f, abs(row["udot"])) for (f, row), lever in zip(free_freedoms, levers, strict=True)
+    ]
     return [
         f"{layout.mechanism.joints[f.joint].name}.{f.quantity} {a:.3g} {UNITS[f.quantity]}"
-        for way, f, a in sorted(found, key=lambda one: -one[0])
-        if way > least
+        for size_rate, f, a in sorted(found, key=lambda one: -one[0])
+        if size_rate > least
     ]
 
 
 def load_scale(recovery: Recovery) -> Array:
-    """The largest load on each body, its weight and inertia loads among them, (n,) [N]; moments by the scene's size."""
+    """The largest load on each body, including its weight and inertia loads, (n,) [N]; moments are divided by the
+    scene's size.
+    """
     setup = recovery.setup
     largest: Array = inertia_scale(setup.scene.mechanism, recovery.states)[0]
     for action in recovery.actions:
-        for end, F, M in action.on_bodies():
+        for end, F, M in action.iter_ends():
             if end.body != GROUND:
                 size = max(float(np.abs(F[0]).max()), float(np.abs(M[0]).max()) / setup.scene.layout.size)
                 largest[end.body] = max(largest[end.body], size)

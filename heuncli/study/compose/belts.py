@@ -1,4 +1,4 @@
-"""Warnings of belts: at the one instant of a state, and in blows, which events of a motion do not tell."""
+"""Warn of belts at the single instant of a state, and at impulses, which events of a motion do not cover."""
 
 from __future__ import annotations
 
@@ -8,32 +8,34 @@ from typing import Any
 from heuncli.base import tolerances
 from heuncli.scene.file_format.couplings import Belt
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.resolve_couplings import PUSHES, at_least
+from heuncli.scene.file_format.resolve_couplings import SLACK_BELT_MESSAGE, format_rounded_up
 from heuncli.study.compose.impulses import Impulses
 
-STRUCK = (
+PUSHED_AT_IMPULSE = (
     "in the blow at t = {:.6g} s the belt {} would have to push: no pretension stands up to a blow, and what the belt "
     "then pulls its pulleys together with is not told"
 )
 
 
-def at_the_instant(spec: Spec, couplings: Mapping[str, Any], largest: float) -> Iterator[str]:
-    """The belts that push at the only instant there is; couplings: their block, largest: force of all [N]."""
-    for name, belt in belts(spec).items():
+def warn_at_instant(spec: Spec, couplings: Mapping[str, Any], largest: float) -> Iterator[str]:
+    """Warn of the belts that push at the single instant of a state; couplings: their block, largest: force of all
+    [N].
+    """
+    for name, belt in find_belts(spec).items():
         slack = float(couplings[name]["slack"][0]) if name in couplings else 0.0
         if slack < -tolerances.NO_FORCE * largest:
-            yield PUSHES.format(name, at_least(belt.pretension - slack))
+            yield SLACK_BELT_MESSAGE.format(name, format_rounded_up(belt.pretension - slack))
 
 
-def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
-    """The belts that take part in blows, which nothing that is taut before stands up to."""
-    couplings, least = struck.shown["couplings"], -tolerances.NO_FORCE * struck.by_unit["N·s"]
-    for k, jump in enumerate(struck.jumps):
-        for name in belts(spec):
-            if couplings[name]["slack"][k] < least:
-                yield STRUCK.format(jump.told_time, name)
+def warn_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
+    """Warn of the belts that take part in impulses, which no pretension withstands."""
+    couplings, limit = impulses.all_blocks["couplings"], -tolerances.NO_FORCE * impulses.magnitudes_by_unit["N·s"]
+    for k, jump in enumerate(impulses.jumps):
+        for name in find_belts(spec):
+            if couplings[name]["slack"][k] < limit:
+                yield PUSHED_AT_IMPULSE.format(jump.reported_time, name)
 
 
-def belts(spec: Spec) -> dict[str, Belt]:
-    """The belts of a scene."""
+def find_belts(spec: Spec) -> dict[str, Belt]:
+    """Return the belts of a scene."""
     return {name: own for name, own in spec.couplings.items() if isinstance(own, Belt)}

@@ -1,13 +1,13 @@
-"""Recovered answers as blocks of the results: joints, foundation, sections, forces, motion, energy.
+"""Turn recovered solutions into blocks of the results: joints, foundation, sections, forces, motion, energy.
 
 Each block is what `Results` holds under its name: arrays over the instants, SI units.
 
-The way of a joint's reaction, a type each: the kernel's answers (`Recovered`) are summed up to `JointLoads`
-(loads/kinetostatics/reactions.py), split where redundancy asks for it (loads/redundancy/resolve.py), and become a
-`JointBlock` here, with shares by cause, turned into the axes asked for, and open where no law decides. JSON is written
-of that block (output/tables/export.py). For CSV and tables it becomes a `Series` (study/quantities/series.py), for
-tables a `NumberRow` a component (output/tables/table_blocks.py), whose text is a cell of a `TextTable`
-(output/tables/text_table.py).
+The types that a joint's reaction passes through: the kernel's solutions (`Recovered`) are summed to `JointLoads`
+(loads/kinetostatics/reactions.py), split where redundancy requires it (loads/redundancy/resolve.py), and become a
+`JointBlock` here, with shares by cause, turned into the requested axes, and marked where they are indeterminate. JSON
+is written of that block (output/tables/export.py). For CSV and tables it becomes a `Series`
+(study/quantities/series.py), for tables a `NumberRow` per component (output/tables/table_blocks.py), whose text is a
+cell of a `TextTable` (output/tables/text_table.py).
 """
 
 from __future__ import annotations
@@ -18,102 +18,111 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, whole_joint_actions
+from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, list_whole_joint_actions
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.coordinates import coordinates, points
-from heuncli.loads.kinetostatics.coupling_numbers import coupling_block
-from heuncli.loads.kinetostatics.couplings import CouplingLoads, coupling_actions
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, point_motions
+from heuncli.loads.kinetostatics.coupling_numbers import make_coupling_block
+from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
 from heuncli.loads.kinetostatics.energy import system_vector
-from heuncli.loads.kinetostatics.foundation import element_keys, foundation
-from heuncli.loads.kinetostatics.joint_axes import axes_at, put_in_axes
-from heuncli.loads.kinetostatics.momentum import Momenta, momenta
+from heuncli.loads.kinetostatics.foundation import foundation_block, make_element_keys
+from heuncli.loads.kinetostatics.joint_axes import find_joint_axes, rotate_block
+from heuncli.loads.kinetostatics.momentum import Momenta, find_momenta
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.multibody.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
 from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.model.selection import chosen
+from heuncli.study.model.selection import select_blocks
 
 
-def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
-    """The blocks of the reports that are wanted, by the names of the fields of `Results`.
+def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
+    """Make the blocks of some reports, by the names of the fields of `Results`.
 
-    Joints, stops and foundation in this order: loads, their shares by cause, axes, and what of them is open.
+    Joints, stops and foundation in this order: loads, their shares by cause, axes, and which of them are indeterminate.
     """
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
-    recovered, states = recovery.recovered, recovery.states
-    shown: dict[str, Any] = {}
-    if "foundation" in wanted:
-        shown["foundation"] = foundation(mechanism, states, recovery.standing, recovery.setup.about)
-    if "joints" in wanted:
-        shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
-        shown["stops"] = stops(recovery.asked_joints)
-        shown["couplings"] = {own.coupling.name: told_coupling(recovery, own) for own in recovery.couplings}
-    if SHARES in wanted:
-        from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
+    recovered, states = recovery.solutions, recovery.states
+    blocks_by_name: dict[str, Any] = {}
+    if "foundation" in reports:
+        blocks_by_name["foundation"] = foundation_block(
+            mechanism, states, recovery.separate_actions, recovery.setup.moment_point
+        )
+    if "joints" in reports:
+        blocks_by_name["joints"] = {j.joint.name: make_joint_block(j) for j in recovery.requested_joints}
+        blocks_by_name["stops"] = make_stop_blocks(recovery.requested_joints)
+        blocks_by_name["couplings"] = {
+            own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings
+        }
+    if SHARES in reports:
+        from heuncli.study.compose.cause_shares import add_shares  # few runs need them
 
-        put_shares(shown, recovery.shares, mechanism, states, recovery.setup.about)
-    axes = recovery.setup.asked.axes
-    for load in recovery.asked_joints if axes != "world" and "joints" in shown else ():
-        put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
-    if shown and recovery.decided is not None:
-        recovery.decided.show(states, shown, recovery.couplings, axes, element_keys(mechanism))
-    if "energy" in wanted:
-        shown["energy"] = recovery.energy
-    if "motion" in wanted:
-        from heuncli.loads.kinetostatics.attitudes import quaternions, rodrigues  # tables do not show them
+        add_shares(blocks_by_name, recovery.shares, mechanism, states, recovery.setup.moment_point)
+    axes = recovery.setup.selection.axes
+    for load in recovery.requested_joints if axes != "world" and "joints" in blocks_by_name else ():
+        rotate_block(blocks_by_name["joints"][load.joint.name], find_joint_axes(load.joint, states, axes))
+    if blocks_by_name and recovery.decided is not None:
+        recovery.decided.mark(states, blocks_by_name, recovery.couplings, axes, make_element_keys(mechanism))
+    if "energy" in reports:
+        blocks_by_name["energy"] = recovery.energy
+    if "motion" in reports:
+        from heuncli.loads.kinetostatics.attitudes import body_quaternions, rodrigues_vectors  # tables do not show them
 
-        turns = quaternions(layout, recovered)
-        vectors = rodrigues(turns)
-        moved = momenta(mechanism, states, recovery.setup.about)
-        shown["bodies"] = {b.name: body_block(states, turns, vectors, moved, i) for i, b in enumerate(mechanism.bodies)}
-        shown["momentum"] = moved.totals()
-        shown["coordinates"] = coordinates(layout, recovered, states)
-        shown["system_vector"] = system_vector(mechanism, states)
-    if "points" in wanted:
-        shown["points"] = points(mechanism, states)
-    if "sections" in wanted:
-        shown["sections"] = sections(recovery, SHARES in wanted)
-    if "forces" in wanted:
-        shown["forces"] = forces([own for own in recovery.loads if mechanism.block_of(own.load) == "forces"], states)
-    return shown
+        attitude_quaternions = body_quaternions(layout, recovered)
+        vectors = rodrigues_vectors(attitude_quaternions)
+        body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
+        blocks_by_name["bodies"] = {
+            b.name: make_body_block(states, attitude_quaternions, vectors, body_momenta, i)
+            for i, b in enumerate(mechanism.bodies)
+        }
+        blocks_by_name["momentum"] = body_momenta.sum_bodies()
+        blocks_by_name["coordinates"] = evaluate_joint_coordinates(layout, recovered, states)
+        blocks_by_name["system_vector"] = system_vector(mechanism, states)
+    if "points" in reports:
+        blocks_by_name["points"] = point_motions(mechanism, states)
+    if "sections" in reports:
+        blocks_by_name["sections"] = make_section_blocks(recovery, SHARES in reports)
+    if "forces" in reports:
+        blocks_by_name["forces"] = make_force_blocks(
+            [own for own in recovery.loads if mechanism.spec_block(own.load) == "forces"], states
+        )
+    return blocks_by_name
 
 
-def blocks_asked_for(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
-    """The blocks of the reports that are wanted; of a report of which single entries are asked for these alone."""
-    return chosen(blocks(recovery, wanted), recovery.setup.asked)
+def make_requested_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
+    """Make the blocks of some reports; of a report with requested entries, these alone."""
+    return select_blocks(make_blocks(recovery, reports), recovery.setup.selection)
 
 
-def body_block(states: BodyStates, turns: Array, vectors: Array, moved: Momenta, i: int) -> BodyBlock:
-    """Motion of one body; turns, vectors: quaternions and Rodrigues' vectors of all."""
+def make_body_block(states: BodyStates, quaternions: Array, vectors: Array, momenta: Momenta, i: int) -> BodyBlock:
+    """Make the block of one body's motion; quaternions and Rodrigues' vectors of all bodies are given."""
     return {
         "position": states.x[:, i],
         "velocity": states.v[:, i],
         "rotation": states.R[:, i],
-        "quaternion": turns[:, i],
+        "quaternion": quaternions[:, i],
         "center": states.centre[:, i],
         "center_velocity": states.v_centre[:, i],
         "center_acceleration": states.a_centre[:, i],
         "angular_velocity": states.omega[:, i],
         "angular_acceleration": states.alpha[:, i],
         "rodrigues": vectors[:, i],
-        "momentum": moved.linear[:, i],
-        "moment_of_momentum": moved.orbital[:, i] + moved.spin[:, i],
+        "momentum": momenta.linear[:, i],
+        "moment_of_momentum": momenta.orbital[:, i] + momenta.spin[:, i],
     }
 
 
-def joint_block(load: JointLoads) -> JointBlock:
-    """Reaction of one joint, with its components along and across the axis."""
+def make_joint_block(load: JointLoads) -> JointBlock:
+    """Make the block of one joint's reaction, with its components along and across the axis."""
     block: JointBlock = {"point": load.point, "force": load.force, "moment": load.moment, "open": []}
     if load.drive is not None:
         block["drive"] = load.drive
     if load.axis is not None:
         axial = np.sum(load.force * load.axis, axis=1)
-        across = load.force - axial[:, None] * load.axis
-        tilting = load.moment - np.sum(load.moment * load.axis, axis=1)[:, None] * load.axis
+        radial_force = load.force - axial[:, None] * load.axis
+        tilting_moment = load.moment - np.sum(load.moment * load.axis, axis=1)[:, None] * load.axis
         block["axial"] = axial
-        block["radial"] = np.sqrt(np.sum(across**2, axis=1))
-        block["tilting"] = np.sqrt(np.sum(tilting**2, axis=1))
+        block["radial"] = np.sqrt(np.sum(radial_force**2, axis=1))
+        block["tilting"] = np.sqrt(np.sum(tilting_moment**2, axis=1))
     if load.torque is not None:
         block["torque"] = load.torque
     if load.tension is not None:
@@ -122,12 +131,12 @@ def joint_block(load: JointLoads) -> JointBlock:
         carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
         block["pressure"] = carried / load.joint.bearing
     if load.joint.path is not None and load.joint.path.radius:
-        block["contact_point"] = load.points.on_path(load.joint, load.point)
+        block["contact_point"] = load.points.contact_point(load.joint, load.point)
     return block
 
 
-def stops(joints: Sequence[JointLoads]) -> Block:
-    """What each stop exerts ON `to` along its coordinate."""
+def make_stop_blocks(joints: Sequence[JointLoads]) -> Block:
+    """Make the blocks of stops: the load that each exerts ON `to` along its coordinate."""
     return {
         own.stop.name: {"moment" if own.stop.quantity == "angle" else "force": own.value}
         for load in joints
@@ -135,85 +144,102 @@ def stops(joints: Sequence[JointLoads]) -> Block:
     }
 
 
-def sections(recovery: Recovery, by_cause: bool = False) -> Block:
-    """The blocks of all sections; by_cause: with their shares."""
+def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
+    """Make the blocks of all sections; by_cause: with their shares."""
     scene, states, stress = recovery.setup.scene, recovery.states, recovery.indeterminate
     block: Block = {}
     if not recovery.setup.cuts:
         return block
     # only scenes with sections load it
-    from heuncli.loads.kinetostatics.sections import attachments, section
+    from heuncli.loads.kinetostatics.sections import find_attachments, section_block
 
-    actions = [*whole_joint_actions(recovery.joints), *recovery.applied, *coupling_actions(recovery.couplings)]
-    for asked in recovery.setup.cuts:
-        on = attachments(asked.body, states, actions)
-        cuts = asked.laid_for(on)
+    actions = [
+        *list_whole_joint_actions(recovery.joints),
+        *recovery.applied_actions,
+        *list_coupling_actions(recovery.couplings),
+    ]
+    for requested_cuts in recovery.setup.cuts:
+        attached = find_attachments(requested_cuts.body, states, actions)
+        cuts = requested_cuts.at_attachments(attached)
         is_open: Mapping[str, Mask] = {}
         if stress is not None:
-            from heuncli.loads.redundancy.open_components import names_in_section, open_in_section
+            from heuncli.loads.redundancy.open_components import (
+                find_indeterminate_section,
+                list_indeterminate_section_names,
+            )
 
-            is_open = open_in_section(cuts, states, recovery.joints, recovery.couplings, stress)
-        own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
-        block[cuts.name] = own | ({"open": names_in_section(is_open)} if is_open else {})
+            is_open = find_indeterminate_section(cuts, states, recovery.joints, recovery.couplings, stress)
+        section_results = section_block(
+            cuts, states, scene.mechanism.gravity, attached, is_open, scene.mechanism.planar
+        )
+        block[cuts.name] = section_results | ({"open": list_indeterminate_section_names(is_open)} if is_open else {})
         if by_cause:
-            from heuncli.loads.kinetostatics.section_shares import section_shares
+            from heuncli.loads.kinetostatics.section_shares import section_shares_block
 
-            block[cuts.name]["shares"] = section_shares(cuts, scene.layout, states, recovery.shares, is_open)
+            block[cuts.name]["shares"] = section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
     return block
 
 
-def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> ForceBlock:
-    """Shift and turn of a bushing, and what it exerts on `to`, in its own axes, which stand in `from`."""
-    assert applied.strain is not None
-    shift, turn = applied.strain[:, 0], applied.strain[:, 1]
+def make_bushing_block(load: BushingLoad, applied_load: AppliedLoad, states: BodyStates) -> ForceBlock:
+    """Make the block of a bushing: its shift and turn, and the load it exerts on `to`, in its own axes, which are fixed
+    in `from`.
+    """
+    assert applied_load.strain is not None
+    shift, turn = applied_load.strain[:, 0], applied_load.strain[:, 1]
     R = np.eye(3) if load.a == GROUND else states.R[:, load.a]
     force, moment = (own @ load.frame for own in (
-        (applied.action.force[:, None] @ R)[:, 0], (applied.action.moment[:, None] @ R)[:, 0]
+        (applied_load.action.force[:, None] @ R)[:, 0], (applied_load.action.moment[:, None] @ R)[:, 0]
     ))  # fmt: skip
     return {"shift": shift, "turn": turn, "force": force, "moment": moment}
 
 
-def told_coupling(recovery: Recovery, own: CouplingLoads) -> dict[str, Any]:
-    """The block of a coupling, with the numbers that its kind alone has."""
+def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> dict[str, Any]:
+    """Make the block of a coupling, with the numbers that only its kind has."""
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
-    given, names = own.coupling.given, [body.name for body in mechanism.bodies]
-    block = coupling_block(own, names, pretension(own, recovery.loads))
-    if given.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.drives_told import TOLD  # few scenes have them
+    spec_coupling, names = coupling_loads.coupling.entry, [body.name for body in mechanism.bodies]
+    block = make_coupling_block(coupling_loads, names, find_pretension(coupling_loads, recovery.loads))
+    if spec_coupling.type in ("gear", "screw", "belt"):
+        from heuncli.loads.kinetostatics.drives_told import DRIVE_ELEMENT_NUMBERS  # few scenes have them
 
-        struck = bool(recovery.recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
-        block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
-    if own.friction is not None:
+        is_impulse = bool(recovery.solutions.loads.shape[1] < len(layout.tables["loads"]))  # at an impulse no load acts
+        block |= {
+            k: v
+            for k, v in DRIVE_ELEMENT_NUMBERS[spec_coupling.type](
+                spec_coupling, coupling_loads.carried_load, is_impulse
+            ).items()
+            if k not in block
+        }
+    if coupling_loads.friction is not None:
         from heuncli.loads.kinetostatics.thread_friction import efficiency  # few scenes have it
 
-        block["efficiency"] = efficiency(own, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
-    if given.type == "cam":
+        block["efficiency"] = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+    if spec_coupling.type == "cam":
         from heuncli.loads.kinetostatics.cams import pressure_angle  # few scenes have them
 
-        block["pressure_angle"] = pressure_angle(own, mechanism.joints, recovery.states)
+        block["pressure_angle"] = pressure_angle(coupling_loads, mechanism.joints, recovery.states)
     return block
 
 
-def pretension(of: CouplingLoads, loads: Sequence[AppliedLoad]) -> list[Action]:
-    """What a belt pulls its pulleys together with besides, a load by its name; in a blow no load acts."""
-    if of.coupling.given.type != "belt":
+def find_pretension(coupling: CouplingLoads, loads: Sequence[AppliedLoad]) -> list[Action]:
+    """Return the additional pull of a belt on its pulleys, a load with the belt's name; at an impulse no load acts."""
+    if coupling.coupling.entry.type != "belt":
         return []
-    return [own.action for own in loads if own.load.name == of.coupling.name]
+    return [own.action for own in loads if own.load.name == coupling.coupling.name]
 
 
-def forces(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceBlock]:
-    """Values, lengths, rates and powers of applied loads that are forces of the spec."""
+def make_force_blocks(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceBlock]:
+    """Make the blocks of the spec's forces: values, lengths, rates and powers of applied loads."""
     block: dict[str, ForceBlock] = {}
-    for applied in loads:
-        own: ForceBlock = {"value": applied.value}
-        if isinstance(applied.load, PairLoad):
-            own["length"] = applied.length
-        if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
-            own["angle"] = applied.length
-        if isinstance(applied.load, BushingLoad):
-            own |= bushing(applied.load, applied, states)
-        if isinstance(applied.load, PairLoad | JointLoad):
-            own["rate"] = applied.rate
-        own["power"] = applied.power
-        block[applied.load.name] = own
+    for applied_load in loads:
+        force_block: ForceBlock = {"value": applied_load.value}
+        if isinstance(applied_load.load, PairLoad):
+            force_block["length"] = applied_load.length
+        if isinstance(applied_load.load, JointLoad) and applied_load.load.kind == "turn_spring":
+            force_block["angle"] = applied_load.length
+        if isinstance(applied_load.load, BushingLoad):
+            force_block |= make_bushing_block(applied_load.load, applied_load, states)
+        if isinstance(applied_load.load, PairLoad | JointLoad):
+            force_block["rate"] = applied_load.rate
+        force_block["power"] = applied_load.power
+        block[applied_load.load.name] = force_block
     return block

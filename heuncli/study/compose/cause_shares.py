@@ -1,32 +1,34 @@
-"""Shares by cause beside the loads they add up to, put into the blocks of results."""
+"""Put shares by cause into the blocks of results, beside the loads that they add up to."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.coupling_numbers import numbers_of
-from heuncli.loads.kinetostatics.shares import Shares, foundation_shares, joint_shares
+from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
+from heuncli.loads.kinetostatics.shares import Shares, foundation_shares_blocks, joint_shares_block
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block
 
 
-def put_shares(shown: dict[str, Any], shares: Shares, mechanism: Mechanism, states: BodyStates, about: Array) -> None:
-    """Beside the loads of joints and foundation their shares by cause, in place; about: the point of M_s, (3,)."""
-    if "joints" in shown:
+def add_shares(
+    blocks: dict[str, Any], shares: Shares, mechanism: Mechanism, states: BodyStates, moment_point: Array
+) -> None:
+    """Add shares by cause to the loads of joints and foundation, in place; moment_point: of M_s, (3,)."""
+    if "joints" in blocks:
         for load in shares.joints:
-            if load.joint.name in shown["joints"]:  # of single joints these alone are told
-                shown["joints"][load.joint.name]["shares"] = joint_shares(shares, load)
+            if load.joint.name in blocks["joints"]:  # if single joints are requested, only these are shown
+                blocks["joints"][load.joint.name]["shares"] = joint_shares_block(shares, load)
         for coupled in shares.couplings:
-            carried = {number.name: number.values for number in numbers_of(coupled) if number.is_sum}
-            shown["couplings"][coupled.coupling.name]["shares"] = shares.by_name(carried)
-    if "foundation" in shown:
-        for keys, own in foundation_shares(mechanism, states, shares, about).items():
-            at(shown["foundation"], keys)["shares"] = own
+            carried = {number.name: number.values for number in list_numbers(coupled) if number.is_sum}
+            blocks["couplings"][coupled.coupling.name]["shares"] = shares.to_blocks(carried)
+    if "foundation" in blocks:
+        for keys, foundation_block in foundation_shares_blocks(mechanism, states, shares, moment_point).items():
+            find_block(blocks["foundation"], keys)["shares"] = foundation_block
 
 
-def at(block: Block, keys: tuple[str, ...]) -> Block:
-    """The block under some keys."""
+def find_block(block: Block, keys: tuple[str, ...]) -> Block:
+    """Return the block under some keys."""
     for key in keys:
         block = block[key]
     return block

@@ -1,10 +1,10 @@
-"""Numbers beside a singular pose of a motion: how far rounding reaches them there, and which are not known.
+"""Find the numbers that rounding decides close to a singular pose of a motion, and mark them as unknown.
 
 Where the least singular value of the closures is σ (relative), a pose is closed to a gap g but may be off by g/σ, and
-every derivative divides by σ once more: rates by g/σ², accelerations by g/σ³, multipliers by g/σ⁴. How much of this
-meets a number hangs on the motion and on where it is looked at. So the states of such instants are moved by g/σ in
-some directions, settled and recovered again: what a number then changes by is its error, and it is not known (nan)
-where that is more than a table's digits of the largest of its kind.
+every derivative divides by σ once more: rates by g/σ², accelerations by g/σ³, multipliers by g/σ⁴. How much of this a
+number feels depends on the motion and on the instant. So the states of such instants are moved by g/σ in some
+directions, settled and recovered again: the change of a number is its error, and it is unknown (nan) where that exceeds
+a table's digits of the largest of its kind.
 """
 
 from __future__ import annotations
@@ -16,30 +16,30 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.motion.integration.check.estimate import recovered_at
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.check.estimate import evaluate_run
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.results.results_schema import SPACE, quantity
-from heuncli.study.compose.blocks import blocks_asked_for
-from heuncli.study.compose.recovery import HUNG_ON_RANK, Recovery
+from heuncli.results.results_schema import SPACE, find_quantity
+from heuncli.study.compose.blocks import make_requested_blocks
+from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 
-AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
-DIRECTIONS = 3  # in which a state is moved: that none of them meets the weak one is a matter of 1e-3
-OF_ACCELERATIONS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/s"})  # units of what hangs on them
+SAFETY = 10.0  # times the change; true errors were 0.2 of the change in the median of 4,711 instants, at most 3.4
+DIRECTIONS = 3  # in which a state is moved; with probability 1e-3 none of them meets the weak direction
+ACCELERATION_UNITS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/s"})  # units that depend on them
 PathAndUnit = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
 
 
-class TellsOpen(Protocol):
-    """What knows what is open at some instants without a look at them (study/search/open_between.py)."""
+class OpenMarker(Protocol):
+    """Marks what is indeterminate at some instants without a new search for it (study/search/open_between.py)."""
 
-    def put(self, shown: dict[str, Any], times: Array) -> None:
-        """Mark what is open in the blocks of these instants, in place."""
+    def mark_open(self, blocks: dict[str, Any], times: Array) -> None:
+        """Mark what is indeterminate in the blocks of these instants, in place."""
 
 
 class Leaf(NamedTuple):
-    """An array over the instants: the block it stands in, its name there, of which kind it is, whether of vectors."""
+    """An array over the instants: its block, its name there, its kind, and whether it is of vectors."""
 
     block: dict[str, Any]
     name: str
@@ -47,75 +47,96 @@ class Leaf(NamedTuple):
     vectors: bool
 
 
-def without_unknown(
-    recovery: Recovery, wanted: Set[str], run: Trajectory, jumps: Sequence[float], tells: TellsOpen | None = None
+def make_blocks_without_unknown(
+    recovery: Recovery,
+    reports: Set[str],
+    run: Trajectory,
+    jumps: Sequence[float],
+    open_marker: OpenMarker | None = None,
 ) -> tuple[dict[str, Any], Array]:
-    """The blocks of a motion, nan where rounding reaches a number beside a singular pose; the instants of such.
+    """Make the blocks of a motion, nan where rounding decides a number close to a singular pose; return also these
+    instants.
 
-    tells: puts in what is open, where the recovery does not look for it.
+    open_marker: marks what is indeterminate, where the recovery does not look for it
     """
-    shown = blocks_asked_for(recovery, wanted)
-    if tells is not None:
-        tells.put(shown, recovery.recovered.times)
-    near = nearly_singular(recovery, wanted)
-    if not len(near):
-        return shown, np.zeros(0)
-    moved = moved_states(recovery, near, run, jumps)
-    told = recovery.told and np.array_equal(moved.dependent, recovery.recovered.dependent[near].repeat(DIRECTIONS))
-    other = blocks_asked_for(Recovery(recovery.setup, moved, recovery.least_norm, told=told), wanted)
-    unknown = np.zeros(len(near), dtype=bool)
+    blocks = make_requested_blocks(recovery, reports)
+    if open_marker is not None:
+        open_marker.mark_open(blocks, recovery.solutions.times)
+    close_instants = find_nearly_singular(recovery, reports)
+    if not len(close_instants):
+        return blocks, np.zeros(0)
+    moved_solutions = solve_moved_states(recovery, close_instants, run, jumps)
+    skips_open_search = recovery.skips_open_search and np.array_equal(
+        moved_solutions.dependent_count, recovery.solutions.dependent_count[close_instants].repeat(DIRECTIONS)
+    )
+    moved_blocks = make_requested_blocks(
+        Recovery(recovery.setup, moved_solutions, recovery.least_norm, skips_open_search=skips_open_search), reports
+    )
+    unknown = np.zeros(len(close_instants), dtype=bool)
     known = [
-        (leaf, leaf.block[leaf.name][near], error(leaf.block[leaf.name][near], elsewhere.block[leaf.name]))
-        for leaf, elsewhere in zip(leaves(shown), leaves(other), strict=True)
+        (
+            leaf,
+            leaf.block[leaf.name][close_instants],
+            estimate_errors(leaf.block[leaf.name][close_instants], moved_leaf.block[leaf.name]),
+        )
+        for leaf, moved_leaf in zip(iter_leaves(blocks), iter_leaves(moved_blocks), strict=True)
     ]
-    scales = largest_of_kind(known, least_by_unit(recovery, near))
-    left_out = rows_left_out(recovery, near) if wanted & HUNG_ON_RANK else np.zeros(len(near), dtype=bool)
-    for leaf, values, off in known:
-        lost = reached(off, scales[leaf.kind])
-        if leaf.kind[1] in OF_ACCELERATIONS and not leaf.kind[0].startswith("forces."):
-            lost = lost | left_out.reshape(-1, *[1] * (lost.ndim - 1))
-        if lost.any():
+    scales = find_largest_by_kind(known, typical_sizes(recovery, close_instants))
+    left_out = (
+        find_left_out_rows(recovery, close_instants)
+        if reports & RANK_REPORTS
+        else np.zeros(len(close_instants), dtype=bool)
+    )
+    for leaf, values, errors in known:
+        is_lost = find_unknown(errors, scales[leaf.kind])
+        if leaf.kind[1] in ACCELERATION_UNITS and not leaf.kind[0].startswith("forces."):
+            is_lost = is_lost | left_out.reshape(-1, *[1] * (is_lost.ndim - 1))
+        if is_lost.any():
             block = leaf.block
             block[leaf.name] = block[leaf.name].copy()
-            block[leaf.name][near] = np.where(lost, np.nan, values)
-            unknown |= lost.reshape(len(near), -1).any(axis=1)
-    return shown, recovery.recovered.times[near[unknown]]
+            block[leaf.name][close_instants] = np.where(is_lost, np.nan, values)
+            unknown |= is_lost.reshape(len(close_instants), -1).any(axis=1)
+    return blocks, recovery.solutions.times[close_instants[unknown]]
 
 
-def nearly_singular(recovery: Recovery, wanted: Set[str]) -> Indices:
-    """The instants so near to a singular pose that rounding may reach what is told of them, or just at one."""
-    near = recovery.recovered.pivot < tolerances.NEAR_PIVOT
-    if wanted & HUNG_ON_RANK and recovery.decided is not None and recovery.decided.searched is not None:
-        near |= recovery.decided.searched.count > recovery.generic
-    return np.flatnonzero(near)
+def find_nearly_singular(recovery: Recovery, reports: Set[str]) -> Indices:
+    """Return the instants at a singular pose, or so close to one that rounding may decide their results."""
+    is_near = recovery.solutions.pivot < tolerances.NEAR_PIVOT
+    if reports & RANK_REPORTS and recovery.decided is not None and recovery.decided.all_stress is not None:
+        is_near |= recovery.decided.all_stress.count > recovery.generic_count
+    return np.flatnonzero(is_near)
 
 
-def rows_left_out(recovery: Recovery, near: Indices) -> Mask:
-    """At which instants the kernel left out rows that are independent elsewhere, as on the way through a flat pose.
+def find_left_out_rows(recovery: Recovery, close_instants: Indices) -> Mask:
+    """Mark the instants at which the kernel left out rows that are independent elsewhere, as when passing a flat pose.
 
-    Their multipliers are missing from the loads, and what they hold accelerates as if nothing did.
+    Their multipliers are missing from the loads, and the directions that they constrain accelerate freely.
     """
-    found = recovery.decided.searched if recovery.decided is not None else None
-    if found is None:
-        return np.zeros(len(near), dtype=bool)
-    return np.asarray(found.count[near] > recovery.generic[near])
+    stress = recovery.decided.all_stress if recovery.decided is not None else None
+    if stress is None:
+        return np.zeros(len(close_instants), dtype=bool)
+    return np.asarray(stress.count[close_instants] > recovery.generic_count[close_instants])
 
 
-def moved_states(recovery: Recovery, near: Indices, run: Trajectory, jumps: Sequence[float]) -> Recovered:
-    """The states of some instants, each moved in some directions by what its closing leaves open, recovered."""
-    layout, recovered = recovery.setup.scene.layout, recovery.recovered
-    gap = np.maximum(recovered.gap[near] / layout.size, tolerances.UNSEEN_GAP)
-    # what is nearer than its own gap is no nearer than that: gap/σ is at most σ
-    sigma = np.maximum(np.sqrt(np.maximum(recovered.pivot[near], 0.0)), np.sqrt(gap))
-    by = (gap / sigma)[:, None, None] * directions(layout)
-    states = recovered.states[near][:, None] + by
-    times = np.repeat(recovered.times[near], DIRECTIONS)
+def solve_moved_states(
+    recovery: Recovery, close_instants: Indices, run: Trajectory, jumps: Sequence[float]
+) -> Evaluation:
+    """Solve the states of some instants again, each moved in some directions by the uncertainty of its closure."""
+    layout, recovered = recovery.setup.scene.layout, recovery.solutions
+    gap = np.maximum(recovered.gap[close_instants] / layout.size, tolerances.UNSEEN_GAP)
+    # a pose closer to singular than its own gap counts as that close: gap/σ is at most σ
+    sigma = np.maximum(np.sqrt(np.maximum(recovered.pivot[close_instants], 0.0)), np.sqrt(gap))
+    shifts = (gap / sigma)[:, None, None] * make_directions(layout)
+    states = recovered.states[close_instants][:, None] + shifts
+    times = np.repeat(recovered.times[close_instants], DIRECTIONS)
     causes = recovered.causes is not None
-    return recovered_at(recovery.setup.runner, run, times, states.reshape(len(times), -1), jumps, causes=causes)
+    return evaluate_run(recovery.setup.runner, run, times, states.reshape(len(times), -1), jumps, causes=causes)
 
 
-def directions(layout: Layout) -> Array:
-    """Fixed directions without a pattern in the coordinates of a state, (DIRECTIONS, n): angles, or of the size."""
+def make_directions(layout: Layout) -> Array:
+    """Make fixed directions without a pattern in the coordinates of a state, (DIRECTIONS, n): angles, or parts of the
+    size.
+    """
     coordinates = np.zeros(layout.n_state)
     for group in layout.tables["groups"]:
         coordinates[group["coordinates"] : group["rates"]] = 1.0
@@ -124,36 +145,46 @@ def directions(layout: Layout) -> Array:
     return np.asarray(without_pattern.reshape(DIRECTIONS, -1) * coordinates / weights)
 
 
-def leaves(shown: dict[str, Any], keys: tuple[str, ...] = ()) -> Iterator[Leaf]:
-    """The arrays over the instants in the blocks."""
-    for name, part in shown.items():
+def iter_leaves(blocks: dict[str, Any], keys: tuple[str, ...] = ()) -> Iterator[Leaf]:
+    """Yield the arrays over the instants in the blocks."""
+    for name, part in blocks.items():
         if isinstance(part, dict):
-            yield from leaves(part, (*keys, name))
+            yield from iter_leaves(part, (*keys, name))
         elif isinstance(part, np.ndarray):
-            row = quantity((*keys, name))
-            if row is not None and row.timed:
-                yield Leaf(shown, name, (row.path, row.units[-1]), row.shape[-1:] == (SPACE,))
+            row = find_quantity((*keys, name))
+            if row is not None and row.is_timed:
+                yield Leaf(blocks, name, (row.path, row.units[-1]), row.shape[-1:] == (SPACE,))
 
 
-def largest_of_kind(known: Sequence[tuple[Leaf, Array, Array]], least: Mapping[str, Array]) -> dict[PathAndUnit, Array]:
-    """The largest number of each kind at each instant, less its error; not below what its unit comes to (least)."""
+def find_largest_by_kind(
+    leaf_errors: Sequence[tuple[Leaf, Array, Array]], minimum_by_unit: Mapping[str, Array]
+) -> dict[PathAndUnit, Array]:
+    """Return the largest number of each kind at each instant, minus its error; at least the typical size of its
+    unit.
+    """
     found: dict[PathAndUnit, Array] = {}
-    for leaf, values, off in known:
-        most = largest(np.maximum(np.abs(values) - off, 0.0))
-        found[leaf.kind] = np.maximum(found.get(leaf.kind, least.get(leaf.kind[1], 0.0)), most)
+    for leaf, values, errors in leaf_errors:
+        most = largest_magnitudes(np.maximum(np.abs(values) - errors, 0.0))
+        found[leaf.kind] = np.maximum(found.get(leaf.kind, minimum_by_unit.get(leaf.kind[1], 0.0)), most)
     return found
 
 
-def least_by_unit(recovery: Recovery, near: Indices) -> dict[str, Array]:
-    """What numbers come to, by unit, at some instants of a motion under its weight, applied loads and speed, (n,).
+def typical_sizes(recovery: Recovery, close_instants: Indices) -> dict[str, Array]:
+    """The typical size of numbers, by unit, at some instants of a motion under its weight, applied loads and speed,
+    (n,).
 
-    Not from accelerations or reactions: these may be noise there. What is 0 is told beside these.
+    Accelerations and reactions are not used: they may be noise there. Numbers far below these sizes count as 0.
     """
     mechanism, states, size = recovery.setup.scene.mechanism, recovery.states, recovery.setup.scene.layout.size
-    mass, one = sum(body.mass for body in mechanism.bodies), np.ones(len(near))
-    v = np.maximum(largest(states.v_centre[near]), size * largest(states.omega[near]))
-    pushed = [largest(a.force[near]) + largest(a.moment[near]) / size for a in recovery.pushing]
-    a = v * v / size + float(np.linalg.norm(mechanism.gravity)) + sum(pushed, 0.0 * one) / mass
+    mass, one = sum(body.mass for body in mechanism.bodies), np.ones(len(close_instants))
+    v = np.maximum(
+        largest_magnitudes(states.v_centre[close_instants]), size * largest_magnitudes(states.omega[close_instants])
+    )
+    load_sizes = [
+        largest_magnitudes(a.force[close_instants]) + largest_magnitudes(a.moment[close_instants]) / size
+        for a in recovery.law_actions
+    ]
+    a = v * v / size + float(np.linalg.norm(mechanism.gravity)) + sum(load_sizes, 0.0 * one) / mass
     v = np.maximum(v, np.sqrt(a * size))
     return {
         "m": size * one, "m/s": v, "m/s²": a, "rad": one, "rad/s": v / size, "rad/s²": a / size, "1": one,
@@ -162,21 +193,23 @@ def least_by_unit(recovery: Recovery, near: Indices) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def largest(values: Array) -> Array:
-    """The largest magnitude at each instant, (n,); nan is none."""
+def largest_magnitudes(values: Array) -> Array:
+    """The largest magnitude at each instant, (n,); nan does not count."""
     found = np.abs(values).reshape(len(values), -1)
     return np.asarray(np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0))
 
 
-def error(values: Array, moved: Array) -> Array:
-    """The error of numbers (n, ...), by what they change where their states are moved (n * DIRECTIONS, ...).
+def estimate_errors(values: Array, moved_values: Array) -> Array:
+    """Estimate the error of numbers (n, ...) by their change where their states are moved (n * DIRECTIONS, ...).
 
-    What is open anyway, or open where the state is moved, says nothing.
+    Numbers that are indeterminate, here or in the moved state, do not count.
     """
-    change = np.abs(moved.reshape(len(values), DIRECTIONS, *values.shape[1:]) - values[:, None])
-    return np.asarray(AMPLE * np.where(np.isnan(change), 0.0, change).max(axis=1))
+    change = np.abs(moved_values.reshape(len(values), DIRECTIONS, *values.shape[1:]) - values[:, None])
+    return np.asarray(SAFETY * np.where(np.isnan(change), 0.0, change).max(axis=1))
 
 
-def reached(off: Array, scale: Array) -> Mask:
-    """Which numbers of these errors (n, ...) are not known, beside the largest of their kind (n,)."""
-    return np.asarray(off > tolerances.TOLD_BESIDE * scale.reshape(-1, *[1] * (off.ndim - 1)))
+def find_unknown(errors: Array, scale: Array) -> Mask:
+    """Mark the numbers that are unknown: their errors (n, ...) are too large relative to the largest of their kind
+    (n,).
+    """
+    return np.asarray(errors > tolerances.TOLD_BESIDE * scale.reshape(-1, *[1] * (errors.ndim - 1)))

@@ -1,6 +1,7 @@
-"""What follows from the kernel's answers at some instants: places, reactions, verdicts, applied loads, shares, energy.
+"""Recover from the kernel's solutions at some instants: positions, reactions, verdicts, applied loads, shares, energy.
 
-Reads as the list of what is computed; each thing has its own module. Raises SolveError where no acceleration exists.
+The module reads as the list of what is computed; each quantity has its own module. Raises SolveError where no
+acceleration exists.
 """
 
 from __future__ import annotations
@@ -11,111 +12,132 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
-from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
-from heuncli.loads.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads, rope_actions
-from heuncli.loads.kinetostatics.energy import energy
-from heuncli.loads.kinetostatics.magnitudes import inertia_scale, magnitudes, magnitudes_of_loads
-from heuncli.loads.kinetostatics.reactions import JointLoads, at_instants, joint_loads
+from heuncli.loads.kinetostatics.actions import (
+    Action,
+    AppliedLoad,
+    collect_applied_loads,
+    list_joint_actions,
+    list_whole_joint_actions,
+)
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
+from heuncli.loads.kinetostatics.couplings import (
+    CouplingLoads,
+    find_coupling_loads,
+    list_coupling_actions,
+    list_rope_actions,
+)
+from heuncli.loads.kinetostatics.energy import energy_block
+from heuncli.loads.kinetostatics.magnitudes import find_load_magnitudes, find_magnitudes, inertia_scale
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, select_instants
 from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import PairLoad
-from heuncli.results.results import Array, Block, CertainSum, Magnitudes, Mask
-from heuncli.results.results_schema import BLOWS, SHARED
+from heuncli.results.results import Array, Block, DeterminateSum, Magnitudes, Mask
+from heuncli.results.results_schema import IMPULSES, SHARED_BLOCKS
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.load_errors import SeenInstants
+from heuncli.study.solve.load_errors import ComparedInstants
 
-if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
+if TYPE_CHECKING:  # loaded only for closed chains, sections, or loads by cause
     from heuncli.loads.kinetostatics.shares import Shares
     from heuncli.loads.redundancy.resolve import Resolution
     from heuncli.loads.redundancy.self_stress import SelfStress
 
 
-HUNG_ON_RANK = SHARED  # reports that ask for the rank of the closures
-OF_ENERGY = frozenset({"energy", BLOWS})  # reports that tell energies
-WITHOUT_VERDICTS = frozenset({"states", "unsplit", "loads", "energy", "inertia"})  # what is open has no say in them
+RANK_REPORTS = SHARED_BLOCKS  # reports that need the rank of the closures
+ENERGY_REPORTS = frozenset({"energy", IMPULSES})  # reports that show energies
+WITHOUT_VERDICTS = frozenset({"states", "unsplit", "loads", "energy", "inertia"})  # whatever is indeterminate
 WITHOUT_CUTS = WITHOUT_VERDICTS | {"decided", "shares"}
 
 
 @record
 class Recovery:
-    """What follows from the kernel's answers at some instants; each thing is computed when it is first asked for.
+    """The results that follow from the kernel's solutions at some instants; each is computed when it is first used.
 
-    given: actions from outside that are no loads of the mechanism: the impulses of blows. causes: the names of the
-    kernel's columns, where these are not those of the mechanism. told: what is open at these instants is told
-    elsewhere, by what it is on either side of each (study/search/open_between.py), and not looked for. compared: of one
-    instant and another beside it, what is known of them before.
+    given_actions: actions from outside that are no loads of the mechanism: impulses
+    causes: the names of the kernel's columns, where these are not those of the mechanism
+    skips_open_search: indeterminate components at these instants follow from those on either side
+    (study/search/open_between.py), and are not searched for
+    state_instants: for a state and its perturbed copy, the intermediate results already known
     """
 
     setup: Setup
-    recovered: Recovered
+    recovered: Evaluation
     least_norm: bool
     given: tuple[Action, ...] = ()
     causes: tuple[str, ...] | None = None
     told: bool = False
-    compared: SeenInstants | None = None
+    compared: ComparedInstants | None = None
 
     def with_cuts(self, setup: Setup) -> Recovery:
-        """The same of the scene with other cuts; what was computed stays."""
-        return self._sharing(replace(self, setup=setup), WITHOUT_CUTS)
+        """Return the same with the cuts of another setup; what was computed stays."""
+        return self._share_computed(replace(self, setup=setup), WITHOUT_CUTS)
 
-    def at(self, which: Mask) -> Recovery:
-        """At some of the instants."""
-        found: Recovery = replace(self, recovered=self.recovered.at(which), compared=None)
+    def select(self, mask: Mask) -> Recovery:
+        """Return the recovery of some of the instants."""
+        found: Recovery = replace(self, solutions=self.solutions.select(mask), state_instants=None)
         return found
 
-    def as_told(self) -> Recovery:
-        """The same without a look for what is open; what was computed stays."""
-        return self._sharing(replace(self, told=True), WITHOUT_VERDICTS)
+    def without_open_search(self) -> Recovery:
+        """Return the same without a search for indeterminate components; what was computed stays."""
+        return self._share_computed(replace(self, skips_open_search=True), WITHOUT_VERDICTS)
 
-    def _sharing(self, other: Recovery, names: frozenset[str]) -> Recovery:
+    def _share_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
         other.__dict__.update({name: value for name, value in self.__dict__.items() if name in names})
         return other
 
     @cached_property
     def states(self) -> BodyStates:
-        """Places, velocities and accelerations of the bodies."""
-        if self.compared is not None:
-            return self.compared.states.at(slice(0, len(self.recovered.times)))
-        return body_states(self.setup.scene.layout, self.recovered, self.setup.steady)
+        """The positions, velocities and accelerations of the bodies."""
+        if self.state_instants is not None:
+            return self.state_instants.states.select(slice(0, len(self.solutions.times)))
+        return make_body_states(self.setup.scene.layout, self.solutions, self.setup.steady_spin_axes)
 
     @cached_property
     def decided(self) -> Resolution | None:
-        """What redundant joints leave open, after the split that was asked for; None without closed chains."""
+        """What redundant joints leave indeterminate, after the requested split; None without closed chains."""
         layout = self.setup.scene.layout
         if not layout.rows:
             return None
-        from heuncli.loads.redundancy.resolve import Resolution, resolve  # a tree starts faster without it
+        from heuncli.loads.redundancy.resolve import Resolution, resolve_redundancy  # a tree starts faster without it
 
-        if self.told:
-            return self.flanked(Resolution(self.unsplit))
+        if self.skips_open_search:
+            return self._add_flanks(Resolution(self.unsplit))
         setup = self.setup
-        return self.flanked(
-            resolve(setup.runner, self.recovered, self.states, self.unsplit, self.least_norm, setup.known)
+        return self._add_flanks(
+            resolve_redundancy(
+                setup.runner, self.solutions, self.states, self.unsplit, self.least_norm, setup.self_stress
+            )
         )
 
-    def flanked(self, found: Resolution) -> Resolution:
-        """With what holds the flanks of couplings together, after the split."""
+    def _add_flanks(self, resolution: Resolution) -> Resolution:
+        """Add the loads between the flanks of couplings, after the split."""
         layout = self.setup.scene.layout
         if not layout.mechanism.couplings:
-            return found
-        from heuncli.loads.kinetostatics.flanks import with_flanks  # few scenes have gears
-        from heuncli.loads.redundancy.open_flanks import with_open_flanks
+            return resolution
+        from heuncli.loads.kinetostatics.flanks import add_separating_forces  # few scenes have gears
+        from heuncli.loads.redundancy.open_flanks import add_flank_columns
 
-        couplings = self.couplings_of(found)
-        left, stress = (
-            None if own is None else with_open_flanks(own, layout, found.joints, couplings)
-            for own in (found.left, found.stress)
+        couplings = self.find_couplings(resolution)
+        remaining_stress, stress = (
+            None if stress_part is None else add_flank_columns(stress_part, layout, resolution.joints, couplings)
+            for stress_part in (resolution.remaining_stress, resolution.stress)
         )
-        return replace(found, joints=with_flanks(layout, found.joints, couplings), left=left, stress=stress)
+        return replace(
+            resolution,
+            joints=add_separating_forces(layout, resolution.joints, couplings),
+            remaining_stress=remaining_stress,
+            stress=stress,
+        )
 
     @property
-    def verdicts(self) -> bool:
-        """Whether it matters what redundant joints leave open: to what is asked for, or to how joints are split."""
+    def needs_verdicts(self) -> bool:
+        """Whether it matters what redundant joints leave indeterminate: to the requested results, or to how joints are
+        split.
+        """
         setup = self.setup
         may_share = bool(setup.model["redundant"] or setup.scene.layout.contacts)
-        return may_share or bool(HUNG_ON_RANK & setup.asked.reports)
+        return may_share or bool(RANK_REPORTS & setup.selection.reports)
 
     @cached_property
     def joints(self) -> list[JointLoads]:
@@ -125,48 +147,59 @@ class Recovery:
         return self.unsplit
 
     @cached_property
-    def asked_joints(self) -> list[JointLoads]:
-        """The reactions of the joints that are asked for, or that a stop which is asked for stands in."""
-        asked, decided = self.setup.asked, self.decided
-        every = "joints" not in asked.partial or BLOWS in asked.reports  # of a blow all is told
-        if every or (decided is not None and decided.marks):
+    def requested_joints(self) -> list[JointLoads]:
+        """The reactions of the requested joints, and of those that a requested stop belongs to."""
+        selection, resolution = self.setup.selection, self.decided
+        is_complete = "joints" not in selection.partial or IMPULSES in selection.reports  # impulses show all joints
+        if is_complete or (resolution is not None and resolution.has_marks):
             return self.joints
         mechanism = self.setup.scene.mechanism
-        stopped = {mechanism.joints[stop.joint].name for stop in mechanism.stops if stop.name in asked.of("stops")}
-        names = asked.of("joints") | stopped
-        if decided is not None or self.compared is not None or "unsplit" in self.__dict__:
+        stopped = {
+            mechanism.joints[stop.joint].name for stop in mechanism.stops if stop.name in selection.names_in("stops")
+        }
+        names = selection.names_in("joints") | stopped
+        if resolution is not None or self.state_instants is not None or "unsplit" in self.__dict__:
             return [load for load in self.joints if load.joint.name in names]
-        return joint_loads(self.setup.scene.layout, self.recovered, self.states, names)
+        return find_joint_loads(self.setup.scene.layout, self.solutions, self.states, names)
 
     @cached_property
     def unsplit(self) -> list[JointLoads]:
-        """The joints' reactions as the kernel answers them: where some are redundant, one split of many."""
-        if self.compared is not None and self.compared.joints:
-            return at_instants(self.compared.joints, slice(0, len(self.recovered.times)), self.states)
-        return joint_loads(self.setup.scene.layout, self.recovered, self.states)
+        """The joints' reactions as the kernel solves them: where some are redundant, one split of many."""
+        if self.state_instants is not None and self.state_instants.joints:
+            return select_instants(self.state_instants.joints, slice(0, len(self.solutions.times)), self.states)
+        return find_joint_loads(self.setup.scene.layout, self.solutions, self.states)
 
     @cached_property
     def couplings(self) -> list[CouplingLoads]:
-        """What couplings exert."""
-        return self.couplings_of(self.decided) if self.setup.scene.mechanism.couplings else []
+        """The loads of couplings."""
+        return self.find_couplings(self.decided) if self.setup.scene.mechanism.couplings else []
 
-    def couplings_of(self, decided: Resolution | None) -> list[CouplingLoads]:
-        """What they exert after a split."""
-        more = decided.more if decided is not None else None
-        found = coupling_loads(self.setup.scene.layout, self.recovered, self.states)
-        return [own.plus(more).rubbing(self.applied) for own in found]
+    def find_couplings(self, resolution: Resolution | None) -> list[CouplingLoads]:
+        """Return the loads of couplings after a split."""
+        correction = resolution.added_multipliers if resolution is not None else None
+        found = find_coupling_loads(self.setup.scene.layout, self.solutions, self.states)
+        return [own.add_multipliers(correction).with_friction(self.applied_actions) for own in found]
 
     @cached_property
     def loads(self) -> list[AppliedLoad]:
-        """The applied loads; of a spring whose points coincide the rate at which they part: its line begins there."""
-        found = applied_loads(self.setup.scene.mechanism, self.states, self.recovered)
+        """The applied loads. Of a spring whose points coincide, the rate is that at which they separate: its line
+        begins there.
+        """
+        found = collect_applied_loads(self.setup.scene.mechanism, self.states, self.solutions)
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
-        from heuncli.motion.integration.diagnosis.coincident_points import parting  # hardly any scene needs it
+        from heuncli.motion.integration.diagnosis.coincident_points import (
+            separation_velocity,  # hardly any scene needs it
+        )
 
-        layout, recovered = self.setup.scene.layout, self.recovered
+        layout, recovered = self.setup.scene.layout, self.solutions
         return [
-            replace(own, rate=np.where(own.length == 0.0, speed(parting(layout, own.load, recovered)), own.rate))
+            replace(
+                own,
+                rate=np.where(
+                    own.length == 0.0, vector_magnitudes(separation_velocity(layout, own.load, recovered)), own.rate
+                ),
+            )
             if isinstance(own.load, PairLoad)
             else own
             for own in found
@@ -174,59 +207,65 @@ class Recovery:
 
     @cached_property
     def shares(self) -> Shares:
-        """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
-        from heuncli.loads.kinetostatics.flanks import with_flanks
-        from heuncli.loads.kinetostatics.shares import alone, members_of, shares_of  # few runs ask for them
+        """The joints' loads by their causes, after the same split; for solutions with causes."""
+        from heuncli.loads.kinetostatics.flanks import add_separating_forces
+        from heuncli.loads.kinetostatics.shares import (  # few runs ask for them
+            find_cause_columns,
+            find_shares,
+            own_cause_action,
+        )
 
         layout = self.setup.scene.layout
         own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
-        members = members_of(layout.mechanism) if own is None else own
-        found = shares_of(layout, self.recovered, self.states, self.pushing, members)
+        members = find_cause_columns(layout.mechanism) if own is None else own
+        found = find_shares(layout, self.solutions, self.states, self.law_actions, members)
         if self.decided is None:
             return found
-        joints, more = self.decided.chosen(found.joints, self.states)
-        rubs = [alone(found, action) for action in found.applied]
-        couplings = [own.plus(more).rubbing(rubs) for own in found.couplings]
-        return replace(found, joints=with_flanks(layout, joints, couplings), couplings=couplings)
+        joints, correction = self.decided.apply_choices(found.joints, self.states)
+        friction_shares = [own_cause_action(found, action) for action in found.applied_actions]
+        couplings = [own.add_multipliers(correction).with_friction(friction_shares) for own in found.couplings]
+        return replace(found, joints=add_separating_forces(layout, joints, couplings), couplings=couplings)
 
     @property
-    def applied(self) -> list[Action]:
-        """The actions of the applied loads, and of what is given beside them."""
-        return [*(load.action for load in self.loads), *self.given]
+    def applied_actions(self) -> list[Action]:
+        """The actions of the applied loads, and the given ones."""
+        return [*(load.action for load in self.loads), *self.given_actions]
 
     @property
-    def pushing(self) -> list[Action]:
-        """What acts by laws: the same, and ropes that stretch."""
-        return [*self.applied, *rope_actions(self.couplings)]
+    def law_actions(self) -> list[Action]:
+        """The actions of all laws: the applied ones, and those of elastic ropes."""
+        return [*self.applied_actions, *list_rope_actions(self.couplings)]
 
     @cached_property
     def actions(self) -> list[Action]:
-        """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
-        may_differ = self.verdicts or self.setup.scene.mechanism.couplings
-        joints = whole_joint_actions(self.joints if may_differ else self.unsplit)
-        return [*self.applied, *joints, *coupling_actions(self.couplings)]
+        """All actions on the bodies except their weight; a joint's constraint and drive are one action."""
+        may_differ = self.needs_verdicts or self.setup.scene.mechanism.couplings
+        joints = list_whole_joint_actions(self.joints if may_differ else self.unsplit)
+        return [*self.applied_actions, *joints, *list_coupling_actions(self.couplings)]
 
     @property
-    def standing(self) -> list[Action]:
-        """The same, of each joint constraint, drive and stops apart: what may stand on the ground."""
-        return [*self.applied, *joint_actions(self.joints), *coupling_actions(self.couplings)]
+    def separate_actions(self) -> list[Action]:
+        """The same with each joint's constraint, drive and stops separate: those on the ground may be foundation
+        elements.
+        """
+        return [*self.applied_actions, *list_joint_actions(self.joints), *list_coupling_actions(self.couplings)]
 
     @cached_property
     def energy(self) -> Block:
         """Kinetic and potential energy, and work."""
-        return energy(self.setup.scene.layout, self.recovered, self.states)
+        return energy_block(self.setup.scene.layout, self.solutions, self.states)
 
     @cached_property
     def magnitudes(self) -> Magnitudes:
-        """What the numbers are summed from."""
+        """The sizes of the terms that the numbers are summed from."""
         scene = self.setup.scene
-        energy = self.energy if OF_ENERGY & self.setup.asked.reports else {}
-        return magnitudes(scene.mechanism, self.states, self.inertia, self.actions, energy, scene.layout.size)
+        energy = self.energy if ENERGY_REPORTS & self.setup.selection.reports else {}
+        return find_magnitudes(scene.mechanism, self.states, self.inertia, self.actions, energy, scene.layout.size)
 
     @cached_property
     def load_magnitudes(self) -> Magnitudes:
-        """As much of them as errors of loads hang on."""
-        return magnitudes_of_loads(self.states, self.inertia, self.actions, self.setup.scene.layout.size)
+        """The part of the magnitudes that errors of loads depend on."""
+        return find_load_magnitudes(self.states, self.inertia, self.actions, self.setup.scene.layout.size)
 
     @cached_property
     def inertia(self) -> Array:
@@ -234,42 +273,46 @@ class Recovery:
         return inertia_scale(self.setup.scene.mechanism, self.states)
 
     @property
-    def generic(self) -> Array:
-        """How many self-stresses there are at most at each instant but for a singular pose, (n_t,).
+    def generic_count(self) -> Array:
+        """The largest number of self-stresses at each instant outside singular poses, (n_t,).
 
         Those of the start, and one more for each contact that has closed since.
         """
         own = slice(len(self.setup.scene.layout.contacts))
-        closed = (self.recovered.holding[:, own] > 0.0) & ~(self.setup.runner.start_holding[own] > 0.0)
-        return np.asarray(self.setup.model["redundant"] + closed.sum(axis=1))
+        newly_closed = (self.solutions.holding[:, own] > 0.0) & ~(self.setup.runner.start_holding[own] > 0.0)
+        return np.asarray(self.setup.model["redundant"] + newly_closed.sum(axis=1))
 
     @property
     def indeterminate(self) -> SelfStress | None:
         """The self-stresses that no split has resolved."""
-        return self.decided.left if self.decided is not None else None
+        return self.decided.remaining_stress if self.decided is not None else None
 
 
-def speed(velocities: Array) -> Array:
+def vector_magnitudes(velocities: Array) -> Array:
     """The magnitudes of vectors (n_t, 3)."""
     return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 
 
-def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: SeenInstants | None = None) -> Recovery:
-    """What follows from the kernel's answers; compared: as there. Raises SolveError where no acceleration exists."""
-    if compared is None:  # else it was asked before
-        require_solvable(setup.scene, recovered)
-        require_on_sheaves(setup.scene.layout, recovered)
-        require_directions(setup.scene, recovered)
-    found = Recovery(setup, recovered, least_norm, compared=compared)
-    if setup.scene.mechanism.rubbing and found.decided is not None:
-        from heuncli.loads.redundancy.rubbing import require_certain  # few scenes need it
+def recover(
+    setup: Setup, solutions: Evaluation, least_norm: bool, state_instants: ComparedInstants | None = None
+) -> Recovery:
+    """Make the recovery of the kernel's solutions; state_instants: as of `Recovery`. Raises SolveError where no
+    acceleration exists.
+    """
+    if state_instants is None:  # otherwise it was checked before
+        require_solvable(setup.scene, solutions)
+        require_on_sheaves(setup.scene.layout, solutions)
+        require_directions(setup.scene, solutions)
+    found = Recovery(setup, solutions, least_norm, state_instants=state_instants)
+    if setup.scene.mechanism.joint_friction and found.decided is not None:
+        from heuncli.loads.redundancy.rubbing import require_determinate_friction  # few scenes need it
 
-        require_certain(setup.scene.layout, found.decided.searched, found.states, recovered.times)
+        require_determinate_friction(setup.scene.layout, found.decided.all_stress, found.states, solutions.times)
     return found
 
 
-def certain_sums(recovery: Recovery) -> list[CertainSum]:
-    """Sums of indeterminate components that are determined."""
+def find_determinate_sums(recovery: Recovery) -> list[DeterminateSum]:
+    """Return the sums of indeterminate components that are determinate."""
     if recovery.decided is None:
         return []
-    return recovery.decided.sums(recovery.setup.runner, recovery.recovered, recovery.couplings)
+    return recovery.decided.find_sums(recovery.setup.runner, recovery.solutions, recovery.couplings)

@@ -1,4 +1,4 @@
-"""Warnings of threads with friction: in a blow nothing rubs, which no event tells."""
+"""Warn of threads with friction at impulses: there friction is neglected, which no event covers."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from heuncli.scene.file_format.couplings import Screw
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
-STRUCK = (
+FRICTIONLESS_AT_IMPULSE = (
     "the blow at t = {:.6g} s goes through the thread {} as if nothing rubbed in it: a self-locking one would hold it, "
     "and any other takes a part of it"
 )
 
 
-def rub(spec: Spec) -> list[str]:
-    """The threads of a scene that have friction."""
+def find_friction_threads(spec: Spec) -> list[str]:
+    """Return the threads of a scene that have friction."""
     return [name for name, own in spec.couplings.items() if isinstance(own, Screw) and own.friction is not None]
 
 
-def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
-    """The threads that take part in blows."""
-    couplings, least = struck.shown["couplings"], tolerances.NO_FORCE * struck.by_unit["N·s"]
-    for k, jump in enumerate(struck.jumps):
-        for name in rub(spec):
-            if abs(couplings[name]["force"][k]) > least:
-                yield STRUCK.format(jump.told_time, name)
+def warn_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
+    """Warn of the threads that take part in impulses."""
+    couplings, limit = impulses.all_blocks["couplings"], tolerances.NO_FORCE * impulses.magnitudes_by_unit["N·s"]
+    for k, jump in enumerate(impulses.jumps):
+        for name in find_friction_threads(spec):
+            if abs(couplings[name]["force"][k]) > limit:
+                yield FRICTIONLESS_AT_IMPULSE.format(jump.reported_time, name)

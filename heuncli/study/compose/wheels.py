@@ -1,4 +1,4 @@
-"""Warnings of wheels: at the one instant of a state, and in blows, which events of a motion do not tell."""
+"""Warn of wheels at the single instant of a state, and at impulses, which events of a motion do not cover."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts"
 SLIPS = "the wheel {} would take more friction than there is: it slips"
 
 
-def at_the_instant(spec: Spec, couplings: Mapping[str, Any]) -> Iterator[str]:
-    """What lifts or slips at the only instant there is; couplings: their block."""
+def warn_at_instant(spec: Spec, couplings: Mapping[str, Any]) -> Iterator[str]:
+    """Warn of wheels that lift or slip at the single instant; couplings: their block."""
     for name, wheel in spec.rolling.items():
         if name in couplings:
-            yield from (sentence.format(name) for sentence in told(wheel, couplings[name], 0))
+            yield from (sentence.format(name) for sentence in iter_problems(wheel, couplings[name], 0))
 
 
-def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
-    """What would lift or slip in each blow, by its impulses."""
+def warn_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
+    """Warn of wheels that would lift or slip at each impulse."""
     wheels = spec.rolling
-    couplings = struck.shown["couplings"] if wheels else {}
-    for k, jump in enumerate(struck.jumps):
+    couplings = impulses.all_blocks["couplings"] if wheels else {}
+    for k, jump in enumerate(impulses.jumps):
         for name, wheel in wheels.items():
-            for sentence in told(wheel, couplings[name], k):
-                yield f"in the blow at t = {jump.told_time:.6g} s {sentence.format(name)}"
+            for sentence in iter_problems(wheel, couplings[name], k):
+                yield f"in the blow at t = {jump.reported_time:.6g} s {sentence.format(name)}"
 
 
-def told(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
-    """Of one of several instants: a normal force below zero, and more friction than what presses lets it have."""
-    least = -tolerances.NO_FORCE * np.nan_to_num(block["force"][k])
-    if not wheel.held and block["normal"][k] < least:
+def iter_problems(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
+    """Yield the problems at instant k: a negative normal force, or more friction than the normal force allows."""
+    limit = -tolerances.NO_FORCE * np.nan_to_num(block["force"][k])
+    if not wheel.held and block["normal"][k] < limit:
         yield LIFTS
-    elif wheel.friction is not None and block["grip"][k] < least:
+    elif wheel.friction is not None and block["grip"][k] < limit:
         yield SLIPS

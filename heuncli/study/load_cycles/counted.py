@@ -1,10 +1,10 @@
-"""The collective of a history of loads: its cycles counted, sorted and added up, with the error that the run states.
+"""The collective of a load history: its cycles counted, sorted and summed, with the error that the run states.
 
-Each value is known within e. Cycles of a range up to 2 e may be nothing but error: they are counted apart, and are in
-no class, no crossing and no equivalent range. Those above may be off by 2 e each: histories within e of each other have
-cycles whose ranges are within 2 e, but for ones that are no larger than that themselves, by the stability of such
-pairings (Cohen-Steiner, Edelsbrunner, Harer 2007). So the equivalent range, a norm of the ranges, errs by no more
-than it would grow by if each of them, also of those counted apart, were 2 e larger.
+Each value is known within e. Cycles of a range up to 2 e may be only error: they are counted separately, and are in no
+class, no crossing and no equivalent range. Larger ranges may be off by 2 e each: the cycles of histories within e of
+each other have ranges within 2 e, except for cycles no larger than that themselves, by the stability of such pairings
+(Cohen-Steiner, Edelsbrunner, Harer 2007). The equivalent range is a norm of the ranges, so its error is at most the
+growth that follows if each of them, including those counted separately, were 2 e larger.
 """
 
 from __future__ import annotations
@@ -18,22 +18,24 @@ from heuncli.base.records import record
 from heuncli.results.results import Array, Mask
 from heuncli.study.load_cycles import classes
 from heuncli.study.load_cycles.classes import LevelCrossings, Matrix
-from heuncli.study.load_cycles.equivalent import EquivalentRange, damage, equivalent_range
-from heuncli.study.load_cycles.rainflow import Cycles, endless, rainflow, repeated, turning_points
+from heuncli.study.load_cycles.equivalent import EquivalentRange, damage_shares, equivalent_range
+from heuncli.study.load_cycles.rainflow import Cycles, count_endless, count_once, count_repeated, find_turning_points
 
 BINS, MOST_BINS = 10, 1000
-LEAST_SLOPE = 1.0  # below it the equivalent range is no norm, and no material is known
+LEAST_SLOPE = 1.0  # below it the equivalent range is no norm; no material has such a slope
 MOST_SLOPE = 100.0  # R^m then is the largest range alone
-LEAST_CYCLES, MOST_CYCLES = 1e-100, 1e100  # beyond, equivalent ranges leave what numbers hold
+LEAST_CYCLES, MOST_CYCLES = 1e-100, 1e100  # outside, equivalent ranges overflow
 MOST_REPEATS = 10**12
 REFERENCE = 0.0  # the level of 5.1 from which on crossings count upwards
 
 
 class LoadHistory(NamedTuple):
-    """One number over a motion: times and values (n,), the turning points between samples among them.
+    """One number over a motion: times and values (n,), including the turning points between samples.
 
-    unit: SI; error: how well each value is known; is_magnitude: whether it is never negative, and has lost the sign of
-    what it is of; of_vector: whether it is that of a vector.
+    unit: SI
+    error: absolute error of each value
+    is_magnitude: whether it is a magnitude, which is never negative and has lost its sign
+    of_vector: whether it is the magnitude of a vector
     """
 
     path: str
@@ -46,7 +48,7 @@ class LoadHistory(NamedTuple):
 
 
 class UnfitCounting(NamedTuple):
-    """A way of counting that is none: the field of Counting, what is expected, such as what."""
+    """An invalid option of Counting: its field, what is required, and an example."""
 
     name: str
     expected: str
@@ -64,9 +66,11 @@ REPEATS = UnfitCounting(
 
 
 class Counting(NamedTuple):
-    """How a history is counted: told so many times in a row, or (closed) for ever, of which one time is counted.
+    """How a history is counted: repeated so many times, or (is_endless) for ever, of which one period is counted.
 
-    slopes: of Wöhler lines; cycles: of how many the equivalent ranges are, None for one each time; bins: classes.
+    slopes: of Wöhler lines
+    cycles: the cycle number of the equivalent ranges, None for one per repetition
+    bins: number of classes
     """
 
     slopes: Sequence[float] = ()
@@ -75,8 +79,8 @@ class Counting(NamedTuple):
     repeat: int = 1
     closed: bool = False
 
-    def unfit(self) -> Sequence[UnfitCounting]:
-        """What of it cannot be counted by."""
+    def find_unfit(self) -> Sequence[UnfitCounting]:
+        """Return the options that cannot be used."""
         checks = (
             (all(LEAST_SLOPE <= m <= MOST_SLOPE for m in self.slopes), SLOPES),
             (self.cycles is None or LEAST_CYCLES <= self.cycles <= MOST_CYCLES, CYCLES),
@@ -86,13 +90,13 @@ class Counting(NamedTuple):
         return [unfit for fits, unfit in checks if not fits]
 
     @property
-    def of_cycles(self) -> float:
-        """Of how many cycles the equivalent ranges are."""
+    def equivalent_cycles(self) -> float:
+        """The cycle number of the equivalent ranges."""
         return float(self.repeat) if self.cycles is None else self.cycles
 
 
 class BelowError(NamedTuple):
-    """How many cycles are no larger than what the error may make of nothing, 2 e."""
+    """The number of cycles that are no larger than what the error alone may cause, 2 e."""
 
     cycles: float
     range: float
@@ -100,7 +104,7 @@ class BelowError(NamedTuple):
 
 @record
 class Collective:
-    """What a history counts to; ranges and levels in its SI unit. shares (slopes, classes): of the damage."""
+    """The counted cycles of a history; ranges and levels in its SI unit. shares (slopes, classes): of the damage."""
 
     history: LoadHistory
     asked: Counting
@@ -114,43 +118,50 @@ class Collective:
     equivalents: Sequence[EquivalentRange]
 
     @property
-    def total(self) -> float:
-        """How many cycles are counted, halves as halves."""
+    def total_cycles(self) -> float:
+        """The number of counted cycles; a half cycle counts one half."""
         return float(self.cycles.counts.sum())
 
 
-def counted(history: LoadHistory, asked: Counting) -> Collective:
-    """The collective of a history; of one that is repeated its last value counts as its first."""
-    found, gate = cycles_of(history.values, asked), 2.0 * history.error
-    above = found.ranges > gate
-    cycles, small = found.some(above), found.some(~above)
-    ranges = classes.limits(0.0, float(cycles.ranges.max(initial=0.0)), asked.bins)
+def make_collective(history: LoadHistory, counting: Counting) -> Collective:
+    """Count the collective of a history; if it is repeated, its last value counts as its first."""
+    all_cycles, threshold = find_cycles(history.values, counting), 2.0 * history.error
+    is_counted = all_cycles.ranges > threshold
+    cycles, small = all_cycles.select(is_counted), all_cycles.select(~is_counted)
+    ranges = classes.make_class_limits(0.0, float(cycles.ranges.max(initial=0.0)), counting.bins)
     lowest, highest = float(history.values.min()), float(history.values.max())
-    levels = classes.limits(lowest, highest, asked.bins)[1:-1] if len(cycles.counts) else np.zeros(0)
-    damages = [damage(cycles.ranges, cycles.counts, slope) for slope in asked.slopes]
+    levels = classes.make_class_limits(lowest, highest, counting.bins)[1:-1] if len(cycles.counts) else np.zeros(0)
+    damages = [damage_shares(cycles.ranges, cycles.counts, slope) for slope in counting.slopes]
     return Collective(
         history=history,
-        asked=asked,
-        points=len(turning_points(history.values)),
+        counting=counting,
+        points=len(find_turning_points(history.values)),
         cycles=cycles,
-        below=BelowError(float(small.counts.sum()), gate),
-        matrix=classes.matrix(cycles, ranges, gate),
-        counts=classes.by_range(cycles, ranges, gate),
-        shares=np.array([classes.by_range(cycles, ranges, gate, own) for own in damages]).reshape(-1, asked.bins),
-        crossings=classes.crossings(cycles, levels),
-        equivalents=tuple(equivalent(found, above, gate, slope, asked.of_cycles) for slope in asked.slopes),
+        below_error=BelowError(float(small.counts.sum()), threshold),
+        matrix=classes.count_matrix(cycles, ranges, threshold),
+        counts=classes.count_by_range(cycles, ranges, threshold),
+        shares=np.array([classes.count_by_range(cycles, ranges, threshold, weights) for weights in damages]).reshape(
+            -1, counting.bins
+        ),
+        crossings=classes.count_crossings(cycles, levels),
+        equivalents=tuple(
+            compute_equivalent_range(all_cycles, is_counted, threshold, slope, counting.equivalent_cycles)
+            for slope in counting.slopes
+        ),
     )
 
 
-def cycles_of(values: Array, asked: Counting) -> Cycles:
-    """The cycles of a history (n,), as often as it is asked to be told."""
-    if asked.closed:
-        return endless(values)
-    return rainflow(values) if asked.repeat == 1 else repeated(values, asked.repeat)
+def find_cycles(values: Array, counting: Counting) -> Cycles:
+    """Find the cycles of a history (n,), repeated as `counting` says."""
+    if counting.is_endless:
+        return count_endless(values)
+    return count_once(values) if counting.repeat == 1 else count_repeated(values, counting.repeat)
 
 
-def equivalent(found: Cycles, above: Mask, gate: float, slope: float, cycles: float) -> EquivalentRange:
-    """The equivalent range of the cycles above the gate, and its error, to which the others add."""
-    value = equivalent_range(found.ranges[above], found.counts[above], slope, cycles)
-    most = equivalent_range(found.ranges + gate, found.counts, slope, cycles)
+def compute_equivalent_range(
+    all_cycles: Cycles, is_counted: Mask, threshold: float, slope: float, cycles: float
+) -> EquivalentRange:
+    """Compute the equivalent range of the cycles above the threshold, and its error, which includes the others."""
+    value = equivalent_range(all_cycles.ranges[is_counted], all_cycles.counts[is_counted], slope, cycles)
+    most = equivalent_range(all_cycles.ranges + threshold, all_cycles.counts, slope, cycles)
     return EquivalentRange(slope, cycles, value, most - value)

@@ -1,8 +1,8 @@
-"""The damage-equivalent range: of equal cycles that do as much damage as those counted.
+"""The damage-equivalent range: equal cycles that do as much damage as those counted.
 
     D ∝ Σ n R^m        Palmgren (1924), Miner (1945): damages add up; a Wöhler line of slope m:  N R^m = constant
-    R_eq = (Σ n R^m / N)^(1/m)        N: of how many cycles it is the range
-Nothing is said of mean stress, of endurance limits, or of the order of the cycles.
+    R_eq = (Σ n R^m / N)^(1/m)        N: the cycle number that the range belongs to
+Mean stress, endurance limits and the order of the cycles are not considered.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from heuncli.results.results import Array
 
 
 class EquivalentRange(NamedTuple):
-    """Of so many cycles, for a slope; within an error."""
+    """The equivalent range of a cycle number and a slope, with its error."""
 
     slope: float
     cycles: float
@@ -31,8 +31,8 @@ def equivalent_range(ranges: Array, counts: Array, slope: float, cycles: float) 
     return float(largest * (total / cycles) ** (1.0 / slope))
 
 
-def damage(ranges: Array, counts: Array, slope: float) -> Array:
-    """The share of each in the damage of all, (n,)."""
+def damage_shares(ranges: Array, counts: Array, slope: float) -> Array:
+    """The share of each cycle in the total damage, (n,)."""
     largest = float(ranges.max(initial=0.0))
-    each = counts * (ranges / largest) ** slope if largest > 0.0 else np.zeros(len(ranges))
-    return np.asarray(each / (each.sum() or 1.0))
+    damages = counts * (ranges / largest) ** slope if largest > 0.0 else np.zeros(len(ranges))
+    return np.asarray(damages / (damages.sum() or 1.0))

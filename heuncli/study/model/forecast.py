@@ -1,6 +1,6 @@
-"""What a run will take, as far as its beginning shows: what is integrated, by which method, in how many steps.
+"""Forecast a run from its first part: what is integrated, by which method, in how many steps.
 
-Impure: looks at the clock.
+Impure: reads the clock.
 """
 
 from __future__ import annotations
@@ -11,84 +11,90 @@ from contextlib import suppress
 import numpy as np
 
 from heuncli.base.errors import LimitError, SolveError
-from heuncli.base.method_rows import row_of
+from heuncli.base.method_rows import find_method
 from heuncli.motion.integration.check.fewer_stages import try_fewer_stages
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.run.errors import Eventful, Stiff
-from heuncli.motion.integration.run.kernel_loop import depends
+from heuncli.motion.integration.run.errors import EventfulRun, StiffRun
+from heuncli.motion.integration.run.kernel_loop import depends_on_state
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
-from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.study.model.counts_and_lists import count
+from heuncli.study.model.counts_and_lists import format_count
 from heuncli.study.model.method_choice import is_smooth
 from heuncli.study.model.setup import Setup
 
-PART = 0.1  # of the run, which is tried
-PATIENCE = 0.5  # seconds that the trial may take
-MOST_STEPS = 2_000
+TRIAL_SHARE = 0.1  # of the run, for the trial
+MAX_TRIAL_SECONDS = 0.5  # seconds for the trial
+MAX_STEPS = 2_000
 
 
-def outlook(setup: Setup) -> list[str]:
-    """What is integrated, and what the first part of the run takes, in sentences."""
+def describe_integration(setup: Setup) -> list[str]:
+    """Describe in sentences what is integrated, and what the first part of the run costs."""
     if setup.spec.analysis.type == "rest":
         return ["nothing: what is looked for is the pose at rest that a heavily damped motion from the start comes to"]
     if setup.method is None:
         return ["nothing: one instant is solved"]
-    if setup.method.determined:
+    if setup.method.is_determined:
         return ["nothing: every instant is solved by itself, along its branch"]
-    layout, tolerance = setup.runner.moving.layout, setup.spec.analysis.tolerance
+    layout, tolerance = setup.runner.integrated_scene.layout, setup.spec.analysis.tolerance
     how = f"to {tolerance:.3g} of the scene's size; then once more at a thirtieth of that, to check"
     if setup.step is not None:
         how = f"in steps of {setup.step:.4g} s; then once more in quarters of them, to check"
-    row = row_of(setup.method.name)
+    row = find_method(setup.method.name)
     kind = f"{row.kind} " if row is not None and row.kind != "SciPy" else ""
     sentence = (
-        f"{count(layout.n_state, 'number')} of state, by {setup.method.name}, an {kind}method of order "
+        f"{format_count(layout.n_state, 'number')} of state, by {setup.method.name}, an {kind}method of order "
         f"{setup.method.order}, {how}"
     )
-    return [sentence, *pace(setup, tolerance if setup.step is None else setup.step)]
+    return [sentence, *describe_cost(setup, tolerance if setup.step is None else setup.step)]
 
 
-def noticed(setup: Setup) -> tuple[Method, str] | None:
-    """By which method the run would be begun anew, and why: where its beginning is stiff, or events end its steps."""
-    if not setup.auto or setup.method is None or setup.method.determined:
+def find_restart_method(setup: Setup) -> tuple[Method, str] | None:
+    """Return the method that the run would be restarted with, and why, if its beginning is stiff or events end its
+    steps; else None.
+    """
+    if not setup.is_auto or setup.method is None or setup.method.is_determined:
         return None
     mechanism, last = setup.scene.mechanism, float(setup.spec.analysis.times[-1])
-    if not (any(depends(load) for load in mechanism.loads) or not is_smooth(setup.runner.moving.layout)):
+    if not (
+        any(depends_on_state(load) for load in mechanism.loads) or not is_smooth(setup.runner.integrated_scene.layout)
+    ):
         return None
     with suppress(SolveError, LimitError):
         try:
-            begun(setup, setup.spec.analysis.tolerance, last, watched=True)
-        except Stiff as stiff:
-            return stiff.method, stiff.told
-        except Eventful as left:
-            jumps = discontinuities_of(mechanism, left.reached)
-            runs = Runs(setup.runner, np.array([left.reached]), jumps, None, setup.method)
-            return (runs.method, left.told) if try_fewer_stages(runs, left) else None
+            run_first_part(setup, setup.spec.analysis.tolerance, last, stops_early=True)
+        except StiffRun as stiff:
+            return stiff.method, stiff.reason
+        except EventfulRun as eventful:
+            jumps = find_discontinuities(mechanism, eventful.end_time)
+            runs = Runs(setup.runner, np.array([eventful.end_time]), jumps, None, setup.method)
+            return (runs.method, eventful.reason) if try_fewer_stages(runs, eventful) else None
     return None
 
 
-def pace(setup: Setup, local: float) -> list[str]:
-    """What the first part of the run takes; nothing is told where that cannot be solved: the run will say why."""
-    last = PART * float(setup.spec.analysis.times[-1])
-    whole = round(1.0 / PART)
+def describe_cost(setup: Setup, tolerance_or_step: float) -> list[str]:
+    """Describe what the first part of the run costs; empty if it cannot be solved, because the run itself will say
+    why.
+    """
+    last = TRIAL_SHARE * float(setup.spec.analysis.times[-1])
+    whole = round(1.0 / TRIAL_SHARE)
     with suppress(SolveError):
         try:
-            run = min((begun(setup, local, last) for _ in range(2)), key=lambda run: run.seconds)
+            run = min((run_first_part(setup, tolerance_or_step, last) for _ in range(2)), key=lambda run: run.seconds)
         except LimitError:
-            return [f"the first {last:.4g} s take more than {MOST_STEPS:,} steps or {PATIENCE} s: a long run"]
-        steps, evaluations = count(run.steps, "step"), count(run.evaluations, "evaluation")
+            return [f"the first {last:.4g} s take more than {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s: a long run"]
+        steps, evaluations = format_count(run.steps, "step"), format_count(run.evaluations, "evaluation")
         check = "1.3 to 1.5" if setup.step is None else "5"
         took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
         return [f"{took}: {whole} times that if it goes on so, and {check} times as much for the check"]
     return []
 
 
-def begun(setup: Setup, local: float, last: float, *, watched: bool = False) -> Trajectory:
-    """The first part of the run."""
-    jumps = tuple(discontinuities_of(setup.scene.mechanism, last))
+def run_first_part(setup: Setup, tolerance_or_step: float, last: float, *, stops_early: bool = False) -> Trajectory:
+    """Integrate the run up to `last`."""
+    jumps = tuple(find_discontinuities(setup.scene.mechanism, last))
     assert setup.method is not None
-    deadline = time.monotonic() + PATIENCE
-    request = MotionTask([0.0, last], local, setup.method, jumps, deadline=deadline, most_steps=MOST_STEPS)
-    return setup.runner.trajectory(request, StoppingRules(stiffness=watched, events=watched))
+    deadline = time.monotonic() + MAX_TRIAL_SECONDS
+    request = MotionTask([0.0, last], tolerance_or_step, setup.method, jumps, deadline=deadline, most_steps=MAX_STEPS)
+    return setup.runner.run(request, StoppingRules(stiffness=stops_early, events=stops_early))

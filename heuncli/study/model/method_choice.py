@@ -1,8 +1,8 @@
-"""Which method `auto` begins with, and why, by what can be seen of the scene and of the tolerance beforehand.
+"""Choose the method that `auto` begins with, and say why, by what the scene and the tolerance show beforehand.
 
-Driven motions that leave no freedom are followed and not integrated (motion/integration/determined_motion.py). What
-turns out to be stiff on the way, or cut by events at nearly every step, is begun anew
-(motion/integration/run/stiffness.py, motion/integration/run/event_frequency.py).
+Driven motions that leave no freedom are followed and not integrated (motion/integration/determined_motion.py). A motion
+that turns out to be stiff, or cut by events at nearly every step, is restarted (motion/integration/run/stiffness.py,
+motion/integration/run/event_frequency.py).
 """
 
 from __future__ import annotations
@@ -14,90 +14,94 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.method_rows import DEFAULT
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.motion.integration.run.kernel_loop import depends
-from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.run.kernel_loop import depends_on_state
+from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.counts_and_lists import some
+from heuncli.study.model.counts_and_lists import list_some
 
-FINE = "Verner98"
-LONG = 100.0  # turns or swings from which on a conservative motion is called long
-WATCHED = (
+FINE_METHOD = "Verner98"
+LONG_MOTION = 100.0  # turns or swings from which on a conservative motion is called long
+MAY_BE_STIFF = (
     "watched on the way: should {} prove stiff and keep explicit steps short, the motion is begun anew by an implicit "
     "method, if that takes less"
 )
 NOTHING_STIFF = "not stiff, as far as can be seen beforehand: no spring, damper, friction or law in coordinates"
 
 
-def first_choice(layout: Layout, spec: Spec) -> Method:
-    """The method a motion is begun with that is not known to be stiff; layout: of what is integrated."""
-    fine = spec.analysis.tolerance <= tolerances.VERNER98 and is_smooth(layout)
-    return method_of(FINE if fine and not discontinuities_of(layout.mechanism, last_of(spec)) else DEFAULT)
+def choose_first_method(layout: Layout, spec: Spec) -> Method:
+    """Choose the method for a motion that is not known to be stiff; layout: of what is integrated."""
+    is_fine = spec.analysis.tolerance <= tolerances.VERNER98 and is_smooth(layout)
+    return load_method_by_name(
+        FINE_METHOD if is_fine and not find_discontinuities(layout.mechanism, end_time(spec)) else DEFAULT
+    )
 
 
-def last_of(spec: Spec) -> float:
-    """The end of a motion [s]."""
+def end_time(spec: Spec) -> float:
+    """Return the end of a motion [s]."""
     return float(spec.analysis.times[-1])
 
 
 def is_smooth(layout: Layout) -> bool:
-    """Whether nothing but jumps in time may end a step beside the step's own error."""
-    return not (layout.pack.held or layout.contacts or layout.mechanism.blows)
+    """Whether only jumps in time can end a step early, apart from the step's own error."""
+    return not (layout.pack.branch_count or layout.contacts or layout.mechanism.impulses)
 
 
-def why(method: Method, layout: Layout, spec: Spec) -> list[str]:
-    """Why a motion is begun with that method, in sentences."""
-    found = f"by {method.name}, explicit, of order {method.order}: "
-    if method.name == FINE:
-        found += "to so small a tolerance the fewest evaluations for what is smooth"
+def explain_method(method: Method, layout: Layout, spec: Spec) -> list[str]:
+    """Explain in sentences why a motion begins with that method."""
+    sentence = f"by {method.name}, explicit, of order {method.order}: "
+    if method.name == FINE_METHOD:
+        sentence += "to so small a tolerance the fewest evaluations for what is smooth"
     else:
-        found += "the fewest evaluations for what is smooth, to six digits and more"
-    return [*kind_of_motion(layout, last_of(spec)), found, stiffness(layout.mechanism)]
+        sentence += "the fewest evaluations for what is smooth, to six digits and more"
+    return [*describe_length(layout, end_time(spec)), sentence, describe_stiffness(layout.mechanism)]
 
 
-def anew(why: str, method: Method) -> str:
-    """Why a run was begun anew, and by which method."""
-    return f"{why}; begun anew by {method.name}"
+def explain_restart(reason: str, method: Method) -> str:
+    """Explain why a run was restarted, and by which method."""
+    return f"{reason}; begun anew by {method.name}"
 
 
-def stiffness(mechanism: Mechanism) -> str:
-    """What may turn out to be stiff, in a sentence."""
-    names = list(dict.fromkeys(load.name for load in mechanism.loads if depends(load)))
-    return WATCHED.format(some([f"`{name}`" for name in names])) if names else NOTHING_STIFF
+def describe_stiffness(mechanism: Mechanism) -> str:
+    """Say in a sentence what may turn out to be stiff."""
+    names = list(dict.fromkeys(load.name for load in mechanism.loads if depends_on_state(load)))
+    return MAY_BE_STIFF.format(list_some([f"`{name}`" for name in names])) if names else NOTHING_STIFF
 
 
-def kind_of_motion(layout: Layout, last: float) -> list[str]:
-    """Long and conservative, or short, in a sentence; nothing of what is neither."""
-    swings = last * pace(layout) / (2.0 * math.pi)
+def describe_length(layout: Layout, last: float) -> list[str]:
+    """Say in a sentence whether the motion is long and conservative, or short; empty if it is neither."""
+    swings = last * typical_rate(layout) / (2.0 * math.pi)
     if swings < 1.0:
         return ["short: less than a turn, or a swing, of the whole"]
-    if swings >= LONG and is_conservative(layout):
-        about = float(f"{swings:.2g}")
+    if swings >= LONG_MOTION and is_conservative(layout):
+        rounded = float(f"{swings:.2g}")
         return [
-            f"long and conservative, some {about:,.0f} turns or swings: what the check run tells of the error holds to "
+            f"long and conservative, some {rounded:,.0f} turns or swings: what the check run tells of the error holds to "
             "their end; a symmetric method, Gauss6 with a given step, pays only beyond some 100,000"
         ]
     return []
 
 
 def is_conservative(layout: Layout) -> bool:
-    """Whether nothing takes energy or gives it: weight and springs alone, no drive, no blow, nothing that is struck."""
+    """Whether nothing adds or takes energy: only weight and springs act, without drives, impulses or contacts."""
     mechanism = layout.mechanism
-    moved = bool(mechanism.laws)
-    return not (moved or layout.contacts or mechanism.blows) and all(load.is_conservative for load in mechanism.loads)
+    is_driven = bool(mechanism.laws)
+    return not (is_driven or layout.contacts or mechanism.impulses) and all(
+        load.is_conservative for load in mechanism.loads
+    )
 
 
-def pace(layout: Layout) -> float:
-    """How fast the scene turns, or would swing as a pendulum of its size does [rad/s]."""
+def typical_rate(layout: Layout) -> float:
+    """How fast the scene turns, or would swing as a pendulum of its size [rad/s]."""
     gravity = float(np.sqrt(np.sum(np.square(layout.mechanism.gravity))))
-    return max(fastest(layout), math.sqrt(gravity / layout.size))
+    return max(largest_rate(layout), math.sqrt(gravity / layout.size))
 
 
-def fastest(layout: Layout) -> float:
-    """The largest rate at the start, of the scene's size where it is a speed [1/s]."""
+def largest_rate(layout: Layout) -> float:
+    """The largest rate at the start; a speed is divided by the scene's size [1/s]."""
     y: Array = layout.y0
     rates = [np.abs(y[int(g["rates"]) : int(g["end"])] * layout.weights[int(g["rates"]) : int(g["end"])])
              for k, g in enumerate(layout.tables["groups"]) if k != layout.energy_group]  # fmt: skip

@@ -1,4 +1,4 @@
-"""`analysis: {type: rest}`: the scene at rest becomes the start of a state, with what is told of how it rests."""
+"""Solve `analysis: {type: rest}`: the scene at rest becomes the start of a state, with sentences on its equilibrium."""
 
 from __future__ import annotations
 
@@ -9,32 +9,40 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.digits import beside
-from heuncli.loads.equilibrium.finer import CheckedPose, checked, left_by_the_way
-from heuncli.loads.equilibrium.pose import bearing
-from heuncli.loads.equilibrium.rest_check import require_still
+from heuncli.loads.equilibrium.digits import find_neighbour_poses
+from heuncli.loads.equilibrium.finer import VerifiedPose, find_verified_pose, perturbed_states
+from heuncli.loads.equilibrium.pose import make_bearing_pose
+from heuncli.loads.equilibrium.rest_check import require_at_rest
 from heuncli.loads.equilibrium.search import RestSearch
-from heuncli.loads.equilibrium.slopes import decided_by
-from heuncli.loads.equilibrium.stability import Motion, Stability, stability
-from heuncli.loads.equilibrium.steady_states import going_on, require_constant, require_steady, require_together
-from heuncli.motion.integration.diagnosis.solvability import Wording, require_solvable
+from heuncli.loads.equilibrium.slopes import separate_indifferent
+from heuncli.loads.equilibrium.stability import NamedMotion, Stability, find_stability
+from heuncli.loads.equilibrium.steady_states import (
+    find_moving_drives,
+    require_common_motion,
+    require_constant,
+    require_steady,
+)
+from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.linearisation.displacements import displacement
-from heuncli.motion.linearisation.indifference import indifference
+from heuncli.motion.linearisation.displacements import find_displacement
+from heuncli.motion.linearisation.indifference import find_indifference
 from heuncli.motion.linearisation.smoothness import examine_laws, find_roots
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.held_speeds import holds_speed
-from heuncli.multibody.tree.layout import Layout, places_of_rates
+from heuncli.multibody.tree.held_speeds import find_speed_rows
+from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Status
-from heuncli.study.model.counts_and_lists import MOST_NAMES, count, some
-from heuncli.study.model.other_pose import other_pose
+from heuncli.study.model.counts_and_lists import MAX_NAMES, format_count, list_some
+from heuncli.study.model.other_pose import describe_other_pose
 
 
 @record
 class Rest:
-    """How a rest pose was found: steps and evaluations, seconds; beside: states that rounding does not tell from it;
-    told: how it rests, in sentences; warnings."""
+    """How a rest pose was found.
+
+    nearby_states: states that rounding does not distinguish from it
+    sentences: how the scene rests
+    """
 
     steps: int
     evaluations: int
@@ -46,115 +54,132 @@ class Rest:
     @property
     def status(self) -> Status:
         """How the search ended."""
-        return {"code": "completed", "message": f"at rest after {count(self.steps, 'step')} from the start"}
+        return {"code": "completed", "message": f"at rest after {format_count(self.steps, 'step')} from the start"}
 
 
-def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner, Rest]:
-    """The scene with its rest pose as the start. Raises SolveError [no-rest-pose]."""
-    begun = time.perf_counter()
+def start_at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner, Rest]:
+    """Return the scene with its rest pose as the start. Raises SolveError [no-rest-pose]."""
+    start_time = time.perf_counter()
     require_constant(scene.mechanism)
-    first = runner.recovered(np.zeros(1), runner.layout.y0[None, :])
-    require_solvable(scene, first, Wording("accelerations of the start"))
+    first = runner.evaluate(np.zeros(1), runner.layout.y0[None, :])
+    require_solvable(scene, first, ErrorWording("accelerations of the start"))
     search = RestSearch(scene, runner, 0.0, tolerances.REST_BENT)
-    require_together(runner, search.coordinates, search.begun())
-    both = checked(scene, runner, 0.0)
-    found = both.found
-    if holds_speed(runner.layout).any():
-        require_no_way(runner.layout, found.pose.state)
+    require_common_motion(runner, search.coordinates, search.start_pose())
+    search_result = find_verified_pose(scene, runner, 0.0)
+    found = search_result.equilibrium
+    if find_speed_rows(runner.layout).any():
+        require_no_rolling(runner.layout, found.pose.state)
     require_steady(runner, found.coordinates, found.pose, found.slopes)
     law = found.slopes.law
-    what = indifference(scene, 0.0, found.pose.holding, law)
-    found = replace(found, slopes=decided_by(found.slopes, what))
-    states, bends = beside(runner, found, what)
-    own = stability(scene, found.coordinates, law, found.pose.recovered, what, bends)
+    indifferent_directions = find_indifference(scene, 0.0, found.pose.holding, law)
+    found = replace(found, slopes=separate_indifferent(found.slopes, indifferent_directions))
+    states, curvatures = find_neighbour_poses(runner, found, indifferent_directions)
+    found_stability = find_stability(
+        scene, found.coordinates, law, found.pose.evaluation, indifferent_directions, curvatures
+    )
     layout = replace(scene.layout, y0=found.pose.state)
     without_slope = list(find_roots(examine_laws(layout, 0.0, layout.y0)))
-    warnings = ridge(layout, both) if without_slope else (*unstable(own), *ridge(layout, both))
-    again = Runner(layout)
-    require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
+    warnings = (
+        warn_ridge(layout, search_result)
+        if without_slope
+        else (*warn_unstable(found_stability), *warn_ridge(layout, search_result))
+    )
+    rest_runner = Runner(layout)
+    require_at_rest(rest_runner, found.coordinates, make_bearing_pose(rest_runner, found.coordinates, 0.0, layout.y0))
     rest = Rest(
-        steps=both.steps, evaluations=both.evaluations, seconds=time.perf_counter() - begun,
-        beside=(*states, *left_by_the_way(runner, found, both.way)),
-        told=tuple(sentences(scene.mechanism, own, without_slope)), warnings=tuple(warnings),
+        steps=search_result.steps, evaluations=search_result.evaluations, seconds=time.perf_counter() - start_time,
+        nearby_states=(*states, *perturbed_states(runner, found, search_result.displacement)),
+        sentences=tuple(describe_rest(scene.mechanism, found_stability, without_slope)), warnings=tuple(warnings),
     )  # fmt: skip
-    return replace(scene, layout=layout), again, rest
+    return replace(scene, layout=layout), rest_runner, rest
 
 
-def require_no_way(layout: Layout, state: Array) -> None:
-    """Raise SolveError [no-rest-pose] where wheels would have to roll to a rest pose: which one hangs on the way."""
-    place = places_of_rates(layout)
-    moved = layout.weights[place[place >= 0]] * displacement(layout, layout.y0, state)
-    if np.abs(moved).max(initial=0.0) <= tolerances.OFF_BALANCE:
+def require_no_rolling(layout: Layout, state: Array) -> None:
+    """Raise SolveError [no-rest-pose] where wheels would have to roll to a rest pose, which then depends on their
+    path.
+    """
+    rate_places = rate_indices(layout)
+    travel = layout.weights[rate_places[rate_places >= 0]] * find_displacement(layout, layout.y0, state)
+    if np.abs(travel).max(initial=0.0) <= tolerances.OFF_BALANCE:
         return
     message = "no rest pose: the start does not rest, and where wheels roll to hangs on the way there"
     hint = "a motion with dampers rolls there: analysis: {duration: ...}; or draw the scene where it rests"
     raise SolveError(Problem("no-rest-pose", message, hint=hint))
 
 
-def sentences(mechanism: Mechanism, own: Stability, without_slope: list[str]) -> list[str]:
-    """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent.
+def describe_rest(mechanism: Mechanism, stability: Stability, without_slope: list[str]) -> list[str]:
+    """Describe in sentences how the scene rests: in which frame, stable or not, and along which motions it is
+    indifferent.
 
-    without_slope: sentences on loads that have no slope in the pose: its stability is not that of any stiffness.
+    without_slope: sentences on loads that have no slope in the pose; then no stiffness decides its stability
     """
-    drives = some(list(going_on(mechanism)))
-    told = [f"at rest in the frame that goes along with {drives}"] if drives else []
+    drives = list_some(list(find_moving_drives(mechanism)))
+    texts = [f"at rest in the frame that goes along with {drives}"] if drives else []
     if without_slope:
-        return [*told, f"whether the pose is stable is not decided: {'; '.join(without_slope)}"]
-    least = f"the least eigenvalue of stiffness over inertia is {own.least:.4g} 1/s² ({own.slowest})"
-    loose = own.indifferent + own.flat + own.edge
-    if own.growth > 0.0:
-        told.append(f"unstable: {own.grows} leaves it by exp({own.growth:.4g} t); {least}")
-    elif own.slowest:
-        swings = f", the slowest small oscillation has {own.frequency:.4g} Hz" if own.frequency else ""
-        told.append(f"stable{' but for what is indifferent' if loose else ''}: {least}{swings}")
-    elif not loose:
-        told.append("nothing is free to move")
-    if own.indifferent:
-        what = f"{listed(own.indifferent)}, which nothing holds or pushes{by_itself(own)}"
-        told.append(f"indifferent: {what}; where along it is by the way it came")
-    if own.edge:
-        told.append(
-            f"at the edge of stability: {listed(own.edge)}, which moved aside sets going what nothing brings back"
+        return [*texts, f"whether the pose is stable is not decided: {'; '.join(without_slope)}"]
+    least = f"the least eigenvalue of stiffness over inertia is {stability.least:.4g} 1/s² ({stability.slowest})"
+    indifferent_motions = stability.indifferent + stability.flat + stability.edge
+    if stability.growth > 0.0:
+        texts.append(f"unstable: {stability.grows} leaves it by exp({stability.growth:.4g} t); {least}")
+    elif stability.slowest:
+        swings = f", the slowest small oscillation has {stability.frequency:.4g} Hz" if stability.frequency else ""
+        texts.append(f"stable{' but for what is indifferent' if indifferent_motions else ''}: {least}{swings}")
+    elif not indifferent_motions:
+        texts.append("nothing is free to move")
+    if stability.indifferent:
+        what = f"{list_motions(stability.indifferent)}, which nothing holds or pushes{describe_lone_motion(stability)}"
+        texts.append(f"indifferent: {what}; where along it is by the way it came")
+    if stability.edge:
+        texts.append(
+            f"at the edge of stability: {list_motions(stability.edge)}, which moved aside sets going what nothing brings back"
         )
-    if own.flat:
-        told.append(f"indifferent to first order: {listed(own.flat)}, which what bends alone holds or pushes off")
-    return told
+    if stability.flat:
+        texts.append(
+            f"indifferent to first order: {list_motions(stability.flat)}, which what bends alone holds or pushes off"
+        )
+    return texts
 
 
-def listed(motions: tuple[Motion, ...]) -> str:
-    """Motions by what moves in them: one alone, or several in step."""
-    return some(list(dict.fromkeys(in_step(motion) for motion in motions)))
+def list_motions(motions: tuple[NamedMotion, ...]) -> str:
+    """List motions by what moves in them: one coordinate alone, or several in proportion."""
+    return list_some(list(dict.fromkeys(describe_motion(motion) for motion in motions)))
 
 
-def in_step(motion: Motion) -> str:
-    """A motion by what moves in it, and by how much against the first."""
+def describe_motion(motion: NamedMotion) -> str:
+    """Describe a motion by what moves in it, and by how much relative to the first."""
     if len(motion.names) == 1:
         return motion.names[0]
     units = motion.units if len(set(motion.units)) > 1 else ("",) * len(motion.units)
     shares = [f"{share:.3g} {unit}".strip() for share, unit in zip(motion.shares, units, strict=True)]
-    more = len(motion.names) - MOST_NAMES
-    names = " and ".join(motion.names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
-    return f"{names} moved together as {' : '.join(shares[:MOST_NAMES])}"
+    more = len(motion.names) - MAX_NAMES
+    names = " and ".join(motion.names[:MAX_NAMES]) + (f" and {more} more" if more > 0 else "")
+    return f"{names} moved together as {' : '.join(shares[:MAX_NAMES])}"
 
 
-def by_itself(own: Stability) -> str:
-    """That what is held, or pushed off, moves in what nothing holds, too, but not by itself."""
-    together = {name for motion in own.indifferent if len(motion.names) > 1 for name in motion.names}
-    if own.slowest not in together:
+def describe_lone_motion(stability: Stability) -> str:
+    """Say that the slowest coordinate also moves in an indifferent motion, but is held or pushed off when it moves
+    alone.
+    """
+    joint_names = {name for motion in stability.indifferent if len(motion.names) > 1 for name in motion.names}
+    if stability.slowest not in joint_names:
         return ""
-    return f" ({own.slowest} by itself is {'held' if own.least > 0.0 else 'pushed off'})"
+    return f" ({stability.slowest} by itself is {'held' if stability.least > 0.0 else 'pushed off'})"
 
 
-def unstable(own: Stability) -> tuple[str, ...]:
-    """A warning of a pose that the least push ends."""
-    if not own.growth:
+def warn_unstable(stability: Stability) -> tuple[str, ...]:
+    """Warn that the smallest disturbance ends the pose."""
+    if not stability.growth:
         return ()
-    return (f"the rest pose is unstable: pushed a little, {own.grows} leaves it, by exp({own.growth:.4g} t)",)
+    return (
+        f"the rest pose is unstable: pushed a little, {stability.grows} leaves it, by exp({stability.growth:.4g} t)",
+    )
 
 
-def ridge(layout: Layout, both: CheckedPose) -> tuple[str, ...]:
-    """A warning of a way that may end in another pose as well, with that one."""
-    if both.elsewhere is None:
+def warn_ridge(layout: Layout, search_result: VerifiedPose) -> tuple[str, ...]:
+    """Warn that the relaxation path may also end in another pose, and describe that one."""
+    if search_result.alternative is None:
         return ()
-    told = "the damped motion to the rest pose passes so near a ridge that its last digits decide where it ends"
-    return (f"{told}: perhaps with {other_pose(layout, both.found.pose, both.elsewhere.pose)}",)
+    warning = "the damped motion to the rest pose passes so near a ridge that its last digits decide where it ends"
+    return (
+        f"{warning}: perhaps with {describe_other_pose(layout, search_result.equilibrium.pose, search_result.alternative.pose)}",
+    )

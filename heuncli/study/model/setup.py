@@ -1,4 +1,4 @@
-"""A spec set up to be solved: built, cut, assembled, laid out; and the note on the model this makes."""
+"""Set up a spec to be solved: build, cut, assemble and lay out the scene, and describe the model made of it."""
 
 from __future__ import annotations
 
@@ -11,43 +11,48 @@ from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
-from heuncli.loads.redundancy.count import redundancy
-from heuncli.motion.integration.determined_motion import NOT_DETERMINED, determined
-from heuncli.motion.integration.integrated_scene import smaller
-from heuncli.motion.integration.methods.followed import FOLLOWED
+from heuncli.loads.redundancy.count import count_redundancy
+from heuncli.motion.integration.determined_motion import NOT_DETERMINED, find_determined_motion
+from heuncli.motion.integration.integrated_scene import integrate_reduced
+from heuncli.motion.integration.methods.followed import DRIVE_DETERMINED
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.motion.integration.run.runner import Runner, ready
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.coupled_start.prepared import prepare_coupled
-from heuncli.multibody.mechanism.build import build, forms_of
+from heuncli.multibody.mechanism.build import build, make_forms
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.reduction import compose as reduction
-from heuncli.multibody.reduction.model import Reduced
-from heuncli.multibody.stages import ANEW, Stages
+from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.method_choice import first_choice, why
-from heuncli.study.model.model_note import attitudes, model_note, reductions, rested
+from heuncli.study.model.method_choice import choose_first_method, explain_method
+from heuncli.study.model.model_note import add_rest_sentences, describe_attitudes, describe_reductions, make_model_block
 from heuncli.study.model.selection import EVERYTHING, Selection
 
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.loads.kinetostatics.cuts import Cuts
-    from heuncli.loads.redundancy.self_stress import KnownStress
+    from heuncli.loads.redundancy.self_stress import CachedStress
     from heuncli.study.model.rest_pose import Rest
 
 
 @record
 class Setup:
-    """All that is known of a scene before anything moves; method is None where nothing is integrated.
+    """All that is known of a scene before anything moves.
 
-    spec: as far as it is solved; asked: what is told of it. cuts: of the sections, as asked; in a search runs of cuts
-    as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
-    or where all is solved in full. rest: how the pose was found, where that is what is asked for. step: that is given
-    to a method of fixed step [s].
-    auto: the method was left to heun, which may change it on the way. known: the self-stresses at the start.
+    spec: the part that is solved
+    cuts: of the requested sections; a search replaces runs of cuts by their whole lengths
+    method: None if nothing is integrated
+    reduction: the smaller scene that is integrated in its place, and why; None if nothing is integrated, or the whole
+    scene
+    selection: the requested part of the results
+    rest: how the rest pose was found, if the analysis asks for one
+    is_auto: heun chose the method, and may change it during the run
+    step: of a method of fixed step [s]
+    self_stress: the self-stresses at the start
     """
 
     spec: Spec
@@ -56,27 +61,29 @@ class Setup:
     runner: Runner
     method: Method | None
     model: Block
-    reduced: Reduced | None = None
+    reduced: ReducedScene | None = None
     asked: Selection = EVERYTHING
     rest: Rest | None = None
     auto: bool = False
     step: float | None = None
-    known: KnownStress | None = None
+    known: CachedStress | None = None
 
     @cached_property
-    def about(self) -> Array:
+    def moment_point(self) -> Array:
         """The point about which the foundation's moment is taken, (3,) [m], world axes."""
-        given = self.spec.foundation.about
-        return np.array(given if given is not None else (0.0, 0.0, 0.0))
+        point = self.spec.foundation.about
+        return np.array(point if point is not None else (0.0, 0.0, 0.0))
 
     @cached_property
-    def steady(self) -> dict[int, Array]:
-        """The axes, in body axes, about which bodies have a spin that nothing changes."""
+    def steady_spin_axes(self) -> dict[int, Array]:
+        """The spin axes of bodies whose spin is constant, in body axes, by body."""
         if not self.scene.layout.bodies["ball"].any():
             return {}
-        from heuncli.multibody.reduction.spins import spins_of  # only what hangs on balls, or on nothing, has such
+        from heuncli.multibody.reduction.spins import (
+            find_constant_spins,  # only bodies on ball joints, or free ones, have them
+        )
 
-        return {i: spin.axis for i, spin in spins_of(self.scene).items()}
+        return {i: spin.axis for i, spin in find_constant_spins(self.scene).items()}
 
 
 def set_up(
@@ -84,19 +91,22 @@ def set_up(
     method: str | None = None,
     *,
     reduce: bool = True,
-    asked: Selection = EVERYTHING,
-    looked_for: bool = True,
-    stages: Stages = ANEW,
+    selection: Selection = EVERYTHING,
+    find_rest: bool = True,
+    stages: Stages = NO_CACHE,
 ) -> Setup:
-    """Build, cut, assemble, lay out; `method` stands for the one in the spec; reduce: a smaller scene may move for it.
+    """Build, cut, assemble and lay out a scene.
 
-    looked_for: a rest pose that is asked for is found.
-    asked: what is not asked for, and what nothing asked for depends on, is left out; stages: what of it is not made
-    anew. Raises SpecError for a section
-    that cannot be cut, SolveError where the scene does not close.
+    method: overrides that of the spec
+    reduce: whether a smaller scene may be integrated in its place
+    selection: sections and parts that it does not need are left out
+    find_rest: whether to search for the rest pose that the analysis asks for
+    stages: the cache of set-up stages
+
+    Raises SpecError for a section that cannot be cut, SolveError where the scene does not close.
     """
-    spec, left_out = asked_part(spec, asked, reduce)
-    mechanism, cuts = draw(spec, stages)
+    spec, left_out = select_part(spec, selection, reduce)
+    mechanism, cuts = build_with_cuts(spec, stages)
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
@@ -105,104 +115,127 @@ def set_up(
         from heuncli.multibody.tree.driven_starts import require_lengths  # few scenes have them
 
         require_lengths(prepared.mechanism, max(spec.analysis.times))
-    if not reduce:  # what is declared planar is moved as in space, too
+    if not reduce:  # a scene declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
-    scene, runner = ready(prepared, stages)
-    if scene.mechanism.rubbing and scene.layout.rows:
-        from heuncli.loads.redundancy.rubbing import require_certain_start  # few scenes have such friction
+    scene, runner = make_runner(prepared, stages)
+    if scene.mechanism.joint_friction and scene.layout.rows:
+        from heuncli.loads.redundancy.rubbing import (
+            require_determinate_friction_at_start,  # few scenes have such friction
+        )
 
-        require_certain_start(scene, runner, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
+        require_determinate_friction_at_start(
+            scene, runner, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
+        )
     if spec.analysis.type == "rest":
-        return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, asked), left_out, looked_for)
-    asked_method = method or spec.analysis.method
-    auto = asked_method.lower() == AUTO
-    chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
+        return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, selection), left_out, find_rest)
+    method_name = method or spec.analysis.method
+    auto = method_name.lower() == AUTO
+    chosen = load_method_by_name(method_name) if spec.analysis.type == "motion" else None
     reduced, follows = None, NOT_DETERMINED
     if chosen is not None and reduce:
-        if auto and scene.mechanism.couplings:  # trains are driven, most of them: then a smaller scene saves nothing
-            follows = determined(runner.moving)
+        if auto and scene.mechanism.couplings:  # most gear trains are driven; then a smaller scene saves nothing
+            follows = find_determined_motion(runner.integrated_scene)
         if not follows.is_so:
-            reduced, runner = reduced_runner(scene, runner, stages)
-            follows = determined(runner.moving)
-    told = reductions(left_out, scene, reduced)
+            reduced, runner = reduce_scene(scene, runner, stages)
+            follows = find_determined_motion(runner.integrated_scene)
+    reductions_block = describe_reductions(left_out, scene, reduced)
     if chosen is not None and auto:
-        chosen, told = FOLLOWED if follows.is_so else first_choice(runner.moving.layout, spec), follows.beside(told)
-    held_twice = redundancy(scene, runner, stages)
-    note = model_note(scene, runner, chosen.name if chosen else "none", held_twice) | told
+        chosen, reductions_block = (
+            DRIVE_DETERMINED if follows.is_so else choose_first_method(runner.integrated_scene.layout, spec),
+            follows.add_to_block(reductions_block),
+        )
+    redundancies = count_redundancy(scene, runner, stages)
+    note = make_model_block(scene, runner, chosen.name if chosen else "none", redundancies) | reductions_block
     if chosen is not None:
-        note["reasons"] += attitudes(chosen, runner.moving.layout)
-        if auto and not chosen.determined:
-            note["reasons"] += why(chosen, runner.moving.layout, spec)
-    step = spec.analysis.step if chosen is not None and chosen.fixed else None
+        note["reasons"] += describe_attitudes(chosen, runner.integrated_scene.layout)
+        if auto and not chosen.is_determined:
+            note["reasons"] += explain_method(chosen, runner.integrated_scene.layout, spec)
+    step = spec.analysis.step if chosen is not None and chosen.has_fixed_step else None
     note |= {} if step is None else {"step": step}
-    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step, known=held_twice.here)
+    return Setup(
+        spec,
+        scene,
+        cuts,
+        runner,
+        chosen,
+        note,
+        reduced,
+        selection,
+        is_auto=auto,
+        step=step,
+        self_stress=redundancies.start_stress,
+    )
 
 
 def require_drives(mechanism: Mechanism, t: float) -> None:
-    """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
+    """Raise SolveError for drives whose first values are too large to compute with, because the assembly squares
+    them.
+    """
     jets = [law.value.derivatives(t) for law in mechanism.laws]
     if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
-        from heuncli.motion.integration.diagnosis.domains import large_values  # only on the way to an error
+        from heuncli.motion.integration.diagnosis.domains import find_large_values  # only on the way to an error
 
-        raise SolveError(*large_values(mechanism, t, {}))
+        raise SolveError(*find_large_values(mechanism, t, {}))
 
 
-def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) -> Setup:
-    """The setup with its rest pose as the start, and how it rests; as drawn where that is not looked for."""
-    from heuncli.study.model.rest_pose import at_rest  # few scenes ask for it
+def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], find_rest: bool) -> Setup:
+    """Return the setup with its rest pose as the start and sentences on it; with the drawn pose unless `find_rest`."""
+    from heuncli.study.model.rest_pose import start_at_rest  # few scenes need it
 
     scene, runner, rest = setup.scene, setup.runner, None
-    if looked_for:
-        scene, runner, rest = at_rest(scene, runner)
-    held_twice = redundancy(scene, runner)
-    note = model_note(scene, runner, "rest", held_twice) | reductions(left_out, scene, None)
-    told = rested(note, rest.told if rest else ())
-    return replace(setup, scene=scene, runner=runner, rest=rest, model=told, known=held_twice.here)
+    if find_rest:
+        scene, runner, rest = start_at_rest(scene, runner)
+    redundancies = count_redundancy(scene, runner)
+    note = make_model_block(scene, runner, "rest", redundancies) | describe_reductions(left_out, scene, None)
+    model = add_rest_sentences(note, rest.sentences if rest else ())
+    return replace(setup, scene=scene, runner=runner, rest=rest, model=model, self_stress=redundancies.start_stress)
 
 
 def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
-    """Every rope as one that may go slack: at rest it bears or does not, and ends no run by being pushed.
+    """Return the mechanism with ropes that may go slack: at rest a rope bears or does not, and pushing it ends no run.
 
-    So does what a cam presses: it may lie on it or not.
+    Cams likewise may touch or lift off.
     """
-    joints = [replace(j, restitution=0.0) if j.opens and j.restitution is None else j for j in mechanism.joints]
-    return replace(mechanism, joints=tuple(joints), couplings=tuple(slackening(own) for own in mechanism.couplings))
+    joints = [replace(j, restitution=0.0) if j.can_open and j.restitution is None else j for j in mechanism.joints]
+    return replace(mechanism, joints=tuple(joints), couplings=tuple(with_slack(own) for own in mechanism.couplings))
 
 
-def slackening(own: Coupling) -> Coupling:
-    """A coupling whose one-sided conditions open and close; of a rope they are yet to be made, as it says itself."""
-    rows = [replace(r, restitution=0.0) if r.tension_only and r.restitution is None else r for r in own.rows]
-    given = own.given
-    if isinstance(given, Rope) and given.tension_only and given.restitution is None:
-        given = given._replace(restitution=0.0)
-    return replace(own, rows=tuple(rows), given=given)
+def with_slack(coupling: Coupling) -> Coupling:
+    """Return a coupling whose unilateral conditions open and close. A rope's conditions are made later, so its own
+    entry is changed, too.
+    """
+    rows = [replace(r, restitution=0.0) if r.tension_only and r.restitution is None else r for r in coupling.rows]
+    spec_coupling = coupling.entry
+    if isinstance(spec_coupling, Rope) and spec_coupling.tension_only and spec_coupling.restitution is None:
+        spec_coupling = spec_coupling._replace(restitution=0.0)
+    return replace(coupling, rows=tuple(rows), entry=spec_coupling)
 
 
-def asked_part(spec: Spec, asked: Selection, reduce: bool) -> tuple[Spec, tuple[str, ...]]:
-    """The spec as far as it is asked for; what of the scene is left out, in a sentence."""
-    if asked.is_everything:
+def select_part(spec: Spec, selection: Selection, reduce: bool) -> tuple[Spec, tuple[str, ...]]:
+    """Return the requested part of the spec, and a sentence on what is left out."""
+    if selection.is_everything:
         return spec, ()
-    from heuncli.study.model.needed_parts import left_out, restricted  # where not all is asked for
+    from heuncli.study.model.needed_parts import describe_left_out, restrict_spec  # only if not everything is requested
 
-    part = restricted(spec, asked, reduce=reduce)
-    return part, left_out(spec, part)
+    part = restrict_spec(spec, selection, reduce=reduce)
+    return part, describe_left_out(spec, part)
 
 
-def reduced_runner(scene: PreparedScene, runner: Runner, stages: Stages = ANEW) -> tuple[Reduced, Runner]:
-    """The smallest scene that moves as this one does, and a runner that integrates it in its place."""
+def reduce_scene(scene: PreparedScene, runner: Runner, stages: Stages = NO_CACHE) -> tuple[ReducedScene, Runner]:
+    """Return the smallest scene that moves like this one, and a runner that integrates it in its place."""
     reduced = reduction.reduce(scene, stages)
     if not reduced.steps:
         return reduced, runner
-    _, own = ready(reduced.steps[-1].scene)
-    return reduced, Runner(scene.layout, smaller(own, reduced))
+    _, small_runner = make_runner(reduced.steps[-1].scene)
+    return reduced, Runner(scene.layout, integrate_reduced(small_runner, reduced))
 
 
-def draw(spec: Spec, stages: Stages = ANEW) -> tuple[Mechanism, tuple[Cuts, ...]]:
-    """The bodies as they are drawn, and their sections. Raises SpecError with every section that cannot be cut."""
-    forms = forms_of(spec, stages)
+def build_with_cuts(spec: Spec, stages: Stages = NO_CACHE) -> tuple[Mechanism, tuple[Cuts, ...]]:
+    """Build the bodies as drawn, and their sections. Raises SpecError with every section that cannot be cut."""
+    forms = make_forms(spec, stages)
     mechanism = build(spec, forms, stages)
     if not spec.sections:
         return mechanism, ()
-    from heuncli.loads.kinetostatics.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
+    from heuncli.loads.kinetostatics.cuts import make_cuts  # with the shapes 9 ms that other scenes do not need
 
-    return mechanism, lay_cuts(mechanism, spec, forms)
+    return mechanism, make_cuts(mechanism, spec, forms)

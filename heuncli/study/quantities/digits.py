@@ -1,12 +1,12 @@
-"""How many digits a number is shown with: no more than its error supports, and never more than six.
+"""Decide how many digits a number is shown with: no more than its error supports, and never more than six.
 
-The error of a run is known by kind (`accuracy.estimate`): that of the motion relative to the size of the scene, that of
-each kind of loads relative to its own largest. Beside it stands the rounding of what a number is summed from
+The error of a run is known by kind (`accuracy.estimate`): of the motion relative to the size of the scene, of each kind
+of loads relative to its own largest. To this comes the rounding of the terms that a number is summed from
 (`Magnitudes`): the force on the ground may be 1e-12 N where 30 N cancel.
 
-Numbers of one family (the components of one vector) share their decimals. What is below the last of them is `0`: it is
-known to be nothing beside the others. A family whose largest number is rounding is `0`, too. A family whose largest
-number is not above the error is `?`: nothing is known of it, not even its sign.
+Numbers of one family (the components of one vector) share their decimals. A number below the last decimal is `0`: it is
+known to be negligible beside the others. A family whose largest number is rounding is `0`, too. A family whose largest
+number does not exceed its error is `?`: not even its sign is known.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Magnitudes, Results
-from heuncli.results.results_schema import BY_CAUSE, KIND_OF, SHARES, kind_of_error
+from heuncli.results.results_schema import BY_CAUSE, KIND_OF, SHARES, error_kind_of_path
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, walk, walk_impulse
+from heuncli.study.quantities.series import Series, iter_impulse_series, iter_series
 from heuncli.study.quantities.table_units import Units
 
 DIGITS = 6
@@ -39,9 +39,10 @@ Scales = Mapping[tuple[str, str], float]  # by kind and unit
 
 
 class Style(NamedTuple):
-    """How the numbers of one family are written: fixed decimals, or an exponent where the family is far from 1.
+    """How the numbers of one family are written: with fixed decimals, or an exponent where they are far from 1.
 
-    rounding: what is not above it is 0; known: whether any digit of the family's largest number is certain.
+    rounding: magnitudes up to it are shown as 0
+    is_known: whether any digit of the family's largest number is certain
     """
 
     decimals: int
@@ -50,18 +51,18 @@ class Style(NamedTuple):
     known: bool = True
 
     def write(self, value: float) -> str:
-        """The number as text: `open` for nan, `0` for what is below the certain digits, `?` for what is not known."""
+        """Format the number: `open` for nan, `0` below the certain digits, `?` for an unknown number."""
         if math.isnan(value):
             return OPEN
         if math.isinf(value):
             return "unbounded"
         if abs(value) <= self.rounding:
             return "0"
-        if not self.known:
+        if not self.is_known:
             return UNKNOWN
         if abs(value) < 0.5 * 10.0**-self.decimals:
             return "0"
-        if self.exponent:
+        if self.has_exponent:
             mantissa = min(max(self.decimals + math.floor(math.log10(abs(value))), 0), DIGITS - 1)
             return f"{value:.{mantissa}e}"
         return f"{value:.{max(self.decimals, 0)}f}"
@@ -70,104 +71,112 @@ class Style(NamedTuple):
 class Certainty(NamedTuple):
     """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
 
-    beside: instants beside singular poses, at which what is nan is not known.
+    singular_times: instants close to singular poses, at which nan means unknown
     """
 
     errors: Mapping[tuple[str, str], float]
     rounding: Mapping[str, float]
     beside: frozenset[float] = frozenset()
 
-    def error(self, kind: str, unit: str) -> float:
-        """The estimated error of numbers of this kind and unit, not below their rounding."""
-        return max(self.errors.get((kind, unit), 0.0), self.lost(unit))
+    def error_of(self, kind: str, unit: str) -> float:
+        """The estimated error of numbers of this kind and unit, at least their rounding."""
+        return max(self.errors.get((kind, unit), 0.0), self.rounding_of(unit))
 
-    def lost(self, unit: str) -> float:
-        """What numbers of this unit lose by rounding."""
+    def rounding_of(self, unit: str) -> float:
+        """The rounding error of numbers of this unit."""
         return self.rounding.get(unit, 0.0)
 
-    def style(self, kind: str, unit: str, scale: float) -> Style:
-        """The style of a family of this kind and unit whose largest magnitude is `scale`."""
-        return style(scale, self.error(kind, unit), self.lost(unit))
+    def choose_style(self, kind: str, unit: str, scale: float) -> Style:
+        """Choose the style of a family of this kind and unit whose largest magnitude is `scale`."""
+        return choose_style(scale, self.error_of(kind, unit), self.rounding_of(unit))
 
 
-def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
-    """The errors of a run: as its check run found them, else from its estimates and the largest of each kind."""
-    scales = scales_of(results, labels)
+def find_certainty(results: Results, labels: Labels, magnitudes: Magnitudes) -> Certainty:
+    """Return the errors of a run: those that its check run found, otherwise its estimates times the largest of each
+    kind.
+    """
+    scales = find_scales(results, labels)
     errors = {key: results.relative_error(KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
     for kind in LOADS:
-        for own in (kind, f"{kind} {BY_CAUSE}"):
-            errors |= _of_wrench(own, results.relative_error(kind), scales, of.size)
-    errors |= of.errors
-    errors |= results.errors_of_places(of.size)
-    for unit in ("m", "m/s", "m/s²", "rad/s²"):  # where no path counts them in its own measure
-        if ("travels", unit) not in of.errors and ("motion", unit) in errors:
+        for error_kind in (kind, f"{kind} {BY_CAUSE}"):
+            errors |= _wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
+    errors |= magnitudes.errors
+    errors |= results.position_errors(magnitudes.size)
+    for unit in ("m", "m/s", "m/s²", "rad/s²"):  # where no path has its own measure of travel
+        if ("travels", unit) not in magnitudes.errors and ("motion", unit) in errors:
             errors["travels", unit] = errors["motion", unit]
-    lost = of.lost()
-    load = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
-    if load > 0.0:  # stresses are in proportion to what makes them
+    rounding = magnitudes.rounding_errors()
+    load = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / magnitudes.size)
+    if load > 0.0:  # stresses are proportional to the section loads
         stress = scales.get(("sections", "Pa"), 0.0) / load
-        error = max(errors["sections", "N"], errors["sections", "N·m"] / of.size)
+        error = max(errors["sections", "N"], errors["sections", "N·m"] / magnitudes.size)
         errors["sections", "Pa"] = stress * error
         errors["sections", "1"] = scales.get(("sections", "1"), 0.0) / load * error
-        lost["Pa"] = stress * lost["N"]
+        rounding["Pa"] = stress * rounding["N"]
     horizon = results.horizon
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
-    return with_units(Certainty(errors, lost), labels.units)
+    return add_units(Certainty(errors, rounding), labels.units)
 
 
-def scales_of(results: Results, labels: Labels, only: str | None = None) -> dict[tuple[str, str], float]:
-    """The largest magnitudes of a run by kind and unit, of its blows, too; only: of one kind."""
+def find_scales(results: Results, labels: Labels, only_kind: str | None = None) -> dict[tuple[str, str], float]:
+    """Return the largest magnitudes of a run by kind and unit, including its impulses; only_kind: restricts it to one
+    kind.
+    """
     scales: dict[tuple[str, str], float] = {}
-    struck = (series for impulse in results.impulses for series in walk_impulse(impulse, labels))
-    for series in chain(walk(results, labels), struck):
-        key = (kind_of(series), series.unit)
-        if only is None or key[0] == only:
-            scales[key] = max(scales.get(key, 0.0), largest(series.values))
+    impulse_series = (series for impulse in results.impulses for series in iter_impulse_series(impulse, labels))
+    for series in chain(iter_series(results, labels), impulse_series):
+        key = (find_error_kind(series), series.unit)
+        if only_kind is None or key[0] == only_kind:
+            scales[key] = max(scales.get(key, 0.0), largest_magnitude(series.values))
     return scales
 
 
-def is_of_load(kind: str, unit: str) -> bool:
-    """Whether numbers are forces or moments of a kind whose error is one of the whole kind."""
+def is_load(kind: str, unit: str) -> bool:
+    """Whether numbers are forces or moments of a kind that has one common error."""
     return kind in LOADS and unit in ("N", "N·m")
 
 
-def error_of_load(results: Results, labels: Labels, of: Magnitudes, kind: str, unit: str) -> float:
-    """The error of one kind of loads, as `certainty` has it where there is no horizon."""
-    own = _of_wrench(kind, results.relative_error(kind), scales_of(results, labels, kind), of.size)
-    found = {**own, **of.errors}
-    return max(found[kind, unit], of.lost().get(unit, 0.0))
+def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, kind: str, unit: str) -> float:
+    """Return the error of one kind of loads, as `find_certainty` gives it without a horizon."""
+    estimates = _wrench_errors(kind, results.relative_error(kind), find_scales(results, labels, kind), magnitudes.size)
+    errors = {**estimates, **magnitudes.errors}
+    return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
 
 
-def with_units(certain: Certainty, units: Units) -> Certainty:
-    """Errors and rounding by the SI units of the results, and beside these by the units that tables show for them."""
-    errors, lost = dict(certain.errors), dict(certain.rounding)
+def add_units(certain: Certainty, units: Units) -> Certainty:
+    """Add errors and rounding in the display units of tables to those in SI units."""
+    errors, roundings = dict(certain.errors), dict(certain.rounding)
     for (kind, unit), error in certain.errors.items():
-        shown, size = units.of(unit)
-        errors[kind, shown] = size * error
+        display_unit, size = units.find(unit)
+        errors[kind, display_unit] = size * error
     for unit, rounding in certain.rounding.items():
-        shown, size = units.of(unit)
-        lost[shown] = size * rounding
-    return certain._replace(errors=errors, rounding=lost)
+        display_unit, size = units.find(unit)
+        roundings[display_unit] = size * rounding
+    return certain._replace(errors=errors, rounding=roundings)
 
 
-def kind_of(series: Series) -> str:
-    """The kind of estimate (`accuracy.estimate`) that states the error of a series."""
+def find_error_kind(series: Series) -> str:
+    """Return the kind of estimate (`accuracy.estimate`) that states the error of a series."""
     name = f"{series.name}.{SHARES}.{series.cause}" if series.cause else series.name
-    return kind_of_error(series.kind, name, series.quantity)
+    return error_kind_of_path(series.kind, name, series.quantity)
 
 
-def _of_wrench(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
-    """Errors of one kind of loads; against a moment stands a force on the scene's size as lever."""
+def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
+    """Return the errors of forces and moments of one kind of loads; a force counts as a moment with the scene's size as
+    lever.
+    """
     errors: dict[tuple[str, str], float] = {}
     for force, moment in (("N", "N·m"), ("N·s", "N·m·s")):
-        own = max(scales.get((kind, force), 0.0), scales.get((kind, moment), 0.0) / size)
-        errors |= {(kind, force): relative * own, (kind, moment): relative * own * size}
+        largest_force = max(scales.get((kind, force), 0.0), scales.get((kind, moment), 0.0) / size)
+        errors |= {(kind, force): relative * largest_force, (kind, moment): relative * largest_force * size}
     return errors
 
 
-def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units, unit: str = "N") -> Certainty:
-    """The errors of a run with those of the central axis at the instants that are shown: no better than its force's.
+def add_axis_errors(
+    certain: Certainty, results: Results, magnitudes: Magnitudes, units: Units, unit: str = "N"
+) -> Certainty:
+    """Add the errors of the central axis at the shown instants: it is no more accurate than its force.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
     """
@@ -175,64 +184,64 @@ def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units
         return certain
     axis = results.foundation["axis"]
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
-    relative = certain.error("foundation", unit) / float(force.min()) if force.size else 0.0
-    lever = of.size + largest(axis["point"]) + largest(axis["pitch"])
-    shown, size = units.of("m")
-    bounds = {("axis", "1"): relative, ("axis", shown): relative * lever * size}
-    own = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
-    return certain._replace(errors={**certain.errors, **own})
+    relative = certain.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
+    lever = magnitudes.size + largest_magnitude(axis["point"]) + largest_magnitude(axis["pitch"])
+    display_unit, size = units.find("m")
+    bounds = {("axis", "1"): relative, ("axis", display_unit): relative * lever * size}
+    axis_errors = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
+    return certain._replace(errors={**certain.errors, **axis_errors})
 
 
-def largest(values: Array) -> float:
+def largest_magnitude(values: Array) -> float:
     """The largest finite magnitude, 0 where there is none."""
-    whole = float(np.abs(values).max(initial=0.0))
-    if math.isfinite(whole):
-        return whole
+    maximum = float(np.abs(values).max(initial=0.0))
+    if math.isfinite(maximum):
+        return maximum
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 
 
-def style(scale: float, error: float, rounding: float = 0.0) -> Style:
-    """The style of a family whose largest magnitude is `scale` and whose numbers are certain to `error`."""
+def choose_style(scale: float, error: float, rounding: float = 0.0) -> Style:
+    """Choose the style of a family whose largest magnitude is `scale` and whose numbers are certain to `error`."""
     if scale <= rounding or scale == 0.0:
         return Style(0, rounding=scale)
     if not error < scale:
-        return Style(0, rounding=rounding, known=False)
+        return Style(0, rounding=rounding, is_known=False)
     decimals = DIGITS - 1 - math.floor(math.log10(scale))
     if scale < LARGE:
         decimals = max(decimals, 0)  # forces of a few million newtons are written without an exponent
     if error > 0.0:
         decimals = min(decimals, math.floor(-math.log10(error)))
-    known = scale >= 0.5 * 10.0**-decimals
-    return Style(decimals, not SMALL <= scale < LARGE or decimals < 0, rounding, known)
+    is_known = scale >= 0.5 * 10.0**-decimals
+    return Style(decimals, not SMALL <= scale < LARGE or decimals < 0, rounding, is_known)
 
 
-def write(values: Iterable[float], how: Style) -> list[str]:
-    """The numbers of one family as text, without the zeros that end all of them."""
-    return trim([how.write(value) for value in values])
+def write_numbers(values: Iterable[float], style: Style) -> list[str]:
+    """Format the numbers of one family, without the trailing zeros that they have in common."""
+    return trim_zeros([style.write(value) for value in values])
 
 
-def trim(texts: Sequence[str]) -> list[str]:
-    """The texts without the trailing zeros they have in common, one decimal kept."""
+def trim_zeros(texts: Sequence[str]) -> list[str]:
+    """Remove the trailing zeros that the texts have in common; one decimal stays."""
     spare = [len(text) - len(text.rstrip("0")) for text in texts if "." in text and "e" not in text]
     whole = [len(text.partition(".")[2]) for text in texts if "." in text and "e" not in text]
     cut = min((min(zeros, decimals - 1) for zeros, decimals in zip(spare, whole, strict=True)), default=0)
     return [text[: len(text) - cut] if cut and "." in text and "e" not in text else text for text in texts]
 
 
-def beyond_horizon(value: float, unit: str, certain: Certainty, text: str) -> str:
-    """What stands for a number beyond the horizon: `?`, unless it is open or nothing but rounding."""
+def format_unclaimed(value: float, unit: str, certain: Certainty, text: str) -> str:
+    """Format a number after the horizon: `?`, unless it is indeterminate or only rounding."""
     if text == OPEN:
         return OPEN
-    return "0" if abs(value) <= certain.lost(unit) else UNKNOWN
+    return "0" if abs(value) <= certain.rounding_of(unit) else UNKNOWN
 
 
 def write_times(times: Sequence[float], span: float) -> list[str]:
-    """Instants as text, to a hundred-thousandth of the run."""
-    how = Style(max(0, 5 - math.ceil(math.log10(span))) if span > 0.0 else DIGITS)
-    return [trim([how.write(t)])[0] for t in times]
+    """Format instants, to a hundred-thousandth of the run."""
+    style = Style(max(0, 5 - math.ceil(math.log10(span))) if span > 0.0 else DIGITS)
+    return [trim_zeros([style.write(t)])[0] for t in times]
 
 
-def rough(value: float) -> str:
-    """An error to one digit: `3e-11`, `0`."""
+def format_error(value: float) -> str:
+    """Format an error to one digit: `3e-11`, `0`."""
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") if value else "0"

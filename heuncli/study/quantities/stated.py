@@ -7,75 +7,84 @@ from collections.abc import Sequence
 
 from heuncli.base import tolerances
 from heuncli.base.records import replace
-from heuncli.results.results_schema import BLOWS, CUT, EVENTS, MAGNITUDES, kind_of_error, quantity
-from heuncli.results.run_places import words_of
+from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, MAGNITUDES, error_kind_of_path, find_quantity
+from heuncli.results.run_places import split_path
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
-from heuncli.study.model.selection import entries_of, entry_at
-from heuncli.study.quantities.digits import certainty, error_of_load, is_of_load
-from heuncli.study.quantities.labels import labels_for_units
+from heuncli.study.model.selection import list_entries, split_entry
+from heuncli.study.quantities.digits import find_certainty, find_load_error, is_load
+from heuncli.study.quantities.labels import make_unit_labels
 from heuncli.study.quantities.table_units import Units
 
 SI = Units({})
-SQUARED = 4.0 * tolerances.EPS  # of the largest square along a run of cuts: what its polynomial loses of a square
+SQUARE_ROUNDING = 4.0 * tolerances.EPS  # relative to the largest square along a run of cuts: rounding of its polynomial
 
 
-def unit_of(path: str, spec: Spec) -> str:
-    """The SI unit of what a path leads to; empty where it has none, or that is not known before the run."""
-    words = words_of(path)
-    entry, rest = entry_at(words, entries_of(spec))
-    keys = [*entry, *rest] if entry is not None else words
-    while keys and quantity(keys) is None:  # what stands behind the quantity names one of its numbers: .x, .0.x
+def find_unit(path: str, spec: Spec) -> str:
+    """Return the SI unit of a path; empty if it has none, or if it is unknown before the run."""
+    words = split_path(path)
+    entry, remaining = split_entry(words, list_entries(spec))
+    keys = [*entry, *remaining] if entry is not None else words
+    while keys and find_quantity(keys) is None:  # words after the quantity select one of its numbers: .x, .0.x
         keys.pop()
-    return _unit(keys, spec)
+    return _unit_of_keys(keys, spec)
 
 
-def _unit(keys: Sequence[str], spec: Spec) -> str:
-    """The SI unit of the quantity under some keys; of two that of what turns, or slides."""
-    row = quantity(keys)
+def _unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
+    """Return the SI unit of the quantity under some keys; of two units, that of an angle or of a travel."""
+    row = find_quantity(keys)
     if row is None or not row.units:
         return ""
-    own = keys[2:] if keys[0] == BLOWS else keys
-    turns = len(row.units) > 1 and labels_for_units(spec).turns(own[0], own[1])
+    entry_keys = keys[2:] if keys[0] == IMPULSES else keys
+    turns = len(row.units) > 1 and make_unit_labels(spec).is_rotational(entry_keys[0], entry_keys[1])
     return row.units[1 if turns else 0]
 
 
-def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
-    """The error of a measure, as tables and goldens state it; None where the run states none, as of what is counted."""
-    there = study.numbers(asked.path)
-    keys = there.keys
+def find_measure_error(request: MeasureRequest, peak: Peak, study: Study) -> float | None:
+    """Return the error of a measure, as tables and golden files state it; None if the run states none, as for
+    counts.
+    """
+    numbers = study.find_numbers(request.path)
+    keys = numbers.keys
     if keys[0] == EVENTS:
-        return _of_event(keys, peak, study)
-    unit = _unit(keys, study.spec)
+        return _find_event_error(keys, peak, study)
+    unit = _unit_of_keys(keys, study.spec)
     if not unit:
         return None
-    error = _of_unit(keys, unit, study)
-    if error is not None and asked.how == "min" and CUT in there.axes and (there.of_vectors or keys[-1] in MAGNITUDES):
-        return max(error, _of_root(peak.value, study.magnitudes.by_unit.get(unit, 0.0)))
+    error = _find_unit_error(keys, unit, study)
+    if (
+        error is not None
+        and request.how == "min"
+        and CUT in numbers.axes
+        and (numbers.is_vector or keys[-1] in MAGNITUDES)
+    ):
+        return max(error, _find_root_error(peak.value, study.magnitudes.by_unit.get(unit, 0.0)))
     return error
 
 
-def _of_unit(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
-    """The error of numbers of a kind and unit."""
-    kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
-    of = study.load_magnitudes if is_of_load(kind, unit) else study.magnitudes
-    if (kind, unit) in of.errors:
-        return max(of.errors[kind, unit], of.lost().get(unit, 0.0))
-    labels = replace(labels_for_units(study.spec), units=SI)
-    if is_of_load(kind, unit) and study.results.horizon is None:
-        return error_of_load(study.results, labels, of, kind, unit) or None
-    return certainty(study.results, labels, study.magnitudes).error(kind, unit) or None
+def _find_unit_error(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
+    """Return the error of numbers of a kind and unit."""
+    kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
+    magnitudes = study.load_magnitudes if is_load(kind, unit) else study.magnitudes
+    if (kind, unit) in magnitudes.errors:
+        return max(magnitudes.errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
+    labels = replace(make_unit_labels(study.spec), units=SI)
+    if is_load(kind, unit) and study.results.horizon is None:
+        return find_load_error(study.results, labels, magnitudes, kind, unit) or None
+    return find_certainty(study.results, labels, study.magnitudes).error_of(kind, unit) or None
 
 
-def _of_root(value: float, largest: float) -> float:
-    """The error of the least magnitude along a run of cuts: the root of a polynomial, known as well as its largest."""
-    lost = SQUARED * largest * largest
-    return lost / max(value, math.sqrt(lost)) if lost > 0.0 else 0.0
+def _find_root_error(value: float, largest: float) -> float:
+    """Return the error of the least magnitude along a run of cuts: the root of a polynomial that is as accurate as its
+    largest value.
+    """
+    rounding = SQUARE_ROUNDING * largest * largest
+    return rounding / max(value, math.sqrt(rounding)) if rounding > 0.0 else 0.0
 
 
-def _of_event(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:
-    """The error of an event's instant [s]."""
+def _find_event_error(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:
+    """Return the error of an event's instant [s]."""
     event = study.results.events.get(keys[1])
     if event is None or "time" not in keys[2:3]:
         return None

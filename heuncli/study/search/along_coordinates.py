@@ -1,8 +1,8 @@
-"""Where loads that hang on coordinates have to be looked at: a body takes them along however fast they run.
+"""Find where loads that depend on coordinates need more instants: a body carries them along however fast they change.
 
-Where they push what is held, no step of an integration feels them. They are asked of the machine itself: each interval
-of a grid once, unless its neighbours foretold both its ends, and divided there until the cubics through four neighbours
-foretell them (study/search/turnings.py).
+Where such loads push a constrained direction, no integration step feels them. So they are sampled directly: each
+interval of a grid once, unless cubics through its neighbours predict both its ends, and divided there until the cubics
+through four neighbours predict them (study/search/turnings.py).
 """
 
 from __future__ import annotations
@@ -11,28 +11,41 @@ import numpy as np
 
 from heuncli.results.results import Array
 from heuncli.study.model.setup import Setup
-from heuncli.study.search.in_time import EVENLY, UNSEEN
-from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, doubtful, resolved
+from heuncli.study.search.in_time import MIN_INTERVALS, NEGLIGIBLE
+from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, find_doubtful, refine_until_predicted
 from heuncli.study.solve.history import History, resample
 
 
-def close_to_loads(setup: Setup, history: History, grid: Array, most: int) -> tuple[Array, bool]:
-    """A grid (n,), ascending, with more instants where applied loads need them; whether `most` are enough."""
+def refine_for_loads(setup: Setup, history: History, grid: Array, max_instants: int) -> tuple[Array, bool]:
+    """Return a grid (n,), ascending, with more instants where applied loads need them; and whether `max_instants` are
+    enough.
+    """
 
     def loads(times: Array) -> Array:
-        """Forces and moments of all loads, (n_t, 6 n_loads); 0 where one is open."""
+        """Sample forces and moments of all loads, (n_t, 6 n_loads); 0 where one is indeterminate."""
         own = resample(setup.runner, history, times).loads
         found = np.concatenate([own["force"], own["moment"]], axis=2).reshape(len(times), -1)
         return np.where(np.isfinite(found), found, 0.0)
 
-    begun = SampledTurns(grid, loads(grid), complete=True)
+    first_samples = SampledTurns(grid, loads(grid), complete=True)
     # forces, moments: each of as much as the largest of its kind
-    largest = np.abs(begun.values).reshape(-1, 2, 3).max(axis=(0, 2), initial=0.0)
-    unseen = UNSEEN * np.tile(np.repeat(largest, 3), begun.values.shape[1] // 6)
-    probes = np.setdiff1d(np.linspace(grid[0], grid[-1], EVENLY + 1), grid) if len(grid) < EVENLY else NO_INSTANTS
+    largest = np.abs(first_samples.values).reshape(-1, 2, 3).max(axis=(0, 2), initial=0.0)
+    unseen = NEGLIGIBLE * np.tile(np.repeat(largest, 3), first_samples.values.shape[1] // 6)
+    probes = (
+        np.setdiff1d(np.linspace(grid[0], grid[-1], MIN_INTERVALS + 1), grid)
+        if len(grid) < MIN_INTERVALS
+        else NO_INSTANTS
+    )
 
     def slack(size: Array, _: Array) -> Array:
         return np.broadcast_to(unseen, size.shape)
 
-    found = resolved(loads, begun, slack, most=most, probes=probes, doubted=doubtful(begun, slack))
+    found = refine_until_predicted(
+        loads,
+        first_samples,
+        slack,
+        max_instants=max_instants,
+        probes=probes,
+        is_doubtful=find_doubtful(first_samples, slack),
+    )
     return found.times, found.complete

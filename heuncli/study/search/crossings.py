@@ -1,11 +1,10 @@
-"""Instants at which a sampled number passes through zero, searched between the samples as extremes are.
+"""Find the instants at which a sampled number passes through zero, searched between the samples as extremes are.
 
-A number h(t) is known on a grid and can be asked for at any other instant; it counts as above zero where it is above
-its own error. Where two neighbours of the grid differ in that there is a crossing between them, found as a root; where
-they do not the number may still pass zero and come back: parts that promise so (study/search/intervals.py) are asked
-where they promise most and divided there, until none is left. Neighbours that are the two sides of a jump are told as
-such.
-Numbers only: knows nothing of joints, units or text.
+A number h(t) is known on a grid and can be sampled at any other instant; it counts as positive where it exceeds its own
+error. Where two neighbours of the grid differ in that there is a crossing between them, found as a root. Where they do
+not, the number may still pass zero and return: intervals that may hide this (study/search/intervals.py) are sampled
+where they promise most and divided there, until none is left. Neighbours that are the two sides of a jump are reported
+as such. Numbers only: knows nothing of joints, units or text.
 """
 
 from __future__ import annotations
@@ -18,25 +17,30 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
 from heuncli.study.search.extremes import (
-    MOST_PROBES,
-    MOST_ROUNDS,
+    MAX_PROBES,
+    MAX_ROUNDS,
     Best,
     Targets,
-    distinct,
-    intervals_of,
-    sides_of_jumps,
+    find_intervals,
+    find_jump_sides,
+    sort_distinct,
 )
 from heuncli.study.search.intervals import Intervals
 
-NumberAt = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
-MOST_STEPS = 120  # towards a root: halving alone takes 53, an interpolation that fails each time twice that
+NumberSampler = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
+MAX_STEPS = 120  # towards a root; bisection alone takes 53, with an interpolation that fails each time twice that
 
 
 class Crossings(NamedTuple):
-    """Where a number passes zero: times (n,) ascending, up (n,): whether it is above behind; error (n,) of the times.
+    """The crossings of zero of a number.
 
-    begins: whether it is above at first; jumps (n,): whether it jumps there; gaps: whether it was no number somewhere;
-    complete: whether all was looked at that may pass.
+    begins: whether the number is positive at first
+    times (n,): ascending
+    is_rise (n,): whether it is positive after the crossing
+    error (n,): of the times
+    jumps (n,): whether it jumps there
+    gaps: whether it was nan somewhere
+    complete: whether every interval that may hide a crossing was searched
     """
 
     begins: bool
@@ -49,7 +53,7 @@ class Crossings(NamedTuple):
 
 
 class Bracket(NamedTuple):
-    """Instants a before b (n,), on two sides of what is searched; f, g: h there."""
+    """Instants a before b (n,) on two sides of a root; f, g: h there."""
 
     a: Array
     b: Array
@@ -57,87 +61,98 @@ class Bracket(NamedTuple):
     g: Array
 
 
-def crossings(sample: NumberAt, times: Array, h: Array, error: float) -> Crossings:
-    """Where what is sampled passes zero within the span of `times`, (n,) ascending; h: it there, error: of h."""
-    times, h, complete = refined(sample, times, h, error)
+def find_crossings(sample: NumberSampler, times: Array, h: Array, error: float) -> Crossings:
+    """Find where the sampled number passes zero within the span of `times`, (n,) ascending; h: its values there, error:
+    of h.
+    """
+    times, h, complete = refine_grid(sample, times, h, error)
     known = np.isfinite(h)
     gaps = not bool(known.all())
     above = h > error
-    both = known[1:] & known[:-1] & (above[1:] != above[:-1])
-    jumps = sides_of_jumps(times)
-    k = np.flatnonzero(both)
-    at, smooth = times[k + 1].copy(), ~jumps[k]
+    is_crossing = known[1:] & known[:-1] & (above[1:] != above[:-1])
+    jumps = find_jump_sides(times)
+    k = np.flatnonzero(is_crossing)
+    crossing_times, smooth = times[k + 1].copy(), ~jumps[k]
     if smooth.any():
         i = k[smooth]
-        of = Bracket(times[i], times[i + 1], h[i], h[i + 1])
-        at[smooth] = roots(sample, of, np.where((of.f > 0.0) == (of.g > 0.0), error, 0.0))  # else its own error
-    off = np.full(len(k), tolerances.EPS) * np.abs(at)
-    off[smooth] = errors(sample, at[smooth], error, (float(times[0]), float(times[-1])))
+        bracket = Bracket(times[i], times[i + 1], h[i], h[i + 1])
+        crossing_times[smooth] = find_roots(
+            sample, bracket, np.where((bracket.f > 0.0) == (bracket.g > 0.0), error, 0.0)
+        )  # else its own error
+    time_errors = np.full(len(k), tolerances.EPS) * np.abs(crossing_times)
+    time_errors[smooth] = estimate_time_errors(
+        sample, crossing_times[smooth], error, (float(times[0]), float(times[-1]))
+    )
     begins = bool(above[known][0]) if known.any() else False
-    return Crossings(begins, at, above[k + 1], off, jumps[k], gaps, complete)
+    return Crossings(begins, crossing_times, above[k + 1], time_errors, jumps[k], gaps, complete)
 
 
-def refined(sample: NumberAt, times: Array, h: Array, error: float) -> tuple[Array, Array, bool]:
-    """More instants where h passes zero and comes back between two of the grid; whether all was looked at."""
+def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> tuple[Array, Array, bool]:
+    """Add instants where h passes zero and returns between two of the grid; return also whether all was searched."""
     if len(times) < 3:
         return times, h, True
-    asked = Targets(
+    targets = Targets(
         1, np.zeros(1, dtype=np.intp), np.zeros(1, dtype=np.intp), np.array([error]), np.zeros(1, dtype=bool)
     )
-    none = Best(np.zeros(2), np.zeros(2), np.zeros(2, dtype=np.intp))  # zero is the height to be passed, on either side
-    pool, probes = hidden(intervals_of(times, (h - error)[:, None], asked, none)), 0
+    zero_level = Best(np.zeros(2), np.zeros(2), np.zeros(2, dtype=np.intp))  # zero has to be exceeded, on either side
+    pool, probes = select_hidden(find_intervals(times, (h - error)[:, None], targets, zero_level)), 0
     more_t, more_h = [times], [h]
     span = float(np.ptp(times))
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
-        shape = pool.shape()
+        shape = pool.compute_bends()
         least = tolerances.EPS * np.abs(pool.f[:, 1:3]).max(axis=1, initial=0.0)
-        worth = wide & (pool.promise(shape) > least)
-        pool, shape = pool.some(worth), shape.some(worth)
+        worth = wide & (pool.promised_heights(shape) > least)
+        pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target):
-            return joined(more_t, more_h, complete=True)
-        if probes > MOST_PROBES:
+            return merge_samples(more_t, more_h, complete=True)
+        if probes > MAX_PROBES:
             break
-        at = pool.probe(shape)
-        instants = distinct(at)
-        found = sample(instants)
+        at = pool.choose_probes(shape)
+        instants = sort_distinct(at)
+        values = sample(instants)
         side = np.where(pool.target < 1, -1.0, 1.0)
         more_t.append(instants)
-        more_h.append(found)
+        more_h.append(values)
         probes += len(instants)
-        pool = hidden(pool.divided(shape, at, side * (found[np.searchsorted(instants, at)] - error)))
-    return joined(more_t, more_h, complete=False)
+        pool = select_hidden(pool.divide(shape, at, side * (values[np.searchsorted(instants, at)] - error)))
+    return merge_samples(more_t, more_h, complete=False)
 
 
-def hidden(pool: Intervals) -> Intervals:
-    """Intervals at both ends of which zero is not passed, on the side that they are looked at from."""
-    return pool.some((pool.f[:, 1] <= 0.0) & (pool.f[:, 2] <= 0.0))
+def select_hidden(pool: Intervals) -> Intervals:
+    """Return the intervals at both ends of which zero is not passed, on the side that they are searched for."""
+    return pool.select((pool.f[:, 1] <= 0.0) & (pool.f[:, 2] <= 0.0))
 
 
-def joined(times: list[Array], h: list[Array], *, complete: bool) -> tuple[Array, Array, bool]:
-    """All instants that were asked, ascending."""
+def merge_samples(times: list[Array], h: list[Array], *, complete: bool) -> tuple[Array, Array, bool]:
+    """Return all sampled instants, ascending, and their values."""
     t, values = np.concatenate(times), np.concatenate(h)
     order = np.argsort(t, kind="stable")
     new = np.append(True, np.diff(t[order]) > 0.0)
     return t[order][new], values[order][new], complete
 
 
-def roots(sample: NumberAt, of: Bracket, level: Array) -> Array:
-    """The instant in each bracket at which h passes its level (n,).
+def find_roots(sample: NumberSampler, bracket: Bracket, level: Array) -> Array:
+    """Find the instant in each bracket at which h passes its level (n,).
 
-    By inverse quadratic interpolation where that is safe, else by halves: T. R. Chandrupatla, Adv. Eng. Softw. 28
+    By inverse quadratic interpolation where that is safe, else by bisection: T. R. Chandrupatla, Adv. Eng. Softw. 28
     (1997).
     """
-    a, b, f, g = of.b.copy(), of.a.copy(), of.g - level, of.f - level  # a: the newest, b: on its other side
+    a, b, f, g = (
+        bracket.b.copy(),
+        bracket.a.copy(),
+        bracket.g - level,
+        bracket.f - level,
+    )  # a: the newest, b: on its other side
     c, e = b.copy(), g.copy()
     share = np.full(len(a), 0.5)
-    width = 2.0 * tolerances.EPS * np.maximum(np.abs(of.b), 0.01 * np.abs(of.b).max(initial=0.0))
+    width = 2.0 * tolerances.EPS * np.maximum(np.abs(bracket.b), 0.01 * np.abs(bracket.b).max(initial=0.0))
     going = np.abs(a - b) > width
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         if not going.any():
             break
         x = a + share * (b - a)
-        instants = distinct(x[going])
+        instants = sort_distinct(x[going])
         y = np.where(going, 0.0, f)
         y[going] = sample(instants)[np.searchsorted(instants, x[going])] - level[going]
         same = (y > 0.0) == (f > 0.0)
@@ -145,13 +160,13 @@ def roots(sample: NumberAt, of: Bracket, level: Array) -> Array:
         b, g = np.where(going & ~same, a, b), np.where(going & ~same, f, g)
         a, f = np.where(going, x, a), np.where(going, y, f)
         going &= np.abs(a - b) > width
-        share = next_share(Bracket(a, b, f, g), c, e, width)
+        share = choose_next_share(Bracket(a, b, f, g), c, e, width)
     return np.maximum(a, b)
 
 
-def next_share(of: Bracket, c: Array, e: Array, width: Array) -> Array:
-    """Where between a and b to ask next, from the three last points."""
-    a, b, f, g = of
+def choose_next_share(bracket: Bracket, c: Array, e: Array, width: Array) -> Array:
+    """Choose the next place between a and b, as a share of the bracket, from the last three points."""
+    a, b, f, g = bracket
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         xi, phi = (a - b) / (c - b), (f - g) / (e - g)
         safe = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
@@ -161,17 +176,19 @@ def next_share(of: Bracket, c: Array, e: Array, width: Array) -> Array:
     return np.clip(share, least, 1.0 - least)
 
 
-def errors(sample: NumberAt, at: Array, error: float, span: tuple[float, float]) -> Array:
-    """Within which time of each root h is beyond its error on either side, (n,); nan if not within a part of all."""
-    found, open_ = np.full(len(at), np.nan), np.ones(len(at), dtype=bool)
+def estimate_time_errors(sample: NumberSampler, root_times: Array, error: float, span: tuple[float, float]) -> Array:
+    """Return the time within which h exceeds its error on both sides of each root, (n,); nan if none within a part of
+    the span does.
+    """
+    time_errors, open_ = np.full(len(root_times), np.nan), np.ones(len(root_times), dtype=bool)
     d = tolerances.KERNEL["one_instant"] * max(abs(span[1]), 1e-300)
     while open_.any() and d <= tolerances.CLAIMED * (span[1] - span[0]):
-        t = at[open_]
-        instants = distinct(np.clip(np.concatenate([t - d, t + d]), *span))
+        t = root_times[open_]
+        instants = sort_distinct(np.clip(np.concatenate([t - d, t + d]), *span))
         h = sample(instants)
         before, after = (h[np.searchsorted(instants, np.clip(t + s * d, *span))] for s in (-1.0, 1.0))
         decided = ((before > error) & (after < -error)) | ((before < -error) & (after > error))
         which = np.flatnonzero(open_)[decided]
-        found[which], open_[which] = d, False
+        time_errors[which], open_[which] = d, False
         d *= 4.0
-    return found
+    return time_errors

@@ -1,11 +1,10 @@
-"""What redundant joints leave open between instants at which it was found.
+"""Predict which components are indeterminate between instants at which this was found.
 
-What is open follows from the pose alone, by the null space of the closures. Between two instants that null space turns
-with the pose, steadily as long as its dimension stands; a component in which it has a share on both sides has one
-between them, and one in which it has none on either side has none, but for single poses. So the search of extremes
-finds the self-stresses on its grid, and between two instants of it that agree in what is open takes their verdict. It
-does not where the number of dependent rows is another there, where a contact has closed or opened, or where the pose of
-either side is a singular one.
+It follows from the pose alone, by the null space of the closures. Between two instants that null space turns steadily
+with the pose as long as its dimension is constant; a component with a share in it on both sides has one between them,
+and a component with none on either side has none, except in single poses. So the search of extremes finds the
+self-stresses on its grid, and between two instants of it with equal verdicts it uses theirs. It does not where the
+number of dependent rows differs, where a contact has closed or opened, or where the pose of either side is singular.
 """
 
 from __future__ import annotations
@@ -16,19 +15,21 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.loads.redundancy.open_components import names_of, opened
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.loads.redundancy.open_components import list_indeterminate_names, mask_indeterminate
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.study.compose.blocks import blocks_asked_for
-from heuncli.study.compose.near_singular import leaves
+from heuncli.study.compose.blocks import make_requested_blocks
+from heuncli.study.compose.near_singular import iter_leaves
 from heuncli.study.compose.recovery import Recovery
 
 
 class Verdicts(NamedTuple):
-    """What was found at some instants, times (n_t,).
+    """The verdicts at some instants, times (n_t,).
 
-    dependent (n_t,): how many closure rows depend on others; holding (n_t, contacts); ordinary (n_t,): whether the pose
-    is no singular one; open: of each array over the instants that they tell what is open of it, None for nothing.
+    dependent (n_t,): number of dependent closure rows
+    holding (n_t, contacts): which contacts are closed
+    ordinary (n_t,): whether the pose is not singular
+    open: for each array over the instants the mask of its indeterminate components, None for none
     """
 
     times: Array
@@ -38,14 +39,14 @@ class Verdicts(NamedTuple):
     open: tuple[Mask | None, ...]
 
 
-class OpenBetween:
-    """Verdicts at instants, ascending, and what they say of those between."""
+class VerdictsBetween:
+    """Verdicts at instants, ascending, and what they imply for the instants between."""
 
     def __init__(self, parts: Sequence[Verdicts]) -> None:
         times, dependent, holding, ordinary = (np.concatenate(x) for x in list(zip(*parts, strict=True))[:4])
         self.times, self.dependent, self.holding = times, dependent, holding
         lengths = [len(part.times) for part in parts]
-        self.open = [joined(masks, lengths) for masks in zip(*(part.open for part in parts), strict=True)]
+        self.open = [concatenate_masks(masks, lengths) for masks in zip(*(part.open for part in parts), strict=True)]
         same = ordinary[1:] & ordinary[:-1] & (dependent[1:] == dependent[:-1])
         same &= (holding[1:] == holding[:-1]).all(axis=1)
         for mask in self.open:
@@ -53,60 +54,63 @@ class OpenBetween:
                 same &= (mask[1:] == mask[:-1]).all(axis=tuple(range(1, mask.ndim)))
         self.same = same
 
-    def tells(self, recovered: Recovered) -> Mask:
-        """At which instants what is open follows from what it is on either side, (n,)."""
+    def covers(self, solutions: Evaluation) -> Mask:
+        """Mark the instants whose indeterminate components follow from those on either side, (n,)."""
         if len(self.times) < 2:
-            return np.zeros(len(recovered.times), dtype=bool)
-        k = self._before(recovered.times)
-        inside = (recovered.times >= self.times[0]) & (recovered.times <= self.times[-1])
-        as_there = recovered.dependent == self.dependent[k]
-        as_there &= (recovered.holding == self.holding[k]).all(axis=1)
-        return np.asarray(inside & self.same[k] & as_there)
+            return np.zeros(len(solutions.times), dtype=bool)
+        k = self._find_previous(solutions.times)
+        is_inside = (solutions.times >= self.times[0]) & (solutions.times <= self.times[-1])
+        is_unchanged = solutions.dependent_count == self.dependent[k]
+        is_unchanged &= (solutions.holding == self.holding[k]).all(axis=1)
+        return np.asarray(is_inside & self.same[k] & is_unchanged)
 
-    def put(self, shown: dict[str, Any], times: Array) -> None:
-        """Mark what is open in the blocks of instants that this tells of, in place."""
-        k = self._before(times)
-        for leaf, mask in zip(leaves(shown), self.open, strict=True):
+    def mark_open(self, blocks: dict[str, Any], times: Array) -> None:
+        """Mark the indeterminate components in the blocks of instants that this covers, in place."""
+        k = self._find_previous(times)
+        for leaf, mask in zip(iter_leaves(blocks), self.open, strict=True):
             if mask is not None:
-                leaf.block[leaf.name] = opened(leaf.block[leaf.name], mask[k])
+                leaf.block[leaf.name] = mask_indeterminate(leaf.block[leaf.name], mask[k])
                 if "open" in leaf.block:  # at some instant, in some cut
-                    leaf.block["open"] += names_of({leaf.name: mask[k].reshape(-1, *[3] * leaf.vectors)})
+                    leaf.block["open"] += list_indeterminate_names(
+                        {leaf.name: mask[k].reshape(-1, *[3] * leaf.vectors)}
+                    )
 
-    def _before(self, times: Array) -> Indices:
-        """The last of the instants before each, but for the very last."""
+    def _find_previous(self, times: Array) -> Indices:
+        """Return the index of the last known instant before each, at most the second to last."""
         return np.asarray(np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2))
 
 
-def verdicts(recovery: Recovery, wanted: frozenset[str]) -> Verdicts | None:
-    """What is open at the instants of a recovery; None where that is not all that redundancy does to its numbers.
+def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | None:
+    """Return the verdicts at the instants of a recovery; None if redundancy affects its numbers in other ways, too.
 
-    A split of the reactions, by least norm or stiffness, changes with the pose as these do: it is found at each.
+    A split of the reactions, by least norm or stiffness, changes with the pose: it is found at each instant.
     """
-    decided, recovered = recovery.decided, recovery.recovered
-    if decided is None or decided.choices or decided.words or recovery.setup.scene.mechanism.rubbing:
+    decided, recovered = recovery.decided, recovery.solutions
+    if decided is None or decided.choices or decided.words or recovery.setup.scene.mechanism.joint_friction:
         return None
-    stress = decided.searched
-    ordinary = np.ones(len(recovered.times), dtype=bool) if stress is None else stress.count <= recovery.generic
-    bare = list(leaves(blocks_asked_for(recovery.as_told(), wanted)))
-    found: tuple[Mask | None, ...] = (None,) * len(bare)
-    if decided.left is not None:
-        told = leaves(blocks_asked_for(recovery, wanted))
+    stress = decided.all_stress
+    ordinary = np.ones(len(recovered.times), dtype=bool) if stress is None else stress.count <= recovery.generic_count
+    determinate_leaves = list(iter_leaves(make_requested_blocks(recovery.without_open_search(), reports)))
+    found: tuple[Mask | None, ...] = (None,) * len(determinate_leaves)
+    if decided.remaining_stress is not None:
+        leaves_with_open = iter_leaves(make_requested_blocks(recovery, reports))
         found = tuple(
-            newly_open(own.block[own.name], other.block[other.name]) for own, other in zip(bare, told, strict=True)
+            find_newly_open(own.block[own.name], other.block[other.name])
+            for own, other in zip(determinate_leaves, leaves_with_open, strict=True)
         )
-    return Verdicts(recovered.times, recovered.dependent, recovered.holding, ordinary, found)
+    return Verdicts(recovered.times, recovered.dependent_count, recovered.holding, ordinary, found)
 
 
-def newly_open(bare: Array, told: Array) -> Mask | None:
-    """Which numbers are open that would not be if nothing were redundant; None where there are none."""
-    if told is bare or told.dtype != np.float64:
+def find_newly_open(determinate: Array, values: Array) -> Mask | None:
+    """Mark the numbers that are indeterminate only because of redundancy; None if there are none."""
+    if values is determinate or values.dtype != np.float64:
         return None
-    mask = np.isnan(told) & ~np.isnan(bare)
+    mask = np.isnan(values) & ~np.isnan(determinate)
     return mask if mask.any() else None
 
 
-def joined(masks: Sequence[Mask | None], lengths: Sequence[int]) -> Mask | None:
-    """Masks of consecutive instants, so many each, as one; None where all are."""
+def concatenate_masks(masks: Sequence[Mask | None], lengths: Sequence[int]) -> Mask | None:
+    """Concatenate the masks of consecutive instants, so many each; None if all are None."""
     shape = next((mask.shape[1:] for mask in masks if mask is not None), None)
     if shape is None:
         return None

@@ -1,11 +1,11 @@
-"""All turning points of sampled numbers, also those between the samples.
+"""Find all turning points of sampled numbers, also those between the samples.
 
-First a grid is made that shows how the numbers run: each interval is asked, and divided further there unless cubics
-through four neighbours foretold what is found, twice in a row. For the one largest value of a run an interval that
-cannot hold it need not be looked into; for all turns each must be. Then, as extremes are searched
-(study/search/intervals.py): an interval hides a turn if it promises more than the higher of its ends, or less than the
-lower. It is asked where it promises most and divided there, until none promises more than a part of the error. What a
-run does below its own error is not looked for.
+First a grid is made that shows how the numbers run: each interval is sampled, and divided further there unless cubics
+through four neighbours predict the sample, twice in a row. For the single largest value of a run an interval that
+cannot hold it need not be searched; for all turning points each must be. Then, as extremes are searched
+(study/search/intervals.py): an interval may hide a turning point if it promises more than the higher of its ends, or
+less than the lower. It is sampled where it promises most and divided there, until none promises more than a part of the
+error. Variations below the error are not searched.
 """
 
 from __future__ import annotations
@@ -18,29 +18,31 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.search.extremes import (
-    BOTH,
+    BOTH_SIDES,
     GOOD_ENOUGH,
-    MOST_ROUNDS,
-    ColumnsAt,
+    MAX_ROUNDS,
+    ColumnSampler,
     Targets,
-    distinct,
-    intervals_above,
-    sides_of_jumps,
+    find_intervals_above,
+    find_jump_sides,
+    sort_distinct,
 )
 
-MOST_PROBES = 2_000_000  # instants asked for in one search: turning points of some hundred thousand cycles
-OFF_MIDDLE = 0.52  # of an interval: where it is asked, so that nothing that repeats itself looks at rest
+MAX_PROBES = 2_000_000  # instants sampled in one search: turning points of some hundred thousand cycles
+OFF_MIDDLE = 0.52  # of an interval: where it is sampled, off the middle so that nothing periodic looks constant
 NO_INSTANTS = np.zeros(0)
-OFTEN_ENOUGH = 2  # times in a row that an interval is foretold
-FORETOLD = 0.02  # of the swing of four neighbours: cubics through seven instants a period do as well
+MIN_PREDICTIONS = 2  # consecutive correct predictions of an interval
+PREDICTION_TOLERANCE = 0.02  # of the range of four neighbours: the error of cubics through seven instants per period
 
-Slack = Callable[[Array, Array], Array]  # of sizes (m, n) over intervals of widths (m,) what does not count, (m, n)
+Slack = Callable[[Array, Array], Array]  # from sizes (m, n) over intervals of widths (m,) the negligible part, (m, n)
 
 
 class SampledTurns(NamedTuple):
-    """What was sampled: times (n,) ascending, values (n, n_columns); complete: whether all was looked at that may turn.
+    """Samples of a number: times (n,) ascending, values (n, n_columns).
 
-    Ends where a number is open (nan).
+    complete: whether every interval that may hide a turning point was searched
+
+    The sampling ends where a number is indeterminate (nan).
     """
 
     times: Array
@@ -48,129 +50,140 @@ class SampledTurns(NamedTuple):
     complete: bool
 
 
-def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask) -> SampledTurns:
-    """What is sampled at the instants of a grid and at all turns between them.
+def add_turning_points(sample: ColumnSampler, times: Array, grid: Array, errors: Array, even: Mask) -> SampledTurns:
+    """Return the samples at the instants of a grid and at all turning points between them.
 
-    times (n_t,), grid (n_t, n_columns): what is begun with; errors (n_columns,): of the numbers; even: whether columns
-    are their squares.
+    times (n_t,), grid (n_t, n_columns): the first samples
+    errors (n_columns,): of the numbers
+    even: whether columns are their squares
     """
 
     def slack(size: Array, _: Array) -> Array:
-        """What of numbers of some sizes (m, n_columns) their errors leave open."""
+        """Return the part of numbers of some sizes (m, n_columns) that their errors cover."""
         return np.asarray(np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors))
 
-    found = resolved(sample, SampledTurns(times, grid, complete=True), slack)
-    if len(times) < 2 or not found.complete or not np.isfinite(found.values).all():
-        return found
+    first_samples = refine_until_predicted(sample, SampledTurns(times, grid, complete=True), slack)
+    if len(times) < 2 or not first_samples.complete or not np.isfinite(first_samples.values).all():
+        return first_samples
     columns = np.arange(grid.shape[1], dtype=np.intp)
-    asked = Targets(len(columns), columns, columns, errors, even)
-    enough = margin(errors, even)
-    pool = intervals_above(found.times, found.values, asked, enough, BOTH)
+    targets = Targets(len(columns), columns, columns, errors, even)
+    required_height = make_required_height(errors, even)
+    pool = find_intervals_above(first_samples.times, first_samples.values, targets, required_height, BOTH_SIDES)
     span, probes = float(np.ptp(times)), 0
-    parts = [found]
-    for _ in range(MOST_ROUNDS):
-        shape = pool.shape()
-        beat = enough(pool.f[:, 1], pool.f[:, 2], pool.target)
+    parts = [first_samples]
+    for _ in range(MAX_ROUNDS):
+        shape = pool.compute_bends()
+        required = required_height(pool.f[:, 1], pool.f[:, 2], pool.target)
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
-        worth = wide & (asked.possible(pool.promise(shape), pool.target) > beat)
-        pool, shape = pool.some(worth), shape.some(worth)
-        if not len(pool.target) or probes > MOST_PROBES:
+        worth = wide & (targets.limit_promise(pool.promised_heights(shape), pool.target) > required)
+        pool, shape = pool.select(worth), shape.select(worth)
+        if not len(pool.target) or probes > MAX_PROBES:
             break
-        at = pool.probe(shape)
-        instants = distinct(at)
+        at = pool.choose_probes(shape)
+        instants = sort_distinct(at)
         values = sample(instants)
         parts.append(SampledTurns(instants, values, complete=True))
         probes += len(instants)
         if np.isnan(values).any():
-            return together(parts, complete=True)
-        side = np.where(pool.target < asked.n, -1.0, 1.0)
-        pool = pool.divided(shape, at, side * values[np.searchsorted(instants, at), pool.column])
-    return together(parts, complete=not len(pool.target))
+            return merge_samples(parts, complete=True)
+        side = np.where(pool.target < targets.n, -1.0, 1.0)
+        pool = pool.divide(shape, at, side * values[np.searchsorted(instants, at), pool.column])
+    return merge_samples(parts, complete=not len(pool.target))
 
 
-def resolved(
-    sample: ColumnsAt,
-    found: SampledTurns,
+def refine_until_predicted(
+    sample: ColumnSampler,
+    samples: SampledTurns,
     slack: Slack,
     *,
-    most: int = MOST_PROBES,
+    max_instants: int = MAX_PROBES,
     probes: Array | None = None,
-    doubted: Mask | None = None,
+    is_doubtful: Mask | None = None,
 ) -> SampledTurns:
-    """The grid with more instants where a number does not run as its neighbours foretell.
+    """Add instants to the grid where a number does not run as its neighbours predict.
 
-    An interval is done when both it and the half of it that it lies in were foretold: one instant may be so by chance,
-    as a wave is in the middle between its summits. Those beside one that was not are asked again, for they were
-    foretold by what did not show it.
-    slack: what of the numbers does not count. probes (m,): instants between those of the grid that are asked, too; with
-    these what was foretold is left out, and one instant of an interval is enough. most: so many instants are asked for.
-    doubted (n - 1,): the intervals of the grid that need be asked; all, by default.
+    An interval is done when both it and the half of it that it came from were predicted: a single instant may be so by
+    chance, as a wave is in the middle between its summits. The intervals adjacent to one that was not predicted are
+    sampled again, because their prediction did not show it.
+
+    slack: the negligible part of the numbers
+    max_instants: limit of the number of samples
+    probes (m,): instants between those of the grid that are sampled, too; then predicted samples are dropped, and one
+    per interval is enough
+    is_doubtful (n - 1,): the intervals of the grid to be sampled; all, by default
     """
-    span, asked = float(np.ptp(found.times)), 0
-    enough = OFTEN_ENOUGH if probes is None else 1
-    often = np.zeros(max(len(found.times) - 1, 0), dtype=np.intp)  # in a row that each interval was foretold
-    if doubted is not None:
-        often[~doubted] = enough
-    also = NO_INSTANTS if probes is None else probes
-    for _ in range(MOST_ROUNDS):
-        times, values, complete = found
+    span, sampled_count = float(np.ptp(samples.times)), 0
+    min_predictions = MIN_PREDICTIONS if probes is None else 1
+    predictions = np.zeros(
+        max(len(samples.times) - 1, 0), dtype=np.intp
+    )  # consecutive correct predictions of each interval
+    if is_doubtful is not None:
+        predictions[~is_doubtful] = min_predictions
+    extra_instants = NO_INSTANTS if probes is None else probes
+    for _ in range(MAX_ROUNDS):
+        times, values, complete = samples
         wide = np.diff(times) > tolerances.SIDE_BY_SIDE * span
-        k = np.flatnonzero((often < enough) & wide & ~sides_of_jumps(times))
-        if not len(k) + len(also) or not np.isfinite(values).all():
-            return found
-        if asked > most:
-            return found._replace(complete=False)
-        at = times[k] + OFF_MIDDLE * (times[k + 1] - times[k])
-        at, also = distinct(np.concatenate([at, also])), NO_INSTANTS
-        k = np.searchsorted(times, at) - 1
-        there = sample(at)
-        asked += len(at)
-        off = ~foretold(found, k, at, there, slack)
-        kept = off | (probes is None)
-        often[k] += 1
-        often[k[off]] = 0
-        beside = np.clip(np.concatenate([k[off] - 1, k[off] + 1]), 0, len(often) - 1)
-        often[beside] = np.minimum(often[beside], enough - 1)
-        found = together([found, SampledTurns(at[kept], there[kept], complete)], complete=complete)
-        often = often[np.searchsorted(times, found.times[:-1], side="right") - 1]
-    return found._replace(complete=found.complete and bool((often >= enough).all()))
+        k = np.flatnonzero((predictions < min_predictions) & wide & ~find_jump_sides(times))
+        if not len(k) + len(extra_instants) or not np.isfinite(values).all():
+            return samples
+        if sampled_count > max_instants:
+            return samples._replace(complete=False)
+        times_sampled = times[k] + OFF_MIDDLE * (times[k + 1] - times[k])
+        times_sampled, extra_instants = sort_distinct(np.concatenate([times_sampled, extra_instants])), NO_INSTANTS
+        k = np.searchsorted(times, times_sampled) - 1
+        new_values = sample(times_sampled)
+        sampled_count += len(times_sampled)
+        is_missed = ~is_predicted(samples, k, times_sampled, new_values, slack)
+        is_kept = is_missed | (probes is None)
+        predictions[k] += 1
+        predictions[k[is_missed]] = 0
+        adjacent = np.clip(np.concatenate([k[is_missed] - 1, k[is_missed] + 1]), 0, len(predictions) - 1)
+        predictions[adjacent] = np.minimum(predictions[adjacent], min_predictions - 1)
+        samples = merge_samples(
+            [samples, SampledTurns(times_sampled[is_kept], new_values[is_kept], complete)], complete=complete
+        )
+        predictions = predictions[np.searchsorted(times, samples.times[:-1], side="right") - 1]
+    return samples._replace(complete=samples.complete and bool((predictions >= min_predictions).all()))
 
 
-def doubtful(found: SampledTurns, slack: Slack) -> Mask:
-    """The intervals of a grid beside an instant that its neighbours do not foretell, (n - 1,): the others, half as
-    wide as what foretells, need not be asked."""
-    times, values, _ = found
-    doubted = np.ones(max(len(times) - 1, 0), dtype=bool)
+def find_doubtful(samples: SampledTurns, slack: Slack) -> Mask:
+    """Mark the intervals of a grid next to an instant that its neighbours do not predict, (n - 1,): the others, half as
+    wide as the prediction's, need not be sampled.
+    """
+    times, values, _ = samples
+    is_doubtful = np.ones(max(len(times) - 1, 0), dtype=bool)
     if len(times) < 5:
-        return doubted
-    jumps = np.append(np.append(True, sides_of_jumps(times)), True)
+        return is_doubtful
+    jumps = np.append(np.append(True, find_jump_sides(times)), True)
     inner = np.arange(2, len(times) - 2)
     inner = inner[~(jumps[inner - 1] | jumps[inner] | jumps[inner + 1] | jumps[inner + 2])]
-    four = inner[:, None] + np.array([-2, -1, 1, 2])
-    known = np.zeros(len(times), dtype=bool)
-    known[inner] = as_expected(found, four, inner - 1, times[inner], values[inner], slack)
-    doubted &= ~(known[1:] & known[:-1])
-    return doubted
+    neighbour_indices = inner[:, None] + np.array([-2, -1, 1, 2])
+    has_prediction = np.zeros(len(times), dtype=bool)
+    has_prediction[inner] = matches_cubic(samples, neighbour_indices, inner - 1, times[inner], values[inner], slack)
+    is_doubtful &= ~(has_prediction[1:] & has_prediction[:-1])
+    return is_doubtful
 
 
-def foretold(found: SampledTurns, k: Indices, at: Array, there: Array, slack: Slack) -> Mask:
-    """Whether what is there at instants within intervals is what the cubics through their neighbours have, (m,)."""
-    return as_expected(found, neighbours(found.times, k), k, at, there, slack)
+def is_predicted(samples: SampledTurns, k: Indices, new_times: Array, new_values: Array, slack: Slack) -> Mask:
+    """Mark the new samples within intervals that the cubics through their neighbours predict, (m,)."""
+    return matches_cubic(samples, find_neighbours(samples.times, k), k, new_times, new_values, slack)
 
 
-def as_expected(found: SampledTurns, four: Indices, k: Indices, at: Array, there: Array, slack: Slack) -> Mask:
-    """Whether the cubics through four instants each, (m, 4), have what is there at others in the intervals k, (m,)."""
-    times, values, _ = found
-    expected = cubic(times[four], values[four], at)
-    swing = np.ptp(np.concatenate([values[four], there[:, None]], axis=1), axis=1)
+def matches_cubic(
+    samples: SampledTurns, neighbour_indices: Indices, k: Indices, new_times: Array, new_values: Array, slack: Slack
+) -> Mask:
+    """Mark the new samples in the intervals k that the cubics through four instants each, (m, 4), predict, (m,)."""
+    times, values, _ = samples
+    expected = evaluate_cubic(times[neighbour_indices], values[neighbour_indices], new_times)
+    swing = np.ptp(np.concatenate([values[neighbour_indices], new_values[:, None]], axis=1), axis=1)
     size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
-    beside = slack(size, times[k + 1] - times[k])
-    return np.asarray((np.abs(there - expected) <= np.maximum(FORETOLD * swing, beside)).all(axis=1))
+    allowed = slack(size, times[k + 1] - times[k])
+    return np.asarray((np.abs(new_values - expected) <= np.maximum(PREDICTION_TOLERANCE * swing, allowed)).all(axis=1))
 
 
-def neighbours(times: Array, k: Indices) -> Indices:
-    """Four neighbouring instants about each interval, (m, 4), on no other side of a jump where that has four."""
-    jumps = np.flatnonzero(sides_of_jumps(times))
+def find_neighbours(times: Array, k: Indices) -> Indices:
+    """Return four neighbouring instants about each interval, (m, 4), on the same side of a jump if that has four."""
+    jumps = np.flatnonzero(find_jump_sides(times))
     first = np.concatenate([[0], jumps + 1])
     last = np.concatenate([jumps, [len(times) - 1]])
     own = np.searchsorted(first, k, side="right") - 1
@@ -178,30 +191,32 @@ def neighbours(times: Array, k: Indices) -> Indices:
     return np.asarray(np.minimum(begin[:, None] + np.arange(4), len(times) - 1))
 
 
-def cubic(t: Array, f: Array, at: Array) -> Array:
-    """What the cubics through four points each, t (m, 4), f (m, 4, n), have at one instant each, (m, n).
+def evaluate_cubic(t: Array, f: Array, new_times: Array) -> Array:
+    """Evaluate the cubics through four points each, t (m, 4), f (m, 4, n), at one instant each, (m, n).
 
-    Where two of the points are one, or two sides of a jump, it is no number.
+    nan where two of the points coincide, or are two sides of a jump.
     """
-    value = np.zeros((len(at), f.shape[2]))
+    value = np.zeros((len(new_times), f.shape[2]))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for i in range(4):
             others = [j for j in range(4) if j != i]
-            weight = np.prod([(at - t[:, j]) / (t[:, i] - t[:, j]) for j in others], axis=0)
+            weight = np.prod([(new_times - t[:, j]) / (t[:, i] - t[:, j]) for j in others], axis=0)
             value += weight[:, None] * f[:, i]
     return value
 
 
-def together(parts: Sequence[SampledTurns], *, complete: bool) -> SampledTurns:
-    """All instants that were asked, ascending, each once."""
+def merge_samples(parts: Sequence[SampledTurns], *, complete: bool) -> SampledTurns:
+    """Merge samples, ascending in time, each instant once."""
     times, values = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
     order = np.argsort(times, kind="stable")
     first = np.append(True, np.diff(times[order]) > 0.0)
     return SampledTurns(times[order][first], values[order][first], complete)
 
 
-def margin(errors: Array, even: Mask) -> Callable[[Array, Array, Indices], Array]:
-    """What an interval between two heights has to promise to hide a turn of a target that counts."""
+def make_required_height(errors: Array, even: Mask) -> Callable[[Array, Array, Indices], Array]:
+    """Return the height that an interval between two heights has to promise to hide a relevant turning point of a
+    target.
+    """
     n = len(errors)
 
     def beat(b: Array, c: Array, target: Indices) -> Array:

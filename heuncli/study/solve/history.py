@@ -1,6 +1,6 @@
-"""What happens: the motion asked for with its check run, or the one instant of a state.
+"""Compute the motion of the analysis with its check run, or the single instant of a state.
 
-Impure: integrating looks at the clock.
+Impure: integration reads the clock.
 """
 
 from __future__ import annotations
@@ -16,187 +16,203 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.check.distance import Marks, motion_error
-from heuncli.motion.integration.check.estimate import CheckedRun, checked_run, recovered_at
-from heuncli.motion.integration.check.instants import interleaved
-from heuncli.motion.integration.check.runs import Runs, moved_start
-from heuncli.motion.integration.check.singular_poses import singular_poses
-from heuncli.motion.integration.contacts.blows import Jump
-from heuncli.motion.integration.diagnosis.solvability import Wording, require_start
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.check.distance import MotionPoints, motion_error
+from heuncli.motion.integration.check.estimate import CheckedRun, evaluate_run, make_checked_run
+from heuncli.motion.integration.check.instants import interleave
+from heuncli.motion.integration.check.runs import Runs, perturb_start
+from heuncli.motion.integration.check.singular_poses import find_singular_positions
+from heuncli.motion.integration.contacts.blows import ImpulseEvent
+from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_start
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.motion.integration.run.errors import Eventful, Stiff
-from heuncli.motion.integration.run.interruptions import at_once
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.run.errors import EventfulRun, StiffRun
+from heuncli.motion.integration.run.interruptions import solve_single_instant
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
-from heuncli.results.results import Array, Estimate
-from heuncli.scene.expressions.discontinuities import one_sided_limits
-from heuncli.study.model.memory_estimate import Room, require_room_for_steps
+from heuncli.results.results import Array, ErrorEstimate
+from heuncli.scene.expressions.discontinuities import pair_adjacent_instants
+from heuncli.study.model.memory_estimate import MemoryBudget, require_memory_for_steps
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.load_errors import LoadErrors, SeenInstants
+from heuncli.study.solve.load_errors import ComparedInstants, LoadErrors
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions
-    from heuncli.motion.integration.check.changes import Changes
+    from heuncli.motion.integration.check.changes import ConditionChanges
 
 
 @record
 class History:
-    """The kernel's answers at the instants asked for; of a motion the checked run behind them.
+    """The kernel's solutions at the requested instants; of a motion also the checked run behind them.
 
-    times (n_t,) ascending [s]: fewer than asked for where the run stopped; answers: those at some of them.
-    tolerance: what the motion was to keep; estimate: of the errors, by kind; blows: those that happened; beside: those
-    of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
-    those of singular poses that the run came through; seconds: what took how long;
-    errors: by kind and unit, of one instant those of shares by cause;
-    compared: of one instant and one beside it, what their errors were made of;
-    notes: of one instant what is to be told of contacts; those of a motion are in its run.
+    times (n_t,): ascending [s]; fewer than requested where the run stopped
+    find_solutions: returns the solutions at some of them
+    tolerance: required of the motion
+    estimate: of the errors, by kind
+    checked_run: the run with its check run
+    impulses: those that occurred
+    check_impulses: those of the check runs
+    jumps: instants at which a load or drive jumps or bends, including events and impulses
+    singular: instants of the singular poses that the run passed
+    seconds: durations of the parts of the computation
+    errors: by kind and unit; of a state those of shares by cause
+    state_instants: of a state, the instant and one with a perturbed start, from which its errors were computed
+    notes: of a state, the notes on contacts; those of a motion are in its run
     """
 
     times: Array
-    answers: Callable[[slice], Recovered]
+    answers: Callable[[slice], Evaluation]
     tolerance: float
-    estimate: Estimate
+    estimate: ErrorEstimate
     checked: CheckedRun | None = None
-    blows: tuple[Jump, ...] = ()
-    beside: tuple[tuple[Jump, ...], ...] = ()
+    blows: tuple[ImpulseEvent, ...] = ()
+    beside: tuple[tuple[ImpulseEvent, ...], ...] = ()
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
-    compared: SeenInstants | None = None
+    compared: ComparedInstants | None = None
     notes: tuple[str, ...] = ()
 
     @property
-    def changes(self) -> tuple[Changes, ...]:
-        """When the conditions in time and coordinates change."""
-        return self.checked.changes if self.checked is not None else ()
+    def changes(self) -> tuple[ConditionChanges, ...]:
+        """The changes of the conditions on time and coordinates."""
+        return self.checked_run.changes if self.checked_run is not None else ()
 
     @property
-    def followed_for(self) -> float | None:
-        """How long the run is, if it was followed and not integrated [s]."""
-        run = self.checked.run if self.checked is not None else None
-        return float(run.times[-1]) if run is not None and run.method.determined else None
+    def followed_duration(self) -> float | None:
+        """How long the run is if it was followed and not integrated [s], else None."""
+        run = self.checked_run.run if self.checked_run is not None else None
+        return float(run.times[-1]) if run is not None and run.method.is_determined else None
 
     @cached_property
-    def recovered(self) -> Recovered:
-        """The answers at all the instants."""
-        return self.answers(slice(None))
+    def solutions(self) -> Evaluation:
+        """The solutions at all the instants."""
+        return self.find_solutions(slice(None))
 
 
 def integrate(
-    setup: Setup, tolerance: float, deadline: float | None, *, by_cause: bool = False, room: Room | None = None
+    setup: Setup,
+    tolerance: float,
+    deadline: float | None,
+    *,
+    by_cause: bool = False,
+    memory_budget: MemoryBudget | None = None,
 ) -> History:
-    """The history that the analysis asks for, with a column a cause where asked; nothing moves in a state.
+    """Compute the history of the analysis; by_cause: with one column of loads per cause. A state is not integrated.
 
-    room: in which its steps must fit, as far as they are known before.
+    memory_budget: the memory that its steps must fit into, as far as their number is known beforehand
+
     Raises SolveError where no acceleration exists or the motion cannot be continued, LimitError past the deadline.
     """
     times, runner = np.array(setup.spec.analysis.times, dtype=float), setup.runner
     if setup.method is None:
-        return state(setup, float(times[0]), tolerance, by_cause)
-    jumps = begin(setup)
-    if room is not None:
-        require_room_for_steps(setup, len(one_sided_limits(jumps)) + 1, room)
-    checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
+        return solve_state(setup, float(times[0]), tolerance, by_cause)
+    jumps = check_start(setup)
+    if memory_budget is not None:
+        require_memory_for_steps(setup, len(pair_adjacent_instants(jumps)) + 1, memory_budget)
+    checked = integrate_checked(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
-    require_apart(runner, checked)
+    require_separate_points(runner, checked)
     seconds = {"integrate": checked.run.seconds, "check": checked.check_seconds}
-    if checked.lost_seconds:
-        seconds["lost"] = checked.lost_seconds
-    singular = tuple(singular_poses(runner, checked.run))
-    estimate, beside = Estimate(motion=checked.motion, **checked.loads), checked.beside
+    if checked.discarded_seconds:
+        seconds["lost"] = checked.discarded_seconds
+    singular = tuple(find_singular_positions(runner, checked.run))
+    estimate, check_impulses = ErrorEstimate(motion=checked.motion, **checked.loads), checked.check_impulses
     return History(
-        checked.run.times, checked.answers, tolerance, estimate, checked, checked.run.blows, beside, jumps, singular,
+        checked.run.times, checked.evaluate, tolerance, estimate, checked, checked.run.impulse_events, check_impulses, jumps, singular,
         seconds, checked.errors,
     )  # fmt: skip
 
 
-def begin(setup: Setup) -> tuple[float, ...]:
-    """The discontinuities in time of a motion that can begin.
+def check_start(setup: Setup) -> tuple[float, ...]:
+    """Require that a motion can begin, and return its discontinuities in time.
 
-    Raises SolveError, LimitError where they are more than steps may be: before a long run, not after it.
+    Raises SolveError, or LimitError where these are more than steps are allowed: before a long run, not after it.
     """
-    first = setup.runner.recovered(np.zeros(1), setup.scene.layout.y0[None, :])
+    first = setup.runner.evaluate(np.zeros(1), setup.scene.layout.y0[None, :])
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
-    jumps = tuple(discontinuities_of(setup.scene.mechanism, float(setup.spec.analysis.times[-1])))
-    require_steps(len(one_sided_limits(jumps)) + 1, setup.method)
+    jumps = tuple(find_discontinuities(setup.scene.mechanism, float(setup.spec.analysis.times[-1])))
+    require_steps(len(pair_adjacent_instants(jumps)) + 1, setup.method)
     return jumps
 
 
 def require_steps(segments: int, method: Method | None) -> None:
-    """Raise LimitError [step-limit] where a run takes more steps than it may, were it one to a segment."""
-    foreign = method is not None and method.foreign
-    most = tolerances.MOST_FOREIGN if foreign else tolerances.MOST_STEPS
-    if segments <= most:
+    """Raise LimitError [step-limit] where the segments of a run alone, one step each, exceed the allowed number of
+    steps.
+    """
+    is_foreign = method is not None and method.scipy_name
+    max_steps = tolerances.MOST_FOREIGN if is_foreign else tolerances.MOST_STEPS
+    if segments <= max_steps:
         return
     message = (
         f"loads and drives jump or bend at {segments - 1:,} instants, each the end of a step: "
-        f"the run takes at least {segments:,} steps, and {most:,} is the most"
+        f"the run takes at least {segments:,} steps, and {max_steps:,} is the most"
     )
-    hint = "a shorter duration, or tables of fewer points" + ("; or method: auto" if foreign else "")
+    hint = "a shorter duration, or tables of fewer points" + ("; or method: auto" if is_foreign else "")
     raise LimitError(Problem("step-limit", message, hint=hint))
 
 
-def checked_motion(
+def integrate_checked(
     setup: Setup, tolerance: float, jumps: tuple[float, ...], deadline: float | None, by_cause: bool
 ) -> CheckedRun:
-    """The motion asked for with its check run.
+    """Compute the motion with its check run.
 
-    A motion that its drives determine is followed. Where that fails, at a singular pose or where the loops cannot do
-    what the drives ask, it is integrated instead: there the velocities decide on which branch it goes on, or the error
-    of the integration is raised.
+    A motion that its drives determine is followed. Where that fails, at a singular pose or where the loops cannot
+    follow the drives, it is integrated: then the velocities decide which branch continues, or the error of the
+    integration is raised.
     """
     assert setup.method is not None
     times, method = np.array(setup.spec.analysis.times, dtype=float), setup.method
-    if method.determined:
+    if method.is_determined:
         try:
             runs = Runs(setup.runner, times, jumps, deadline, method)
-            return checked_run(runs, tolerance, LoadErrors(setup, by_cause))
+            return make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))
         except SolveError:
-            method = method_of(AUTO)
+            method = load_method_by_name(AUTO)
         except LimitError as limit:
             if limit.problems[0].code != "step-limit":
                 raise
-            method = method_of(AUTO)  # towards a singular pose steps along a branch become ever shorter
+            method = load_method_by_name(AUTO)  # close to a singular pose, steps along a branch become ever shorter
     try:
-        runs = Runs(setup.runner, times, jumps, deadline, method, step=setup.step, watched=setup.auto)
-        return checked_between_events(runs, setup, tolerance, by_cause)
-    except Stiff as stiff:
+        runs = Runs(setup.runner, times, jumps, deadline, method, step=setup.step, watch_stiffness=setup.is_auto)
+        return integrate_with_event_method(runs, setup, tolerance, by_cause)
+    except StiffRun as stiff:
         runs = Runs(setup.runner, times, jumps, deadline, stiff.method)
-        return begun_anew(runs, stiff, method, setup, tolerance, by_cause)
+        return restart_run(runs, stiff, method, setup, tolerance, by_cause)
 
 
-def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> CheckedRun:
-    """A motion with its check run, by a method of few stages where events end most steps and that takes less."""
-    method, runs.eventful = runs.method, setup.auto
+def integrate_with_event_method(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> CheckedRun:
+    """Compute a motion with its check run; if events end most steps, restart it with a method of few stages where that
+    is faster.
+    """
+    method, runs.eventful = runs.method, setup.is_auto
     try:
-        return checked_run(runs, tolerance, LoadErrors(setup, by_cause))
-    except Eventful as left:
+        return make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))
+    except EventfulRun as eventful:
         from heuncli.motion.integration.check.fewer_stages import try_fewer_stages  # few scenes have so many
 
-        runs.eventful = try_fewer_stages(runs, left)
-        return begun_anew(runs, left, method, setup, tolerance, by_cause)
+        runs.eventful = try_fewer_stages(runs, eventful)
+        return restart_run(runs, eventful, method, setup, tolerance, by_cause)
 
 
-def begun_anew(
-    runs: Runs, left: Stiff | Eventful, method: Method, setup: Setup, tolerance: float, by_cause: bool
+def restart_run(
+    runs: Runs, interruption: StiffRun | EventfulRun, method: Method, setup: Setup, tolerance: float, by_cause: bool
 ) -> CheckedRun:
-    """A motion by the method of `runs`, after a run by `method` was left for the reason that `left` tells.
+    """Compute a motion by the method of `runs`, after a run by `method` was given up for the reason in `interruption`.
 
-    Where the method of `runs` does not come to the end either, or events become rare in its run, `method` runs it all.
+    Where the method of `runs` does not reach the end either, or events become rare in its run, `method` runs all of it.
     """
-    lost, why = left.seconds, None if runs.method is method else left.told
+    lost_seconds, reason = interruption.seconds, None if runs.method is method else interruption.reason
     try:
-        checked = checked_run(runs, tolerance, LoadErrors(setup, by_cause))
-        return replace(checked, lost_seconds=checked.lost_seconds + lost, begun_anew=why)
-    except Eventful as again:
-        lost += again.seconds
+        checked = make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))
+        return replace(checked, discarded_seconds=checked.discarded_seconds + lost_seconds, restart_reason=reason)
+    except EventfulRun as next_interruption:
+        lost_seconds += next_interruption.seconds
     except SolveError:
         if runs.method is method:
             raise
@@ -204,82 +220,92 @@ def begun_anew(
         if runs.method is method or limit.problems[0].code != "step-limit":
             raise
     runs.method, runs.eventful = method, False
-    checked = checked_run(runs, tolerance, LoadErrors(setup, by_cause))
-    return replace(checked, lost_seconds=checked.lost_seconds + lost)
+    checked = make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))
+    return replace(checked, discarded_seconds=checked.discarded_seconds + lost_seconds)
 
 
-def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> History:
-    """The history of one instant, behind the blow that is asked for; beside it, from a start moved by rounding."""
+def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = False) -> History:
+    """Compute the history of one instant, after its impulse if there is one, and again from a start perturbed by
+    rounding.
+    """
     runner, layout = setup.runner, setup.scene.layout
-    # a rest pose moved by rounding would be another one: beside it are those that rounding does not tell from it
-    others = [moved_start(layout)] if setup.rest is None else list(setup.rest.beside)
+    # a perturbed rest pose would not be at rest: use the states that rounding does not distinguish from it
+    others = [perturb_start(layout)] if setup.rest is None else list(setup.rest.nearby_states)
     starts = [layout.y0, *others]
-    blows: list[tuple[Jump, ...]] = [() for _ in starts]
+    impulses: list[tuple[ImpulseEvent, ...]] = [() for _ in starts]
     notes: tuple[str, ...] = ()
     if setup.spec.analysis.type == "impulse" or layout.contacts:
-        found = [at_once(runner, start, at) for start in starts]
-        blows, notes = [one.jumps for one in found], found[0].notes
-        starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
-    times = np.array([at])
-    holding = blows[0][-1].holding if blows[0] else held(runner, at, starts[0])
-    beside = interleaved(times, [start[None, :] for start in starts])
-    both = runner.recovered(*beside, causes=by_cause, holding=holding)
-    answers = both.at(slice(0, 1))
-    require_start(setup.scene, answers, Wording("accelerations behind the blow") if blows[0] else Wording())
-    require_motion(layout, answers)
-    errors = LoadErrors(setup, by_cause, keeping=True)
-    errors.add(both, *np.ones((2, 1), dtype=bool))
-    # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
-    off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both.bodies, len(starts), layout.size)[0])
-    estimate = Estimate(motion=off, **errors.estimate())
+        transitions = [solve_single_instant(runner, start, time) for start in starts]
+        impulses, notes = [one.events for one in transitions], transitions[0].notes
+        starts = [jumps[-1].after_state if jumps else start for start, jumps in zip(starts, impulses, strict=True)]
+    times = np.array([time])
+    contact_states = impulses[0][-1].holding if impulses[0] else find_closed_contacts(runner, time, starts[0])
+    interleaved_states = interleave(times, [start[None, :] for start in starts])
+    solutions = runner.evaluate(*interleaved_states, causes=by_cause, holding=contact_states)
+    own_solution = solutions.select(slice(0, 1))
+    require_start(
+        setup.scene, own_solution, ErrorWording("accelerations behind the blow") if impulses[0] else ErrorWording()
+    )
+    require_motion(layout, own_solution)
+    errors = LoadErrors(setup, by_cause, keep_instants=True)
+    errors.add(solutions, *np.ones((2, 1), dtype=bool))
+    # for one instant: the effect of rounding of its state on the loads, and on a rest pose
+    pose_error = (
+        0.0
+        if setup.rest is None
+        else float(motion_error(MotionPoints(layout), solutions.bodies, len(starts), layout.size)[0])
+    )
+    estimate = ErrorEstimate(motion=pose_error, **errors.estimate())
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
-        times, answers.at, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
-        errors=errors.errors_by_cause(), compared=None if setup.steady else errors.last, notes=notes,
+        times, own_solution.select, tolerance, estimate, impulses=impulses[0], check_impulses=tuple(impulses[1:]), seconds=seconds,
+        errors=errors.errors_by_cause(), state_instants=None if setup.steady_spin_axes else errors.last, notes=notes,
     )  # fmt: skip
 
 
-def held(runner: Runner, t: float, state: Array) -> Array:
-    """The contacts that are closed at a state, (contacts,)."""
+def find_closed_contacts(runner: Runner, t: float, state: Array) -> Array:
+    """Return the closed contacts of a state, (contacts,)."""
     if not runner.layout.contacts:
         return np.zeros(0)
-    from heuncli.motion.integration.contacts.contact_events import held_at  # few scenes have them
+    from heuncli.motion.integration.contacts.contact_events import find_held_contacts  # few scenes have them
 
-    return held_at(runner, t, state)
+    return find_held_contacts(runner, t, state)
 
 
 def require_followed(runner: Runner, run: Trajectory) -> None:
     """Raise SolveError where drives of one loop contradict each other within the run."""
     if len(runner.layout.mechanism.laws) > 1 and runner.layout.rows:
-        from heuncli.motion.integration.check.contradictions import unfollowed  # few scenes need it
+        from heuncli.motion.integration.check.contradictions import find_contradiction_in_steps  # few scenes need it
 
-        problem = unfollowed(runner, run)
+        problem = find_contradiction_in_steps(runner, run)
         if problem is not None:
             raise SolveError(problem)
 
 
-def require_apart(runner: Runner, checked: CheckedRun) -> None:
-    """Raise SolveError where the points of an actuator or spring come together within a motion, before its horizon.
+def require_separate_points(runner: Runner, run: CheckedRun) -> None:
+    """Raise SolveError where the points of an actuator or spring coincide during a motion, before its horizon.
 
-    Or where a bushing passes half a turn.
+    Also where a bushing passes half a turn.
     """
     if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.motion.integration.check.meeting_points import comes_together  # few scenes have them
+        from heuncli.motion.integration.check.meeting_points import find_meeting  # few scenes have them
 
-        problem = comes_together(runner, checked.run, checked.horizon)
+        problem = find_meeting(runner, run.run, run.horizon)
         if problem is not None:
             raise SolveError(problem)
     if any(isinstance(load, BushingLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.motion.integration.check.turned_over import turns_over
+        from heuncli.motion.integration.check.turned_over import find_half_turn
 
-        if (problem := turns_over(runner, checked.run, checked.horizon)) is not None:
+        if (problem := find_half_turn(runner, run.run, run.horizon)) is not None:
             raise SolveError(problem)
 
 
-def resample(runner: Runner, history: History, times: Array, *, by_cause: bool = False) -> Recovered:
-    """The kernel's answers at other instants within the run, (n,) ascending; in a state there is one instant only."""
-    if history.checked is None:
-        return history.recovered
+def resample(runner: Runner, history: History, times: Array, *, by_cause: bool = False) -> Evaluation:
+    """Return the kernel's solutions at other instants within the run, (n,) ascending; a state has only its one
+    instant.
+    """
+    if history.checked_run is None:
+        return history.solutions
     times = np.asarray(times, dtype=float)
-    run = history.checked.run
-    return recovered_at(runner, run, times, runner.resample(run, times), history.jumps, causes=by_cause)
+    run = history.checked_run.run
+    return evaluate_run(runner, run, times, runner.resample(run, times), history.jumps, causes=by_cause)

@@ -1,12 +1,12 @@
-"""Estimated errors of loads and energy, by kind: twice the difference between runs, and the rounding of sums.
+"""Estimate the errors of loads and energy, by kind: twice the difference between runs, plus the rounding of sums.
 
-Errors are the largest over the whole run, asked instants or not; each is relative to the largest that is told of its
-kind at the asked instants. A kind's forces are seen against its largest force, or largest moment by its longest arm;
-its moments against the largest moment, or largest force times the size of the scene. An arm is as long as the scene, of
-the foundation as far as the scene reaches from the point that its moment is taken about.
-Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or what potential and
-work have exchanged, for these have no zero of their own.
-Where a kind is nothing but what larger terms leave when they cancel it is none: 0.
+Errors are the largest over the whole run, including instants that are not requested; each is relative to the largest
+result of its kind at the requested instants. Forces of a kind are compared with its largest force, or its largest
+moment divided by its longest arm; its moments with the largest moment, or the largest force times the size of the
+scene. The arm is the size of the scene; for the foundation it is the reach of the scene from the point that its moment
+is taken about. Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or the
+range of potential energy and work, because these have no zero of their own. A kind that is only the remainder of larger
+terms that cancel has error 0.
 """
 
 from __future__ import annotations
@@ -19,368 +19,433 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
-from heuncli.loads.kinetostatics.bodies import BodyStates, CarriedStates, body_states
-from heuncli.loads.kinetostatics.coordinates import coordinates
-from heuncli.loads.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
-from heuncli.loads.kinetostatics.energy import energy
-from heuncli.loads.kinetostatics.foundation import central_axis, total
-from heuncli.loads.kinetostatics.joint_axes import in_axes
-from heuncli.loads.kinetostatics.reactions import JointLoads, in_plane, joint_loads
+from heuncli.loads.kinetostatics.actions import (
+    Action,
+    AppliedLoad,
+    collect_applied_loads,
+    list_joint_actions,
+    list_whole_joint_actions,
+)
+from heuncli.loads.kinetostatics.bodies import BodyStates, KernelBodyStates, make_body_states
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
+from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_coupling_actions, list_rope_actions
+from heuncli.loads.kinetostatics.energy import energy_block
+from heuncli.loads.kinetostatics.foundation import central_axis, total_load
+from heuncli.loads.kinetostatics.joint_axes import rotate_joint_loads
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
 from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.multibody.mechanism.size import marks
-from heuncli.results.results import Array, Estimate, Mask
-from heuncli.results.results_schema import BLOWS, BY_CAUSE, TRAVELS
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.multibody.mechanism.size import extent_points
+from heuncli.results.results import Array, ErrorEstimate, Mask
+from heuncli.results.results_schema import BY_CAUSE, IMPULSES, TRAVELS
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
-from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
-from heuncli.study.solve.motion_errors import TOLD, moved_quantities, turned_apart
+from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative_error
+from heuncli.study.solve.motion_errors import MOTION_KINDS, compare_attitudes, iter_momentum_quantities
 
-CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
+ROW_CHANGE = 1e-6  # of the largest multiplier: indeterminate loads change by more when other rows are chosen
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
-Quantity = tuple[str, Array]  # of couplings: what it is, of UNITS, and values (n, k, 3) or (n, k, 1)
+Quantity = tuple[str, Array]  # of couplings: the name, a key of UNITS, and values (n, k, 3) or (n, k, 1)
 UNITS = {"force": "N", "moment": "N·m", "place": "m", "angle": "rad"}
 
-# Kinds, and the reports that tell something of them: what nobody asks for is not compared.
-TOLD_IN = {
+# Kinds, and the reports that show them: kinds that are not requested are not compared.
+REPORTS_OF_KIND = {
     "reactions": {"joints", "foundation"},
     "foundation": {"foundation"},
     "sections": {"sections"},
     "forces": {"forces"},
-    "motion": {"motion", "points", "forces", BLOWS},
-    "energy": {"energy", BLOWS},
+    "motion": {"motion", "points", "forces", IMPULSES},
+    "energy": {"energy", IMPULSES},
 }
 
 
-class SeenInstants(NamedTuple):
-    """What was found of instants on the way to their errors: the bodies' states, and what acts in the joints."""
+class ComparedInstants(NamedTuple):
+    """Intermediate results of the instants whose errors were computed: the bodies' states, and the joint loads."""
 
-    states: CarriedStates
+    states: KernelBodyStates
     joints: tuple[JointLoads, ...] = ()
 
 
 class LoadErrors:
-    """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
+    """Collects the differences of a motion's loads and energy between runs, for the kinds that are requested."""
 
     def __init__(
-        self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED, *, keeping: bool = False
+        self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED, *, keep_instants: bool = False
     ) -> None:
-        """keeping: what is found of the instants on the way, which of a whole run would be much."""
-        self.keeping = keeping
+        """keep_instants: store the intermediate results of the instants, which would be large for a whole run"""
+        self.keep_instants = keep_instants
         self.setup, self.by_cause, self.weights = setup, by_cause, weights
-        self.compared = frozenset(kind for kind, told_in in TOLD_IN.items() if told_in & setup.asked.reports)
+        self.compared = frozenset(
+            kind for kind, reports in REPORTS_OF_KIND.items() if reports & setup.selection.reports
+        )
         self.extents: dict[tuple[str, str], Extent] = {}
-        self.last: SeenInstants | None = None  # of the instants that were added last
+        self.last: ComparedInstants | None = None  # of the instants that were added last
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
-        self.asked = self.before = np.zeros(0, dtype=bool)
+        self.is_requested = self.is_claimed = np.zeros(0, dtype=bool)
 
-    def extent(self, kind: str, quantity: str) -> Extent:
-        """What is known so far of a quantity of a kind."""
+    def find_extent(self, kind: str, quantity: str) -> Extent:
+        """Return what is collected of a quantity of a kind."""
         return self.extents.setdefault((kind, quantity), Extent(self.weights))
 
-    def take(
-        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
+    def add_values(
+        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, extra_difference: Array | None = None
     ) -> None:
-        """More instants of a quantity: see `Extent.add`."""
-        self.extent(*name).add(values, rounding, terms, (self.asked, self.before), more)
+        """Add instants of a quantity: see `Extent.add`."""
+        self.find_extent(*name).add(values, rounding, terms, (self.is_requested, self.is_claimed), extra_difference)
 
-    def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
-        """More instants, which are asked and which before the horizon; at each the answers of A, then of the others."""
-        count = len(several.times) // max(len(asked), 1)
-        same = same_rows(several, count) if self.setup.model["redundant"] else np.ones(len(asked), dtype=bool)
+    def add(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
+        """Add instants, with masks of those requested and of those before the horizon; each has the solution of run A,
+        then of the others.
+        """
+        count = len(recovered.times) // max(len(is_requested), 1)
+        same = (
+            find_equal_rows(recovered, count)
+            if self.setup.model["redundant"]
+            else np.ones(len(is_requested), dtype=bool)
+        )
         if same.any() and not same.all():
-            several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
-        many = self.at_once(count)
-        if many >= len(asked):
-            self.add_part(several, asked, before)
+            recovered, is_requested, is_claimed = (
+                recovered.select(np.repeat(same, count)),
+                is_requested[same],
+                is_claimed[same],
+            )
+        chunk_size = self.choose_chunk_size(count)
+        if chunk_size >= len(is_requested):
+            self.add_chunk(recovered, is_requested, is_claimed)
             return
-        for i in range(0, len(asked), many):
-            part = slice(i, i + many)
-            self.add_part(several.at(slice(count * i, count * part.stop)), asked[part], before[part])
+        for i in range(0, len(is_requested), chunk_size):
+            part = slice(i, i + chunk_size)
+            self.add_chunk(recovered.select(slice(count * i, count * part.stop)), is_requested[part], is_claimed[part])
 
-    def at_once(self, count: int) -> int:
-        """How many instants of so many runs are looked at together: cuts may be more than all else at an instant."""
+    def choose_chunk_size(self, count: int) -> int:
+        """Return how many instants of `count` runs are compared together: cuts may need more memory than all else."""
         cuts = sum(len(cuts.side) for cuts in self.setup.cuts)
         return BLOCK * max(1, CUTS_AT_ONCE // (BLOCK * count * cuts + 1))
 
-    def add_part(self, several: Recovered, asked: Mask, before: Mask) -> None:
-        """Instants that are answered with the same closure rows in all runs."""
-        self.asked, self.before = asked, before
-        require_on_sheaves(self.setup.scene.layout, several)
-        states = body_states(self.setup.scene.layout, several)
-        self.last = SeenInstants(states) if self.keeping else None
-        loads = applied_loads(self.setup.scene.mechanism, states, several)
+    def add_chunk(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
+        """Add instants that are solved with the same closure rows in all runs."""
+        self.is_requested, self.is_claimed = is_requested, is_claimed
+        require_on_sheaves(self.setup.scene.layout, recovered)
+        states = make_body_states(self.setup.scene.layout, recovered)
+        self.last = ComparedInstants(states) if self.keep_instants else None
+        loads = collect_applied_loads(self.setup.scene.mechanism, states, recovered)
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
-            self.add_loads(several, states, loads)
+            self.add_loads(recovered, states, loads)
         if "energy" in self.compared:
-            self.add_energy(several, states)
+            self.add_energy(recovered, states)
         if "motion" in self.compared:
-            self.add_motion(several, states)
+            self.add_motion(recovered, states)
 
-    def add_loads(self, several: Recovered, states: CarriedStates, loads: Sequence[AppliedLoad]) -> None:
-        """Loads of all kinds."""
-        joints = joint_loads(self.setup.scene.layout, several, states)
-        self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
-        terms = BalanceTerms(self.setup, several, states, loads)
+    def add_loads(self, recovered: Evaluation, states: KernelBodyStates, loads: Sequence[AppliedLoad]) -> None:
+        """Add loads of all kinds."""
+        joints = find_joint_loads(self.setup.scene.layout, recovered, states)
+        self.last = ComparedInstants(states, tuple(joints)) if self.keep_instants else None
+        terms = BalanceTerms(self.setup, recovered, states, loads)
         applied = [load.action for load in loads]
-        couplings = coupling_loads(self.setup.scene.layout, several, states)
-        coupled = coupling_actions(couplings)
+        couplings = find_coupling_loads(self.setup.scene.layout, recovered, states)
+        coupling_loads_on_bodies = list_coupling_actions(couplings)
         if couplings:
-            from heuncli.loads.kinetostatics.flanks import with_flanks  # few scenes have gears
+            from heuncli.loads.kinetostatics.flanks import add_separating_forces  # few scenes have gears
 
-            joints = with_flanks(self.setup.scene.layout, joints, couplings)
-        acting = [*applied, *coupled]
+            joints = add_separating_forces(self.setup.scene.layout, joints, couplings)
+        acting = [*applied, *coupling_loads_on_bodies]
         if "reactions" in self.compared:
-            coupling_told: Sequence[Quantity] = ()
+            coupling_results: Sequence[Quantity] = ()
             if couplings:
-                from heuncli.study.solve.coupling_errors import told_of  # few scenes have them
+                from heuncli.study.solve.coupling_errors import iter_coupling_results  # few scenes have them
 
-                coupling_told = [*told_of(couplings, applied, self.setup.scene.mechanism.joints, states)]
-            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupling_told, terms)
+                coupling_results = [
+                    *iter_coupling_results(couplings, applied, self.setup.scene.mechanism.joints, states)
+                ]
+            self.add_joints(
+                [rotate_joint_loads(load, states, self.setup.selection.axes) for load in joints],
+                coupling_results,
+                terms,
+            )
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
-            self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
+            self.add_foundation(states, [*acting, *list_joint_actions(driven)], terms)
         if self.setup.cuts and "sections" in self.compared:
-            self.add_sections(states, [*whole_joint_actions(joints), *acting], terms)
+            self.add_sections(states, [*list_whole_joint_actions(joints), *acting], terms)
         if "forces" in self.compared:
             self.add_forces(loads, terms)
         if self.by_cause:
-            from heuncli.study.solve.share_errors import compared_shares  # few runs ask for them
+            from heuncli.study.solve.share_errors import iter_compared_shares  # few runs need them
 
-            pushing = [*applied, *rope_actions(couplings)]
-            for kind, name, values, more in compared_shares(self.setup, several, states, pushing, self.compared, terms):
-                F, M = (rounding * more for rounding in terms.rounding)
-                rounding, of = (M, terms.moment * more) if name == "moment" else (F, terms.force * more)
-                self.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
+            pushing = [*applied, *list_rope_actions(couplings)]
+            for kind, name, values, factor in iter_compared_shares(
+                self.setup, recovered, states, pushing, self.compared, terms
+            ):
+                F, M = (rounding * factor for rounding in terms.rounding)
+                rounding, magnitude = (M, terms.moment * factor) if name == "moment" else (F, terms.force * factor)
+                self.add_values((f"{kind} {BY_CAUSE}", name), values, rounding, magnitude)
 
     def add_forces(self, loads: Sequence[AppliedLoad], terms: BalanceTerms) -> None:
-        """Applied loads, and what they put into the bodies."""
+        """Add applied loads, their power and their strains."""
         F, M = terms.rounding
         for load in loads:
-            self.take(("forces", "N"), load.action.force, F, terms.force)
-            self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
-            none = np.zeros(len(F))
-            self.take(("forces", "W"), load.power, none, terms.force)
+            self.add_values(("forces", "N"), load.action.force, F, terms.force)
+            self.add_values(("forces", "N·m"), load.action.moment, M, terms.moment)
+            zeros = np.zeros(len(F))
+            self.add_values(("forces", "W"), load.power, zeros, terms.force)
             if load.strain is not None:
-                self.take(("strains", "m"), load.strain[:, 0], none, none)
-                self.take(("strains", "rad"), load.strain[:, 1], none, none)
+                self.add_values(("strains", "m"), load.strain[:, 0], zeros, zeros)
+                self.add_values(("strains", "rad"), load.strain[:, 1], zeros, zeros)
 
-    def add_motion(self, several: Recovered, states: BodyStates) -> None:
-        """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach.
+    def add_motion(self, recovered: Evaluation, states: BodyStates) -> None:
+        """Add velocities and accelerations of the bodies, and of points as far from their centres as they reach.
 
-        And what is told of the bodies beside.
+        Also the momenta, system vectors and attitudes, if the motion is requested.
         """
-        count = len(states.omega) // len(self.asked)
+        count = len(states.omega) // len(self.is_requested)
 
         def apart(values: Array) -> Array:
             own = values[0::count]
             return reduce(np.maximum, [norms(own - values[k::count]) for k in range(1, count)])
 
-        turn, turning = apart(states.omega), apart(states.alpha)
-        centripetal = 2.0 * norms(states.omega[0::count]) * turn
+        omega_difference, alpha_difference = apart(states.omega), apart(states.alpha)
+        centripetal = 2.0 * norms(states.omega[0::count]) * omega_difference
         for unit, difference in (
-            ("rad/s", turn),
-            ("rad/s²", turning),
-            ("m/s", apart(states.v_centre) + turn * self.reaches),
-            ("m/s²", apart(states.a_centre) + (turning + centripetal) * self.reaches),
+            ("rad/s", omega_difference),
+            ("rad/s²", alpha_difference),
+            ("m/s", apart(states.v_centre) + omega_difference * self.reaches),
+            ("m/s²", apart(states.a_centre) + (alpha_difference + centripetal) * self.reaches),
         ):
-            self.extent("motion", unit).differ(difference.max(axis=1), self.before)
+            self.find_extent("motion", unit).add_difference(difference.max(axis=1), self.is_claimed)
         if any(JOINTS[joint.kind].follows_path for joint in self.setup.scene.mechanism.joints):
-            self.add_travels(several, states)
-        if "motion" in self.setup.asked.reports:
-            turned, vectors = turned_apart(states.R, count)
-            self.extent("attitudes", "1").differ(turned, self.before)
-            self.extent("rodrigues", "1").differ(vectors[self.asked], self.before[self.asked])
-            none = np.zeros(len(states.R))
-            for unit, values, rounding in moved_quantities(self.setup.scene.mechanism, states, self.setup.about):
-                self.take(("motion", unit), values, rounding, none)
+            self.add_travels(recovered, states)
+        if "motion" in self.setup.selection.reports:
+            turned, vectors = compare_attitudes(states.R, count)
+            self.find_extent("attitudes", "1").add_difference(turned, self.is_claimed)
+            self.find_extent("rodrigues", "1").add_difference(
+                vectors[self.is_requested], self.is_claimed[self.is_requested]
+            )
+            zeros = np.zeros(len(states.R))
+            for unit, values, rounding in iter_momentum_quantities(
+                self.setup.scene.mechanism, states, self.setup.moment_point
+            ):
+                self.add_values(("motion", unit), values, rounding, zeros)
 
-    def add_travels(self, several: Recovered, states: BodyStates) -> None:
-        """Travels, some of them along paths: in what the tables of these are over, which need not be their length."""
-        none = np.zeros(len(several.times))
-        for own in coordinates(self.setup.scene.layout, several, states).values():
+    def add_travels(self, recovered: Evaluation, states: BodyStates) -> None:
+        """Add travels, some of them along paths: in the parameter of the path's table, which need not be its length."""
+        zeros = np.zeros(len(recovered.times))
+        for own in evaluate_joint_coordinates(self.setup.scene.layout, recovered, states).values():
             if "travel" in own:
                 for name, unit in zip(TRAVELS, ("m", "m/s", "m/s²"), strict=True):
-                    self.take(("travels", unit), own[name], none, none)
+                    self.add_values(("travels", unit), own[name], zeros, zeros)
 
     @cached_property
     def reaches(self) -> Array:
-        """How far each body's marks are from its centre of mass at most, (b,) [m]."""
+        """The largest distance of each body's marks from its centre of mass, (b,) [m]."""
         bodies = self.setup.scene.mechanism.bodies
-        far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
+        far = [max(float(np.sum(np.square(p - body.center))) for p in extent_points(body)) for body in bodies]
         return np.asarray(np.sqrt(far))
 
-    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
-        """Reactions, in the axes in which they are told, those of couplings among them, and drives."""
+    def add_joints(
+        self, joints: Sequence[JointLoads], coupling_results: Sequence[Quantity], terms: BalanceTerms
+    ) -> None:
+        """Add reactions in the axes in which they are shown, including those of couplings, and drives."""
         F, M = terms.rounding
         if joints:
-            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
-            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
-        none = np.zeros(len(F))
-        if joints and (coupled or any(JOINTS[load.joint.kind].follows_path for load in joints)):
-            self.take(("reactions", "place"), np.stack([x.point for x in joints], axis=1), none, none)
-        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (none, none), "angle": (none, none)}
-        for name, values in coupled:
-            self.take(("reactions", name), values, *of[name])
+            self.add_values(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
+            self.add_values(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
+        zeros = np.zeros(len(F))
+        if joints and (coupling_results or any(JOINTS[load.joint.kind].follows_path for load in joints)):
+            self.add_values(("reactions", "place"), np.stack([x.point for x in joints], axis=1), zeros, zeros)
+        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (zeros, zeros), "angle": (zeros, zeros)}
+        for name, values in coupling_results:
+            self.add_values(("reactions", name), values, *of[name])
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
                 rounding, of = (M, terms.moment) if turns else (F, terms.force)
-                self.take(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
+                self.add_values(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
 
     def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
-        """Total of the foundation, its elements and the mass effects.
+        """Add the total of the foundation, its elements and the mass effects.
 
-        Of a wheel that rolls the orbital and the spin part err against each other: each is told, so each is compared.
+        The orbital and the spin part of a rolling wheel may have opposite errors: each is shown, so each is compared.
         """
-        mechanism, origin = self.setup.scene.mechanism, self.setup.about
+        mechanism, origin = self.setup.scene.mechanism, self.setup.moment_point
         arm = states.centre - origin
-        far = np.abs(arm).max(axis=(1, 2))
-        self.reach = max(self.reach, float(far.max()))
-        moments = terms.moment + far * terms.force
+        reach = np.abs(arm).max(axis=(1, 2))
+        self.reach = max(self.reach, float(reach.max()))
+        moments = terms.moment + reach * terms.force
         forces_rounding, moments_rounding = terms.rounding
-        inner = [action for action in actions if action.kind != "joint" and action.from_ is not None]
-        elements = [on for action in inner if (on := action.on_ground()) is not None]
-        whole = total(states, terms.weight - terms.ma, terms.spin, actions, origin)
-        self.add_axis(*whole)
+        load_actions = [action for action in actions if action.kind != "joint" and action.from_end is not None]
+        elements = [on for action in load_actions if (on := action.ground_load()) is not None]
+        total_wrench = total_load(states, terms.weight - terms.ma, terms.spin, actions, origin)
+        self.add_axis(*total_wrench)
         wrenches = [
-            ("foundation", *whole),
+            ("foundation", *total_wrench),
             ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1)),
             ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1)),
             *(("elements", force, moment) for force, moment, _ in elements),
         ]
         for kind, force, moment in wrenches:
-            F, M = in_plane(force, moment) if mechanism.planar else (force, moment)
-            self.take((kind, "force"), F, forces_rounding, terms.force)
-            self.take((kind, "moment"), M, moments_rounding + far * forces_rounding, moments)
+            F, M = project_to_plane(force, moment) if mechanism.planar else (force, moment)
+            self.add_values((kind, "force"), F, forces_rounding, terms.force)
+            self.add_values((kind, "moment"), M, moments_rounding + reach * forces_rounding, moments)
 
     def add_axis(self, force: Array, moment: Array) -> None:
-        """The central axis of the wrench at the asked instants: where there is next to no force it errs by far more."""
-        count = len(force) // len(self.asked)
-        told = np.repeat(self.asked, count)
-        axis = central_axis(force[told], moment[told], self.setup.about, 0.0)
+        """Add the central axis of the wrench at the requested instants: where the force is small, its error is far
+        larger.
+        """
+        count = len(force) // len(self.is_requested)
+        is_requested = np.repeat(self.is_requested, count)
+        axis = central_axis(force[is_requested], moment[is_requested], self.setup.moment_point, 0.0)
         for unit, values in (("1", axis["direction"]), ("m", axis["point"]), ("m", axis["pitch"][:, None])):
-            own = values[0::count]
-            apart = np.max([norms((own - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0)
-            self.extent("axis", unit).differ(np.nan_to_num(apart), self.before[self.asked])
+            first_run = values[0::count]
+            difference = np.max([norms((first_run - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0)
+            self.find_extent("axis", unit).add_difference(np.nan_to_num(difference), self.is_claimed[self.is_requested])
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
-        """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
-        from heuncli.loads.kinetostatics.sections import acceleration_matrix, attachments, piece_loads  # as in recover
+        """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
+        from heuncli.loads.kinetostatics.sections import (  # as in recover
+            acceleration_matrix,
+            find_attachments,
+            find_piece_loads,
+        )
 
         gravity = self.setup.scene.mechanism.gravity
         for cuts in self.setup.cuts:
-            on = attachments(cuts.body, states, actions)
-            force, moment = piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), on)
+            attached = find_attachments(cuts.body, states, actions)
+            force, moment = find_piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), attached)
             R = states.R[:, cuts.body]
-            count = len(R) // len(self.asked)
-            own = R[0::count]
+            count = len(R) // len(self.is_requested)
+            first_run = R[0::count]
             turned = reduce(
-                np.maximum, [np.sqrt(np.sum((own - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)]
+                np.maximum, [np.sqrt(np.sum((first_run - R[k::count]) ** 2, axis=(1, 2))) for k in range(1, count)]
             )
             F, M = terms.rounding
-            for quantity, values, rounding, of in (
+            for quantity, values, rounding, magnitude in (
                 ("force", force, F, terms.force), ("moment", moment, M, terms.moment),
             ):  # fmt: skip
-                both = values.transpose(1, 2, 0)
-                turn = turned * lengths(both[0::count])
-                self.take(("sections", quantity), both, rounding, of, turn)
+                instants_first = values.transpose(1, 2, 0)
+                turn_difference = turned * lengths(instants_first[0::count])
+                self.add_values(("sections", quantity), instants_first, rounding, magnitude, turn_difference)
 
-    def add_energy(self, several: Recovered, states: BodyStates) -> None:
-        """Kinetic and potential energy, and work."""
-        block = energy(self.setup.scene.layout, several, states)
+    def add_energy(self, recovered: Evaluation, states: BodyStates) -> None:
+        """Add kinetic and potential energy, and work."""
+        block = energy_block(self.setup.scene.layout, recovered, states)
         m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
         speed = np.abs(states.v_centre).max(axis=(1, 2))
         lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
         rounding = tolerances.SUM_ROUNDING * (block["kinetic"] + m.sum() * speed**2)
-        none = np.zeros(len(several.times))
-        self.take(("energy", "kinetic"), block["kinetic"], rounding, none)
-        self.take(("energy", "potential"), block["potential"], tolerances.SUM_ROUNDING * lift, none)
-        self.take(("energy", "work"), block["work"], none, none)
+        zeros = np.zeros(len(recovered.times))
+        self.add_values(("energy", "kinetic"), block["kinetic"], rounding, zeros)
+        self.add_values(("energy", "potential"), block["potential"], tolerances.SUM_ROUNDING * lift, zeros)
+        self.add_values(("energy", "work"), block["work"], zeros, zeros)
 
-    def estimate(self) -> Estimate:
-        """The estimated error of each kind that is asked for, relative to the largest told of it."""
-        size, found = self.setup.scene.layout.size, Estimate()
+    def estimate(self) -> ErrorEstimate:
+        """Return the estimated error of each requested kind, relative to its largest result."""
+        size, found = self.setup.scene.layout.size, ErrorEstimate()
         if "reactions" in self.compared:
-            found["reactions"] = self.wrench(size, "reactions")
-            found["drives"] = max(self.wrench(1.0, "drives", "thrust", ""), self.wrench(1.0, "drives", "", "torque"))
+            found["reactions"] = self.relative_wrench_error(size, "reactions")
+            found["drives"] = max(
+                self.relative_wrench_error(1.0, "drives", "thrust", ""),
+                self.relative_wrench_error(1.0, "drives", "", "torque"),
+            )
         if "foundation" in self.compared:
-            found["foundation"] = self.wrench(size + self.reach, "foundation", also=("effects", "elements"))
+            found["foundation"] = self.relative_wrench_error(
+                size + self.reach, "foundation", other_kinds=("effects", "elements")
+            )
         if "sections" in self.compared:
-            found["sections"] = self.wrench(size, "sections")
+            found["sections"] = self.relative_wrench_error(size, "sections")
         if "energy" in self.compared:
-            found["energy"] = self.energies()
+            found["energy"] = self.relative_energy_error()
         return found
 
     def errors(self) -> dict[tuple[str, str], float]:
-        """The estimated errors by kind and unit, before the horizon."""
-        of = {name: extent.claimed_error for name, extent in self.extents.items()}
+        """Return the estimated errors by kind and unit, before the horizon."""
+        error_by_name = {name: extent.claimed_error for name, extent in self.extents.items()}
         found = {
-            name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains", "travels", "axis")
+            name: error
+            for name, error in error_by_name.items()
+            if name[0] in (*MOTION_KINDS, "forces", "strains", "travels", "axis")
         }
-        whole = ("foundation", "effects", "elements")
-        for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
+        foundation_kinds = ("foundation", "effects", "elements")
+        for kind, parts in (
+            ("reactions", ("reactions",)),
+            ("sections", ("sections",)),
+            ("foundation", foundation_kinds),
+        ):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
-                found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
-        found |= {("reactions", UNITS[x]): of["reactions", x] for x in ("place", "angle") if ("reactions", x) in of}
-        found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
-        found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
+                found[kind, unit] = max(error_by_name.get((part, quantity), 0.0) for part in parts)
+        found |= {
+            ("reactions", UNITS[x]): error_by_name["reactions", x]
+            for x in ("place", "angle")
+            if ("reactions", x) in error_by_name
+        }
+        found["drives", "N"], found["drives", "N·m"] = (
+            error_by_name.get(("drives", x), 0.0) for x in ("thrust", "torque")
+        )
+        found["energy", "J"] = max(
+            error_by_name.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work")
+        )
         return found | self.errors_by_cause()
 
     def errors_by_cause(self) -> dict[tuple[str, str], float]:
-        """The estimated errors of shares by cause, by kind and unit, before the horizon."""
+        """Return the estimated errors of shares by cause, by kind and unit, before the horizon."""
         units = {"force": "N", "moment": "N·m"}
-        known = {name: extent for name, extent in self.extents.items() if name[0].endswith(BY_CAUSE)}
-        return {(kind, units[name]): extent.claimed_error for (kind, name), extent in known.items()}
+        extents = {name: extent for name, extent in self.extents.items() if name[0].endswith(BY_CAUSE)}
+        return {(kind, units[name]): extent.claimed_error for (kind, name), extent in extents.items()}
 
-    def wrench(
-        self, arm: float, kind: str, force: str = "force", moment: str = "moment", also: Sequence[str] = ()
+    def relative_wrench_error(
+        self, arm: float, kind: str, force: str = "force", moment: str = "moment", other_kinds: Sequence[str] = ()
     ) -> float:
-        """Error of forces and of moments, and of those of other kinds; arm: the longest of a moment."""
-        if not also and not {(kind, force), (kind, moment)} & self.extents.keys():
+        """The relative error of forces and moments of a kind, together with those of other kinds; arm: the longest of a
+        moment.
+        """
+        if not other_kinds and not {(kind, force), (kind, moment)} & self.extents.keys():
             return 0.0
         size = self.setup.scene.layout.size
-        F, M = self.extent(kind, force), self.extent(kind, moment)
-        parts = [(F, M), *((self.extent(other, force), self.extent(other, moment)) for other in also)]
+        F, M = self.find_extent(kind, force), self.find_extent(kind, moment)
+        parts = [(F, M), *((self.find_extent(other, force), self.find_extent(other, moment)) for other in other_kinds)]
         terms_F, terms_M = max(f.terms for f, _ in parts), max(m.terms for _, m in parts)
-        forces = [max(F.told, M.told / arm), *(max(f.largest, m.largest / arm) for f, m in parts)]
-        moments = [max(M.told, F.told * size), *(max(m.largest, f.largest * size) for f, m in parts)]
+        forces = [
+            max(F.largest_requested, M.largest_requested / arm),
+            *(max(f.largest, m.largest / arm) for f, m in parts),
+        ]
+        moments = [
+            max(M.largest_requested, F.largest_requested * size),
+            *(max(m.largest, f.largest * size) for f, m in parts),
+        ]
         return max(
-            relative(max(f.error for f, _ in parts), max(terms_F, terms_M / arm), *forces),
-            relative(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
+            relative_error(max(f.error for f, _ in parts), max(terms_F, terms_M / arm), *forces),
+            relative_error(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
         )
 
-    def energies(self) -> float:
-        """Error of the energies."""
+    def relative_energy_error(self) -> float:
+        """The relative error of the energies."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
-        kinetic, potential, work = (self.extent("energy", name) for name in ("kinetic", "potential", "work"))
+        kinetic, potential, work = (self.find_extent("energy", name) for name in ("kinetic", "potential", "work"))
         lift = sum(b.mass for b in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
         if kinetic.largest <= tolerances.NO_ENERGY * lift:
             return 0.0
         error = max(x.error for x in (kinetic, potential, work))
-        told = max(kinetic.told, potential.exchanged, work.exchanged)
-        return relative(error, kinetic.largest, told, kinetic.largest)
+        shown_energy = max(kinetic.largest_requested, potential.range_or_largest, work.range_or_largest)
+        return relative_error(error, kinetic.largest, shown_energy, kinetic.largest)
 
-    def kinetic(self) -> float:
+    def largest_kinetic_energy(self) -> float:
         """The largest kinetic energy over the run [J]."""
-        return self.extent("energy", "kinetic").largest
+        return self.find_extent("energy", "kinetic").largest
 
 
-def same_rows(several: Recovered, count: int) -> Mask:
-    """Where all of so many runs are answered with the same closure rows, (n,): the others have no multiplier.
+def find_equal_rows(recovered: Evaluation, count: int) -> Mask:
+    """Mark the instants that all of `count` runs solve with the same closure rows, (n,); other rows have no multiplier.
 
-    One that is nought in one run and next to nothing in another is chosen in both.
+    A row with multiplier zero in one run and almost zero in another counts as chosen in both.
     """
-    size = np.abs(several.rows["multiplier"])
-    none, own = size == 0.0, slice(0, None, count)
-    same = np.ones(len(several.times) // count, dtype=bool)
+    size = np.abs(recovered.rows["multiplier"])
+    is_zero, first_run = size == 0.0, slice(0, None, count)
+    same = np.ones(len(recovered.times) // count, dtype=bool)
     for k in range(1, count):
         other = slice(k, None, count)
-        larger = np.maximum(size[own], size[other])
-        much = larger > CHOSEN_ANEW * larger.max(axis=1, initial=0.0)[:, None]
-        same &= ~((none[own] != none[other]) & much).any(axis=1)
+        larger = np.maximum(size[first_run], size[other])
+        is_large = larger > ROW_CHANGE * larger.max(axis=1, initial=0.0)[:, None]
+        same &= ~((is_zero[first_run] != is_zero[other]) & is_large).any(axis=1)
     return same

@@ -1,7 +1,7 @@
-"""Shares by cause as a check run compares them: the error of a share is not that of the whole.
+"""Compare the shares by cause between a run and its check run, because their error is not that of the whole.
 
-Two shares that nearly cancel are larger than their sum, and err by more. So the check run compares the shares
-themselves, kind by kind, as it does the loads.
+Two shares that nearly cancel are larger than their sum and have a larger error. So the check run compares the shares
+themselves, kind by kind, like the loads.
 """
 
 from __future__ import annotations
@@ -13,21 +13,27 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.coupling_numbers import numbers_of
+from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
-from heuncli.loads.kinetostatics.joint_axes import in_axes
+from heuncli.loads.kinetostatics.joint_axes import rotate_joint_loads
 from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.loads.kinetostatics.shares import Column, Shares, foundation_shares, members_of, shares_of
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.loads.kinetostatics.shares import (
+    CauseResults,
+    Shares,
+    find_cause_columns,
+    find_shares,
+    foundation_shares_blocks,
+)
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
 
 
 class ComparedShares(NamedTuple):
-    """The shares of one kind of loads: `force` or `moment`, values with the instants of both runs first, (c n, ...).
+    """The shares of one kind of loads: `force` or `moment`, values of both runs with the instants first, (c n, ...).
 
-    more (c n,): how many times the terms of the largest share are as large as those of the whole.
+    factor (c n,): ratio of the terms of the largest share to those of the whole
     """
 
     kind: str
@@ -36,40 +42,42 @@ class ComparedShares(NamedTuple):
     more: Array
 
 
-def compared_shares(
+def iter_compared_shares(
     setup: Setup,
-    several: Recovered,
+    recovered: Evaluation,
     states: BodyStates,
-    applied: Sequence[Action],
+    applied_actions: Sequence[Action],
     kinds: Set[str],
     terms: BalanceTerms,
 ) -> Iterator[ComparedShares]:
-    """The shares of the kinds of loads that are compared, of joints, couplings, foundation and sections."""
+    """Yield the shares of the compared kinds of loads, of joints, couplings, foundation and sections."""
     layout = setup.scene.layout
-    shares = shares_of(layout, several, states, applied, members_of(layout.mechanism))
-    more = larger(shares.column, terms)
-    told = [in_axes(load, states, setup.asked.axes) for load in shares.joints]
-    found = of_joints(told) + of_couplings(shares.couplings) if "reactions" in kinds else []
-    found += of_foundation(setup, states, shares) if "foundation" in kinds else []
-    found += of_sections(setup, states, shares) if "sections" in kinds else []
-    for kind, name, values in found:
-        yield ComparedShares(kind, name, values, more)
+    shares = find_shares(layout, recovered, states, applied_actions, find_cause_columns(layout.mechanism))
+    factor = terms_factor(shares.cause_results, terms)
+    joint_shares = [rotate_joint_loads(load, states, setup.selection.axes) for load in shares.joints]
+    shares_of_kinds = (
+        list_joint_shares(joint_shares) + list_coupling_shares(shares.couplings) if "reactions" in kinds else []
+    )
+    shares_of_kinds += list_foundation_shares(setup, states, shares) if "foundation" in kinds else []
+    shares_of_kinds += list_section_shares(setup, states, shares) if "sections" in kinds else []
+    for kind, name, values in shares_of_kinds:
+        yield ComparedShares(kind, name, values, factor)
 
 
-def larger(column: Column, terms: BalanceTerms) -> Array:
-    """How many times the terms of the largest share are as large as those of the whole, at least once, (n_t,)."""
-    of_rows = column.rows["multiplier"][..., None] * column.rows["f"]
-    parts = [column.bodies["joint_force"], of_rows]
+def terms_factor(column: CauseResults, terms: BalanceTerms) -> Array:
+    """The ratio of the terms of the largest share to those of the whole, at least 1, (n_t,)."""
+    row_forces = column.rows["multiplier"][..., None] * column.rows["f"]
+    parts = [column.bodies["joint_force"], row_forces]
     largest = np.max([np.abs(x).max(axis=(0, 2, 3), initial=0.0) for x in parts], axis=0)
     return np.asarray(np.maximum(1.0, largest / np.where(terms.force > 0.0, terms.force, np.inf)))
 
 
-OfKind = list[tuple[str, str, Array]]  # kind, quantity, values with the instants first
+KindValues = list[tuple[str, str, Array]]  # kind, quantity, values with the instants first
 
 
-def of_joints(joints: Sequence[JointLoads]) -> OfKind:
-    """The shares of reactions and of drives."""
-    found: OfKind = []
+def list_joint_shares(joints: Sequence[JointLoads]) -> KindValues:
+    """Return the shares of reactions and of drives."""
+    found: KindValues = []
     for name in ("force", "moment"):
         values = [np.moveaxis(getattr(load, name), 0, 1) for load in joints]
         found += [("reactions", name, np.stack(values, axis=1))] if values else []
@@ -80,37 +88,37 @@ def of_joints(joints: Sequence[JointLoads]) -> OfKind:
     return found
 
 
-def of_couplings(couplings: Sequence[CouplingLoads]) -> OfKind:
-    """The shares of what couplings are told by, where it is a sum of them."""
-    numbers = [number for own in couplings for number in numbers_of(own) if number.is_sum]
+def list_coupling_shares(couplings: Sequence[CouplingLoads]) -> KindValues:
+    """Return the shares of the coupling results that are sums of shares."""
+    numbers = [number for own in couplings for number in list_numbers(own) if number.is_sum]
     return [
         ("reactions", "moment" if number.is_moment else "force", np.moveaxis(number.values, 0, 1)[..., None])
         for number in numbers
     ]
 
 
-def of_foundation(setup: Setup, states: BodyStates, shares: Shares) -> OfKind:
-    """The shares of the total and of the elements."""
-    found: OfKind = []
-    for keys, block in foundation_shares(setup.scene.mechanism, states, shares, setup.about).items():
+def list_foundation_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindValues:
+    """Return the shares of the foundation's total and of its elements."""
+    found: KindValues = []
+    for keys, block in foundation_shares_blocks(setup.scene.mechanism, states, shares, setup.moment_point).items():
         if keys[:1] == ("supports",):
             continue  # those of their joints
         for name in ("force", "moment"):
-            both = [own[key] for own in block.values() for key in (name, f"direct_{name}") if key in own]
-            found.append(("foundation", name, np.stack(both, axis=1)))
+            values = [own[key] for own in block.values() for key in (name, f"direct_{name}") if key in own]
+            found.append(("foundation", name, np.stack(values, axis=1)))
     return found
 
 
-def of_sections(setup: Setup, states: BodyStates, shares: Shares) -> OfKind:
-    """The shares of the cuts' loads, world axes."""
-    found: OfKind = []
+def list_section_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindValues:
+    """Return the shares of the cuts' loads, world axes."""
+    found: KindValues = []
     if not setup.cuts:
         return found
-    from heuncli.loads.kinetostatics.section_shares import section_shares  # where there are sections
+    from heuncli.loads.kinetostatics.section_shares import section_shares_block  # where there are sections
 
     for cuts in setup.cuts:
-        block = section_shares(cuts, setup.scene.layout, states, shares, {})
+        block = section_shares_block(cuts, setup.scene.layout, states, shares, {})
         for name in ("force", "moment"):
-            both = [own[key] for own in block.values() for key in (name, f"direct_{name}") if key in own]
-            found.append(("sections", name, np.stack(both, axis=1)))
+            values = [own[key] for own in block.values() for key in (name, f"direct_{name}") if key in own]
+            found.append(("sections", name, np.stack(values, axis=1)))
     return found

@@ -1,9 +1,9 @@
-"""Whether the accelerations at a start at rest belong to a motion: in a singular pose those of first order need not.
+"""Check that the accelerations at a start at rest belong to a motion: in a singular pose, first-order ones need not.
 
-A chain stretched straight between two supports gives way across itself to the first order: where it lies J has one
-independent row less. Pushed across, it would have to move by a t^2/2, and to be longer by the square of that, which no
-t^4 of any other coordinate makes up for. It does not move, and no finite force holds it. With x = a t^2/2 + b t^4/24
-the closures ask for J b + 3 gamma(a) = 0: what they ask of b is what they ask of accelerations where rates are a.
+A chain stretched straight between two supports gives way across itself to the first order: there J has one independent
+row less. Pushed across, it would have to move by a t^2/2, and to lengthen by the square of that, which no t^4 of any
+other coordinate compensates. It does not move, and no finite force holds it. With x = a t^2/2 + b t^4/24 the closures
+require J b + 3 gamma(a) = 0: what they require of b is what they require of accelerations where rates are a.
 """
 
 from __future__ import annotations
@@ -15,104 +15,112 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
-from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
-from heuncli.loads.kinetostatics.reactions import Named
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
+from heuncli.loads.kinetostatics.reactions import NamedArrays
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.multibody.tree.layout import Island, Layout, places_of_rates
+from heuncli.multibody.tree.layout import Island, Layout, rate_indices
 from heuncli.results.results import Array
 
 
-def require_motion(layout: Layout, recovered: Recovered) -> None:
-    """Raise SolveError where loads push what rests in a singular pose along a motion that does not go on.
+def require_motion(layout: Layout, start_solution: Evaluation) -> None:
+    """Raise SolveError where loads push a resting singular pose along a motion that cannot continue.
 
-    recovered: of one instant. Where drives accelerate, or where bodies move already, nothing is said.
+    start_solution: of one instant. Poses with accelerating drives or with moving bodies pass unchecked.
     """
-    rows = recovered.rows[0]
-    dependent = [i for i in layout.islands if (rows["chosen"] < rows["closed"])[i.rows].any() and not is_held(i, rows)]
+    rows = start_solution.rows[0]
+    dependent = [
+        i for i in layout.islands if (rows["chosen"] < rows["closed"])[i.rows].any() and not is_immobile(i, rows)
+    ]
     if not dependent:
         return
-    y, accelerations = recovered.states[0], rates_of(layout, recovered)
-    place = places_of_rates(layout)
-    resting: dict[int, tuple[Array, Array]] = {}  # of each island its rates' places, and what they shall be
+    y, accelerations = start_solution.states[0], rate_derivatives(layout, start_solution)
+    rate_places = rate_indices(layout)
+    resting: dict[int, tuple[Array, Array]] = {}  # by island: places of its rates in the state, and their values
     for k, island in enumerate(dependent):
-        own = place[island.freedoms]
-        weights = layout.weights[own]
-        scale = float(np.abs(accelerations[own] * weights).max(initial=0.0))
-        if scale > 0.0 and float(np.abs(y[own] * weights).max()) <= tolerances.AT_REST:
-            resting[k] = own, accelerations[own] / scale
+        own_places = rate_places[island.freedoms]
+        weights = layout.weights[own_places]
+        scale = float(np.abs(accelerations[own_places] * weights).max(initial=0.0))
+        if scale > 0.0 and float(np.abs(y[own_places] * weights).max()) <= tolerances.AT_REST:
+            resting[k] = own_places, accelerations[own_places] / scale
     if not resting:
         return
-    bare = Runner(without_loads(layout))
-    rates = place[place >= 0]
-    whole, kept = set_moving(bare, recovered, rates, list(resting.values()))
-    if kept and whole.residual[0] <= whole.may_stay[0]:  # mostly so: one look at all islands
+    bare = Runner(remove_loads(layout))
+    rates = rate_places[rate_places >= 0]
+    all_motions, is_kept = solve_with_rates(bare, start_solution, rates, list(resting.values()))
+    if (
+        is_kept and all_motions.residual[0] <= all_motions.allowed_residual[0]
+    ):  # the usual case: one check of all islands together
         return
     for k, motion in resting.items():
-        along, kept = set_moving(bare, recovered, rates, [motion])
-        if kept and along.residual[0] > along.may_stay[0] and pushed(layout, recovered, along):
-            raise SolveError(goes_nowhere(layout, float(recovered.times[0]), dependent[k]))
+        motion_solution, is_kept = solve_with_rates(bare, start_solution, rates, [motion])
+        if (
+            is_kept
+            and motion_solution.residual[0] > motion_solution.allowed_residual[0]
+            and is_pushed(layout, start_solution, motion_solution)
+        ):
+            raise SolveError(make_problem(layout, float(start_solution.times[0]), dependent[k]))
 
 
-def is_held(island: Island, rows: Named) -> bool:
-    """Whether as many of its rows are independent as it has freedoms: what nothing can move is pushed nowhere."""
+def is_immobile(island: Island, rows: NamedArrays) -> bool:
+    """Whether the island has as many independent rows as freedoms: what cannot move is pushed nowhere."""
     return float(rows["chosen"][island.rows].sum()) >= len(island.freedoms)
 
 
-def set_moving(
-    bare: Runner, recovered: Recovered, rates: Array, motions: Sequence[tuple[Array, Array]]
-) -> tuple[Recovered, bool]:
-    """What the scene without loads does where these rates are given and all others are 0; whether closures let them be.
+def solve_with_rates(
+    unloaded: Runner, start_solution: Evaluation, rates: Array, motions: Sequence[tuple[Array, Array]]
+) -> tuple[Evaluation, bool]:
+    """Solve the scene without loads for given rates, all others 0; and whether the closures keep these rates.
 
-    rates: where all of them stand in the state.
+    rates: the places of all rates in the state
     """
-    y = recovered.states[0].copy()
+    y = start_solution.states[0].copy()
     y[rates] = 0.0
-    for own, values in motions:
-        y[own] = values
-    along = bare.recovered(recovered.times, y[None, :], holding=recovered.holding)
-    changed = np.abs((along.states[0] - y)[rates] * bare.layout.weights[rates])
-    return along, bool(changed.max() <= tolerances.MOVES)
+    for places, values in motions:
+        y[places] = values
+    solution = unloaded.evaluate(start_solution.times, y[None, :], holding=start_solution.holding)
+    rate_changes = np.abs((solution.states[0] - y)[rates] * unloaded.layout.weights[rates])
+    return solution, bool(rate_changes.max() <= tolerances.MOVES)
 
 
-def without_loads(layout: Layout) -> Layout:
-    """The scene without weight and loads: what its closures ask for is then all there is."""
+def remove_loads(layout: Layout) -> Layout:
+    """Return the scene without weight and loads, so that only its closures act."""
     mechanism = replace(layout.mechanism, gravity=np.zeros(3))
     return replace(layout, mechanism=mechanism, tables=layout.tables | {"loads": layout.tables["loads"][:0]})
 
 
-def rates_of(layout: Layout, recovered: Recovered) -> Array:
-    """The derivatives of the state's rates, each where the rate stands, 0 elsewhere; of one instant."""
+def rate_derivatives(layout: Layout, solution: Evaluation) -> Array:
+    """The derivatives of the state's rates, each at the place of its rate, 0 elsewhere; of one instant."""
     found = np.zeros(layout.n_state)
     for k, body in enumerate(layout.bodies):
         if body["ball"]:
-            found[body["rate_at"] : body["rate_at"] + 3] = recovered.bodies["alpha"][0, k]
+            found[body["rate_at"] : body["rate_at"] + 3] = solution.bodies["alpha"][0, k]
     for k, freedom in enumerate(layout.tables["freedoms"]):
         if not freedom["driven"]:
-            found[freedom["u_at"]] = recovered.freedoms["udot"][0, k]
+            found[freedom["u_at"]] = solution.freedoms["udot"][0, k]
     return found
 
 
-def pushed(layout: Layout, recovered: Recovered, along: Recovered) -> bool:
+def is_pushed(layout: Layout, solution: Evaluation, motion: Evaluation) -> bool:
     """Whether the loads act along a motion by more than the pose is known: power of the inertia loads over loads."""
     bodies = layout.mechanism.bodies
-    at: BodyStates = body_states(layout, recovered)
-    moving = body_states(layout, along)
+    states: BodyStates = make_body_states(layout, solution)
+    moving = make_body_states(layout, motion)
     mass = np.array([b.mass for b in bodies])
     speed = float(np.abs(moving.v_centre[0]).max())
     turn = float(np.abs(moving.omega[0]).max())
-    power = float(np.sum(mass[:, None] * at.a_centre[0] * moving.v_centre[0]))
+    power = float(np.sum(mass[:, None] * states.a_centre[0] * moving.v_centre[0]))
     for i, body in enumerate(bodies):
-        R = at.R[0, i]
-        power += float(moving.omega[0, i] @ R @ body.inertia @ R.T @ at.alpha[0, i])
-    force = float(mass.sum() * np.abs(layout.mechanism.gravity).max() + np.abs(recovered.loads["force"]).sum())
-    moment = float(np.abs(recovered.loads["moment"]).sum()) + force * layout.size
+        R = states.R[0, i]
+        power += float(moving.omega[0, i] @ R @ body.inertia @ R.T @ states.alpha[0, i])
+    force = float(mass.sum() * np.abs(layout.mechanism.gravity).max() + np.abs(solution.loads["force"]).sum())
+    moment = float(np.abs(solution.loads["moment"]).sum()) + force * layout.size
     return power > tolerances.PUSHED * (force * speed + moment * turn)
 
 
-def goes_nowhere(layout: Layout, t: float, island: Island) -> Problem:
-    """The problem of a chain that is pushed where it cannot go."""
-    names = dict.fromkeys(layout.mechanism.owner(layout.rows[r]) for r in island.rows.tolist())
+def make_problem(layout: Layout, t: float, island: Island) -> Problem:
+    """Make the problem of a closed chain that is pushed where it cannot move."""
+    names = dict.fromkeys(layout.mechanism.owner_path(layout.rows[r]) for r in island.rows.tolist())
     through = " and ".join(names)
     message = (
         f"at t = {t:.9g} s the loads push the closed chain through {through} in a singular pose (stretched, folded or "

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
@@ -24,17 +24,17 @@ def version() -> str:
 def ways(name: str) -> list[Way]:
     """DOP853, the default, with dense output at the spec's own instants."""
     setup = set_up(load(str(FOLDER / f"{name}.yaml")))
-    scene, runner, method = setup.scene, setup.runner, method_of("DOP853")
+    scene, runner, method = setup.scene, setup.runner, load_method_by_name("DOP853")
     times = np.linspace(0.0, duration(name), len(setup.spec.analysis.times))
 
     def prepare(tolerance: float) -> tuple[Callable[[], Any], Callable[[], dict[str, Any]]]:
         last: list[Any] = []
 
         def integrate() -> None:
-            last[:] = [runner.trajectory(MotionTask(times, tolerance, method=method)).states[-1:]]
+            last[:] = [runner.run(MotionTask(times, tolerance, method=method)).states[-1:]]
 
         def centers() -> dict[str, Any]:
-            found = runner.recovered(times[-1:], last[0]).bodies[0]
+            found = runner.evaluate(times[-1:], last[0]).bodies[0]
             return {
                 body.name: found["r"][k] + found["R"][k] @ (body.center - scene.layout.reference[k])
                 for i, body in enumerate(scene.mechanism.bodies)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.charting.reference import judged_instants
-from heuncli.analyses.charting.results import COMPLETED, ChartedRun, ChartRow, with_front
-from heuncli.motion.integration.check.runs import shared_steps
-from heuncli.motion.integration.run.pace import hopeless
-from heuncli.output.tables.page import page_of
-from heuncli.study.ask.smoothed_friction import friction_warning
-from heuncli.study.quantities.labels import labels_of
+from heuncli.analyses.charting.reference import count_valid_instants
+from heuncli.analyses.charting.results import COMPLETED, ChartRow, ChartRun, mark_front
+from heuncli.motion.integration.check.runs import has_shared_steps
+from heuncli.motion.integration.run.pace import find_hopeless_steps
+from heuncli.output.tables.page import make_page
+from heuncli.study.ask.smoothed_friction import make_friction_warning
+from heuncli.study.quantities.labels import make_labels
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import bar, read
 from tests.shared.scenes import near, study
@@ -22,7 +22,7 @@ from tests.shared.scenes import near, study
 
 def steady_pace(x: float) -> str:
     """A run of which a hundred steps were done, at a pace that would take x times what may be left: 1e6 of 10,000."""
-    return "told" if hopeless(np.arange(1.0, 101.0), x * 1e5, 10_000) else "goes on"
+    return "told" if find_hopeless_steps(np.arange(1.0, 101.0), x * 1e5, 10_000) else "goes on"
 
 
 def steps_given(x: float) -> str:
@@ -32,25 +32,25 @@ def steps_given(x: float) -> str:
 
 def step_in_common(x: float) -> str:
     """Of two runs of 1 s, of which the one has steps of 1 s and x s, and the other the latter alone of them."""
-    return "shared" if shared_steps(np.array([1.0, 1.0 + x]), np.array([0.4, 1.0, 1.0 + x])) else "apart"
+    return "shared" if has_shared_steps(np.array([1.0, 1.0 + x]), np.array([0.4, 1.0, 1.0 + x])) else "apart"
 
 
 def step_beside(x: float) -> str:
     """Of two runs of one step, x of it longer in the one."""
-    return "shared" if shared_steps(np.array([1.0]), np.array([1.0 + x])) else "apart"
+    return "shared" if has_shared_steps(np.array([1.0]), np.array([1.0 + x])) else "apart"
 
 
 def judged(x: float) -> str:
     """Two references that agree, differ by x and then by everything."""
     error = np.array([0.0, 1e-14, x, 1.0])
     pair: Any = SimpleNamespace(error=error, first=SimpleNamespace(times=np.arange(4.0)))
-    return {2: "not judged", 3: "judged"}[judged_instants(pair)[0]]
+    return {2: "not judged", 3: "judged"}[count_valid_instants(pair)[0]]
 
 
 def off_by(x: float) -> str:
     """A run that came to its end, alone in its chart."""
     row = ChartRow("RK4", "quaternion", True, 0.1)
-    (run,) = with_front([ChartedRun(row, COMPLETED, 1.0, 1, 10, 40, {"motion": x, "reactions": x, "sections": None})])
+    (run,) = mark_front([ChartRun(row, COMPLETED, 1.0, 1, 10, 40, {"motion": x, "reactions": x, "sections": None})])
     return "on the front" if run.front else "lost"
 
 
@@ -73,7 +73,7 @@ forces:
         wanted=frozenset({"joints"}),
     )
     near(run.results.joints["w"]["force"], [[-x, 0.0, 0.0]], 1.0, 1e-15)
-    (table,) = page_of(run.results, labels_of(run.spec), run.magnitudes).instants(run.results)
+    (table,) = make_page(run.results, make_labels(run.spec), run.magnitudes).make_tables_at_instants(run.results)
     return "0" if table.notes == ("0 throughout",) else "a number"
 
 
@@ -89,7 +89,7 @@ forces: {{rub: {{type: friction, joint: guide, force: 3, speed: 1}}}}
 analysis: {{type: state}}
 """, wanted=frozenset({"motion", "forces"}))  # fmt: skip
     near(run.results.forces["rub"]["value"], [-3.0 * (1.0 - x)], 1.0)
-    word = friction_warning(run, "coordinates.guide.acceleration", 0.0)
+    word = make_friction_warning(run, "coordinates.guide.acceleration", 0.0)
     return "full" if word is None else "told"
 
 

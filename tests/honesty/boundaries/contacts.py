@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.contacts.complementarity import complementary
-from heuncli.motion.integration.contacts.resting import short_flights
-from heuncli.motion.integration.contacts.restitution import strikes
-from heuncli.motion.integration.contacts.sequential_impacts import independent
-from heuncli.motion.integration.contacts.touching import Touching, answerable
+from heuncli.motion.integration.contacts.complementarity import solve_complementarity
+from heuncli.motion.integration.contacts.resting import is_short_flight
+from heuncli.motion.integration.contacts.restitution import solve_contact_impulses
+from heuncli.motion.integration.contacts.sequential_impacts import find_independent
+from heuncli.motion.integration.contacts.touching import TouchingContacts, moves_something
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, study
 
@@ -50,22 +50,22 @@ def near_the_floor(x: float) -> str:
 
 def opening_rope(x: float) -> str:
     """A ball on a circle whose rope opens by a part of its speed."""
-    run = study(SWUNG.format(rate=-x)).history.checked
+    run = study(SWUNG.format(rate=-x)).history.checked_run
     assert run is not None
     near(run.run.states[-1][4:7] @ run.run.states[-1][4:7], 1.0, 1.0, 1e-9)
-    return "struck" if run.run.blows else "taut"
+    return "struck" if run.run.impulse_events else "taut"
 
 
 def pressed(x: float) -> str:
     """A contact pressed with an acceleration of a part of its terms."""
-    found = complementary(np.eye(1), np.array([-x]), np.array([tolerances.CONTACT_ACCELERATION]))
+    found = solve_complementarity(np.eye(1), np.array([-x]), np.array([tolerances.CONTACT_ACCELERATION]))
     return "bears" if found.bears[0] else "open"
 
 
 def leaning(x: float) -> str:
     """Two contacts of which the one leaves so much of the other, both without rate if the first bears."""
     c = 1.0 - x
-    found = complementary(np.array([[1.0, c], [c, 1.0]]), np.array([-1.0, -c]), np.full(2, 1e-14))
+    found = solve_complementarity(np.array([[1.0, c], [c, 1.0]]), np.array([-1.0, -c]), np.full(2, 1e-14))
     near(found.z, [1.0, 0.0], 1.0, 1e-6)
     return "leans" if found.depends[1] else "open"
 
@@ -74,30 +74,30 @@ def hardly_moved(x: float) -> str:
     """A contact on a body of 1 kg that gives way to a part of what it would if it were free."""
     layout: Any = SimpleNamespace(bodies={"mass": np.ones(1)}, size=1.0)
     one = np.ones(1)
-    touch = Touching(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one, one)
-    return "moves" if answerable(layout, touch, np.array([[x]]))[0] else "held"
+    touch = TouchingContacts(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one, one)
+    return "moves" if moves_something(layout, touch, np.array([[x]]))[0] else "held"
 
 
 def hop(x: float) -> str:
     """A flight of so much time, at once and too high to be none."""
     one = np.ones(1)
-    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, np.zeros(1), one, one)
-    short = short_flights(touch, one, -2.0 * one / x, tolerances.SHORTEST_FLIGHT)
+    touch = TouchingContacts(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, np.zeros(1), one, one)
+    short = is_short_flight(touch, one, -2.0 * one / x, tolerances.SHORTEST_FLIGHT)
     return "none" if short[0] else "flies"
 
 
 def closing_together(x: float) -> str:
     """Two contacts of one body whose equal gaps close at times that differ by twice a part of them."""
     A, rate, none = np.array([[1.0, 0.5], [0.5, 1.0]]), np.array([-1.0, -1.0 - 2.0 * x]), np.zeros(2)
-    touch = Touching(np.arange(2), np.zeros((2, 1, 6)), rate, none, none, np.ones(2), np.ones(2))
-    found = strikes(touch, A, np.ones(2, dtype=bool), none, np.zeros(2, dtype=bool), "sequential")
+    touch = TouchingContacts(np.arange(2), np.zeros((2, 1, 6)), rate, none, none, np.ones(2), np.ones(2))
+    found = solve_contact_impulses(touch, A, np.ones(2, dtype=bool), none, np.zeros(2, dtype=bool), "sequential")
     return "together" if np.allclose(found.impulses, 4.0 / 3.0, rtol=1e-6) else "in turn"
 
 
 def own_answer(x: float) -> str:
     """A contact of which the one before it leaves so much of its own answer."""
     c = np.sqrt(1.0 - x)
-    return "solved" if len(independent(np.array([[1.0, c], [c, 1.0]]))) == 2 else "stays"
+    return "solved" if len(find_independent(np.array([[1.0, c], [c, 1.0]]))) == 2 else "stays"
 
 
 PART = Part(

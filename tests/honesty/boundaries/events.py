@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.contacts.resting import short_flights
-from heuncli.motion.integration.contacts.touching import Touching
+from heuncli.motion.integration.contacts.resting import is_short_flight
+from heuncli.motion.integration.contacts.touching import TouchingContacts
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.pushed_block import pushed_block
 from tests.shared.scenes import near, study
@@ -23,8 +23,8 @@ def low_hop(x: float) -> str:
     """A flight of so much height, of a gap that is a sum of 1."""
     one = np.ones(1)
     reach = tolerances.KERNEL["touching"] * one
-    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, reach, one, one)
-    return "none" if short_flights(touch, one, -one / (2.0 * x), 0.0)[0] else "flies"
+    touch = TouchingContacts(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, reach, one, one)
+    return "none" if is_short_flight(touch, one, -one / (2.0 * x), 0.0)[0] else "flies"
 
 
 PART = Part(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import require_telling
-from heuncli.analyses.lagrange.state_space import beside_rounding
+from heuncli.analyses.lagrange.coordinates import require_independent
+from heuncli.analyses.lagrange.state_space import drop_rounding
 from heuncli.base.errors import SolveError
-from heuncli.loads.kinetostatics.attitudes import rodrigues
+from heuncli.loads.kinetostatics.attitudes import rodrigues_vectors
 from tests.honesty.boundaries.part import Part, Row
 
 
@@ -15,7 +15,7 @@ def told(x: float) -> str:
     """Two motions of which the second coordinate sees an x-th part."""
     rates = {"a.angle": np.array([1.0, 0.0]), "b.angle": np.array([0.0, 1.0 / x]), "c.angle": np.array([0.0, 1.0])}
     try:
-        require_telling(["a.angle", "b.angle"], np.array([rates["a.angle"], rates["b.angle"]]), 2, rates)
+        require_independent(["a.angle", "b.angle"], np.array([rates["a.angle"], rates["b.angle"]]), 2, rates)
     except SolveError as error:
         assert "b.angle cannot tell" in str(error) and "c.angle moves" in str(error)
         return "refused"
@@ -24,12 +24,12 @@ def told(x: float) -> str:
 
 def rests(x: float) -> str:
     """An acceleration of x rad/s^2 in a scene of a metre."""
-    return "moves" if beside_rounding(np.array([x]), 1.0).any() else "rests"
+    return "moves" if drop_rounding(np.array([x]), 1.0).any() else "rests"
 
 
 def vector(x: float) -> str:
     """A turn whose quaternion has the scalar part x."""
-    return "none" if np.isnan(rodrigues(np.array([x, 0.0, 0.0, 1.0]))).all() else "told"
+    return "none" if np.isnan(rodrigues_vectors(np.array([x, 0.0, 0.0, 1.0]))).all() else "told"
 
 
 PART = Part(

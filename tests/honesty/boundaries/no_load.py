@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.loads.kinetostatics.energy import energy_drift
 from heuncli.loads.kinetostatics.foundation import central_axis
-from heuncli.study.compose.warnings import unbalanced
+from heuncli.study.compose.warnings import warn_unbalanced
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar
 from tests.shared.scenes import near, solved, study
@@ -52,7 +52,7 @@ PART = Part(
         Row("NO_FORCE", axis_of, "no axis", "an axis"),
         Row("NO_LOAD", carried_by_nothing, "none", "judged"),
         Row("NO_ENERGY", drift, "at rest", "a drift"),
-        Row("UNBALANCED", lambda x: "warned" if unbalanced(x) else "fine", "fine", "warned"),
+        Row("UNBALANCED", lambda x: "warned" if warn_unbalanced(x) else "fine", "fine", "warned"),
     ),
     exempt={
         "CONSTANT": "whether a peak of a thirteenth digit is looked for",

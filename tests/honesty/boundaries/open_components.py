@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from heuncli.loads.redundancy.certain_sums import relations, tidy
-from heuncli.loads.redundancy.turning_sums import dependent_components, factors
+from heuncli.loads.redundancy.certain_sums import find_relations, tidy_factors
+from heuncli.loads.redundancy.turning_sums import find_dependent_components, find_factors
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT
 from tests.shared.scenes import near, solved
@@ -54,29 +54,29 @@ def stiff(x: float) -> str:
 
 
 def proportional(x: float) -> str:
-    found, _ = relations({"a": np.array([1.0, 0.0]), "b": np.array([1.0, x])})
+    found, _ = find_relations({"a": np.array([1.0, 0.0]), "b": np.array([1.0, x])})
     return "a sum" if found else "none"
 
 
 def told_by_turning(x: float) -> str:
     rows = np.array([[[1.0, 0.0], [1.0, x]]])
-    return "a sum" if factors(rows) is not None else "none"
+    return "a sum" if find_factors(rows) is not None else "none"
 
 
 def nearly_vanishing(x: float) -> str:
     """Of a component that vanishes in one pose what is left there beside another one is rounding, or is not."""
     poses = {"a": np.array([[1.0, 0.0], [1.0, 0.0]]), "b": np.array([[1.0, 0.0], [0.0, x]])}
-    return "a sum" if dependent_components(poses) else "none"
+    return "a sum" if find_dependent_components(poses) else "none"
 
 
 def present(x: float) -> str:
     a, b, c = np.eye(3)
-    (terms,), _ = relations({"a": a, "b": b, "c": c, "sum": a + b + x * c})
+    (terms,), _ = find_relations({"a": a, "b": b, "c": c, "sum": a + b + x * c})
     return "present" if "c" in terms else "absent"
 
 
 def whole(x: float) -> str:
-    return "whole" if tidy({"a": 1.0, "b": 2.0 + x})["b"] == 2.0 else "as found"
+    return "whole" if tidy_factors({"a": 1.0, "b": 2.0 + x})["b"] == 2.0 else "as found"
 
 
 PART = Part(

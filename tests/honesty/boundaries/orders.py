@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from heuncli.analyses.balancing.asked import BalanceOptions
 from heuncli.analyses.balancing.study import balance
-from heuncli.analyses.balancing.verdicts import verdict_of
+from heuncli.analyses.balancing.verdicts import classify_order
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from tests.honesty.boundaries.part import Part, Row
@@ -14,7 +14,7 @@ PERIOD = 0.5
 
 def left(x: float) -> str:
     """Two bodies whose forces of an order, 2 N and 2 N, leave 4 x N of it."""
-    return verdict_of(4.0 * x, 4.0, 10.0)
+    return classify_order(4.0 * x, 4.0, 10.0)
 
 
 def growing(x: float) -> str:
@@ -31,7 +31,7 @@ analysis: {{duration: {2.0 * PERIOD}, samples: 3}}
         found = balance(load("scene.yaml", text), BalanceOptions(period=PERIOD))
     except SolveError as error:
         return error.problems[0].code
-    assert found.period is not None and found.period.off >= 0.3 * x
+    assert found.period is not None and found.period.relative_difference >= 0.3 * x
     return "told"
 
 

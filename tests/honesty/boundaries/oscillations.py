@@ -6,14 +6,14 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from heuncli.analyses.modes.study import modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError
-from heuncli.motion.linearisation.indifference import Indifference, Loose, indifference
-from heuncli.motion.linearisation.linearise import linearised
-from heuncli.motion.linearisation.oscillations import Mode, oscillations
+from heuncli.motion.linearisation.indifference import Indifference, IndifferentMotions, find_indifference
+from heuncli.motion.linearisation.linearise import linearise
+from heuncli.motion.linearisation.oscillations import Mode, find_modes
 from heuncli.motion.linearisation.reduced_equations import ReducedEquations
-from heuncli.motion.linearisation.steady_motion import off_balance
+from heuncli.motion.linearisation.steady_motion import distance_from_rest
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.honesty.boundaries.part import Part, Row
@@ -24,7 +24,9 @@ def turning_force(x: float) -> str:
     """Two motions of stiffness 1, and a force 4 x across each displacement: whether they grow."""
     K, f, none = np.array([[1.0, 4.0 * x], [-4.0 * x, 1.0]]), np.zeros((2, 2)), np.zeros((2, 0))
     system = ReducedEquations(np.eye(2), f, np.eye(2), f, -K, f, np.zeros(2), 0.0, 0.0)
-    return max(oscillations(system, Loose(none, none, 0.0, np.linalg.inv(K), np.eye(2), K, f)), key=growth).kind
+    return max(
+        find_modes(system, IndifferentMotions(none, none, 0.0, np.linalg.inv(K), np.eye(2), K, f)), key=growth
+    ).kind
 
 
 def growth(mode: Mode) -> float:
@@ -33,10 +35,10 @@ def growth(mode: Mode) -> float:
 
 def beside_its_rounding(x: float) -> str:
     """Two carts on a spring, of which one is held by x times what rounding makes of that: as rest and modes tell it."""
-    found = indifference_of(carts(0.0)).found
-    unit = float(found.unsure.max() / found.K[0, 0]) * 3.0 / tolerances.HELD
+    found = indifference_of(carts(0.0)).elimination
+    unit = float(found.null_errors.max() / found.K[0, 0]) * 3.0 / tolerances.HELD
     text = carts(x * unit)
-    free = any(mode.kind == "free" for mode in modes(load("scene.yaml", text)).modes)
+    free = any(mode.kind == "free" for mode in compute_spec_modes(load("scene.yaml", text)).modes)
     told = any("indifferent" in sentence for sentence in solved(text).model["rest"])
     assert free == told
     return "indifferent" if told else "held"
@@ -62,15 +64,15 @@ def indifference_of(text: str) -> Indifference:
     """What of a scene at rest nothing holds."""
     setup = set_up(load("scene.yaml", text), reduce=False)
     layout = setup.scene.layout
-    return indifference(setup.scene, 0.0, np.zeros(0), linearised(layout, 0.0, layout.y0))
+    return find_indifference(setup.scene, 0.0, np.zeros(0), linearise(layout, 0.0, layout.y0))
 
 
 def pushed_freely(x: float) -> str:
     """What nothing holds, pushed by x of the loads there."""
     f, one = np.zeros((1, 1)), np.eye(1)
     system = ReducedEquations(one, f, one, f, f, f, np.array([x]), 1.0, 0.0)
-    here = SimpleNamespace(system=system, weights=np.ones(1), loose=Loose(one, one, 0.0, f, one, f, f))
-    return "falls" if np.isinf(off_balance(here)) else "rests"  # type: ignore[arg-type]
+    here = SimpleNamespace(system=system, weights=np.ones(1), loose=IndifferentMotions(one, one, 0.0, f, one, f, f))
+    return "falls" if np.isinf(distance_from_rest(here)) else "rests"  # type: ignore[arg-type]
 
 
 def hanging(x: float, law: str = "0") -> str:
@@ -90,7 +92,7 @@ joints: {{pivot: {{type: pin, axis: [0, 1, 0], from: ground.O, to: bar.a}}}}
 forces: {{law: {{type: torque, joint: pivot, value: "{law}"}}}}
 """
     try:
-        found = modes(load("scene.yaml", text))
+        found = compute_spec_modes(load("scene.yaml", text))
     except HeunError as error:
         return f"refused: {error.problems[0].code}"
     near(2.0 * np.pi * found.modes[0].frequency, np.sqrt(9.81), 1.0, 1e-12)

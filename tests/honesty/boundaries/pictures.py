@@ -8,15 +8,15 @@ import math
 import numpy as np
 
 from heuncli.base.tolerances import EPS
-from heuncli.output.figures.courses import varies
-from heuncli.output.figures.planes import plane_of, plane_seen_along
-from heuncli.output.figures.polar_words import notes_of
-from heuncli.output.figures.pulls import pulls_of
+from heuncli.output.figures.courses import is_varying
+from heuncli.output.figures.planes import choose_plane, make_axis_plane
+from heuncli.output.figures.polar_words import make_notes
+from heuncli.output.figures.pulls import collect_loads
 from heuncli.output.figures.refusals import NotDrawable
-from heuncli.output.figures.scenes import poses_of, standing
-from heuncli.output.figures.tips import Largest, TipCurve
-from heuncli.output.figures.turning import TurnedVectors, TurningRun, turning_of
-from heuncli.output.web_page.frames import frames_of
+from heuncli.output.figures.scenes import compute_poses, pose_machine
+from heuncli.output.figures.tips import LargestVector, TipCurve
+from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run
+from heuncli.output.web_page.frames import choose_frames
 from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
@@ -36,14 +36,14 @@ def turned() -> Study:
 
 def told_once(x: float) -> str:
     """A number between 1 - x and 1."""
-    return "varies" if varies(1.0 - x, 1.0, 0.0) else "throughout"
+    return "varies" if is_varying(1.0 - x, 1.0, 0.0) else "throughout"
 
 
 def out_of_the_plane(x: float) -> str:
     """Two vectors that stand x of the larger one out of the plane of x and y."""
     vectors = np.array([[1.0, 0.5, x], [-0.3, 0.8, -x]])
     try:
-        plane = plane_of(turned(), "foundation.force", vectors, np.array([0.0, 2.0]), "world", "")
+        plane = choose_plane(turned(), "foundation.force", vectors, np.array([0.0, 2.0]), "world", "")
     except NotDrawable:
         return "no plane"
     return "".join(plane.names)
@@ -53,8 +53,8 @@ def across(x: float) -> str:
     """A vector of 1 N in the plane and x N across it."""
     vectors = np.array([[1.0, 0.0, x], [0.0, 0.5, 0.0]])
     whole = TurningRun(np.array([0.0, 2.0]), "", np.zeros(0), 0)
-    curve = TipCurve("F", "foundation.force", "N", 0, turned(), whole, vectors, plane_seen_along("z"))
-    notes = notes_of(curve, Largest(1.0, 0.0, 1.0, 0.0, 0.0, steady=False), Units())
+    curve = TipCurve("F", "foundation.force", "N", 0, turned(), whole, vectors, make_axis_plane("z"))
+    notes = make_notes(curve, LargestVector(1.0, 0.0, 1.0, 0.0, 0.0, is_constant=False), Units())
     return "told" if any("across the plane" in note for note in notes) else "silent"
 
 
@@ -65,7 +65,7 @@ def from_turn_to_turn(x: float) -> str:
         return (1.0 + x * times)[:, None, None] * np.array([[1.0, 0.0, 0.0]])
 
     run = turned()
-    found = turning_of(run, run.results.time, [ANGLE], TurnedVectors(growing, np.zeros(1)))
+    found = find_turning_run(run, run.results.time, [ANGLE], VectorSource(growing, np.zeros(1)))
     return "the last turn" if found.turns == 1 else "the whole run"
 
 
@@ -73,8 +73,8 @@ def carried(x: float) -> str:
     """A bar whose weight, but for x of it, a distributed load carries."""
     load = f"{{type: distributed, on: bar, from: top, to: end, vector: [0, 0, {WEIGHT * (1.0 - x)!r}]}}"
     run = study(bar(tail=f"forces: {{f: {load}}}", kind="weld"))
-    poses = poses_of(run, np.zeros(1))
-    pulls = pulls_of(run, standing(run.setup.scene, run.spec, poses, None, Units()).machine, poses).all
+    poses = compute_poses(run, np.zeros(1))
+    pulls = collect_loads(run, pose_machine(run.setup.scene, run.spec, poses, None, Units()).machine, poses).loads
     if not pulls:
         return "nothing"
     (pull,) = pulls
@@ -85,9 +85,9 @@ def carried(x: float) -> str:
 def between_frames(x: float) -> str:
     """A bar that turns by x rad from the first of two frames to the second."""
     tail = f"drives: {{d: {{joint: pivot, angle: {x!r}*t}}}}\nanalysis: {{duration: 1, samples: 2}}"
-    frames = frames_of(study(bar(tail=tail, kind="pin, axis: [1, 0, 0]")), np.zeros(0), 2)
+    frames = choose_frames(study(bar(tail=tail, kind="pin, axis: [1, 0, 0]")), np.zeros(0), 2)
     assert frames.times.tolist() == [0.0, 1.0]
-    told = [f"up to {math.degrees(x):.0f}°" in sentence for sentence in frames.told]
+    told = [f"up to {math.degrees(x):.0f}°" in sentence for sentence in frames.notes]
     return "torn" if told == [True] else "followed"
 
 

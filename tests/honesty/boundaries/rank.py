@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from heuncli.results.results import Results
-from heuncli.study.compose.near_singular import AMPLE, error, reached
+from heuncli.study.compose.near_singular import SAFETY, estimate_errors, find_unknown
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, four_bar, verdict
 from tests.shared.scenes import near
@@ -16,8 +16,8 @@ from tests.shared.stretched_chain import stretched_chain
 
 def moved_by(x: float) -> str:
     """A load whose largest companion is 2 N, where its state is moved by rounding."""
-    off = error(np.array([3.0]), np.array([3.0, 3.0 - 2.0 * x / AMPLE, 3.0]))
-    return "not known" if reached(off, np.array([2.0])).any() else "told"
+    off = estimate_errors(np.array([3.0]), np.array([3.0, 3.0 - 2.0 * x / SAFETY, 3.0]))
+    return "not known" if find_unknown(off, np.array([2.0])).any() else "told"
 
 
 def across(x: float) -> str:

@@ -7,14 +7,14 @@ import math
 import numpy as np
 
 from heuncli.base.errors import Finding
-from heuncli.loads.kinetostatics.auto_properties import Cutting, joined, properties_of
-from heuncli.loads.kinetostatics.section_axes import nearest_axis
-from heuncli.results.cut_rows import rows_at
+from heuncli.loads.kinetostatics.auto_properties import CutForm, combine_rectangles, find_cut_properties
+from heuncli.loads.kinetostatics.section_axes import find_nearest_axis
+from heuncli.results.cut_rows import find_cut_rows
 from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.meshes.reading import mesh_of
-from heuncli.scene.shapes.figure_kinds import Rectangle
-from heuncli.scene.shapes.forms import Form, form
+from heuncli.scene.meshes.reading import read_closed_mesh
+from heuncli.scene.shapes.figure_kinds import RectangleFigure
+from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict
 from tests.shared import triangles
@@ -53,7 +53,7 @@ def needs_side(x: float) -> str:
 def beside_a_cut(x: float) -> str:
     """A place x of its length off the middle of a run of three cuts."""
     try:
-        return f"row {rows_at(f'@{0.5 + x!r}', np.array([0.0, 0.5, 1.0]), None)[0]}"
+        return f"row {find_cut_rows(f'@{0.5 + x!r}', np.array([0.0, 0.5, 1.0]), None)[0]}"
     except Finding as finding:
         return f"refused: {finding.code}"
 
@@ -78,7 +78,7 @@ def one_place(x: float) -> str:
 def equal(x: float) -> str:
     # y is the nearest to the normal; of x and y alike, x is
     n = np.array([0.6, 0.6 + x, 0.4])
-    return "xyz"[nearest_axis(n / math.sqrt(n @ n))]
+    return "xyz"[find_nearest_axis(n / math.sqrt(n @ n))]
 
 
 def askew(x: float) -> str:
@@ -87,11 +87,11 @@ def askew(x: float) -> str:
     shift = x * math.sqrt(I1 * I2) / (2 * 2.0 * 1.5)
     met, at = np.array([True]), [[0.0, 0.0], [shift, 1.5], [-shift, -1.5]]
     parts = [
-        Rectangle(met, np.array([[*place, 0.0]]), width, height)
+        RectangleFigure(met, np.array([[*place, 0.0]]), width, height)
         for place, width, height in zip(at, (1.0, 2.0, 2.0), (2.0, 1.0, 1.0), strict=True)
     ]
     zero, ex, ez = np.zeros(1), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-    found = joined(parts, 0, Cutting(Form((), 1e-15), ez, ex, zero, zero), 1e-12)
+    found = combine_rectangles(parts, 0, CutForm(CompositeSolid((), 1e-15), ez, ex, zero, zero), 1e-12)
     return "refused" if isinstance(found, str) else "taken"
 
 
@@ -100,7 +100,7 @@ def open_by(x: float) -> str:
     off = triangles.box([-1, -1, -1], [0, 0, 0])
     off[0, 0, 0] += x
     try:
-        mesh = mesh_of(triangles.obj(off).encode(), "a.obj")
+        mesh = read_closed_mesh(triangles.obj(off).encode(), "a.obj")
     except Finding as finding:
         return f"refused: {finding.code}"
     near(mesh.volume, 1.0, 1.0, max(x, 1e-15))
@@ -110,11 +110,11 @@ def open_by(x: float) -> str:
 def outline_of(corners: list[tuple[float, float]]) -> str:
     """The cut through a prism of four corners, about e1 along y."""
     prism = triangles.prism(np.array(corners), [(0, 1, 2), (0, 2, 3)], 1.0)
-    surface = mesh_of(triangles.obj(prism).encode(), "a.obj")
+    surface = read_closed_mesh(triangles.obj(prism).encode(), "a.obj")
     I = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    body = form([Shape("mesh", density=1.0, mesh=surface, scale=1.0, at=(0.0, 0.0, 0.0), rotation=I)])
-    at = Cutting(body, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.5]), np.zeros(1))
-    found = properties_of(at)
+    body = make_composite_solid([Shape("mesh", density=1.0, mesh=surface, scale=1.0, at=(0.0, 0.0, 0.0), rotation=I)])
+    at = CutForm(body, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.5]), np.zeros(1))
+    found = find_cut_properties(at)
     if not found.missing:
         near(found.groups[0].values["area"], 2.0, 1.0)
     return "refused" if found.missing else "taken"

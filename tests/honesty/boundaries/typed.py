@@ -10,7 +10,7 @@ from heuncli.multibody.mechanism.build import build
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.turns import of_matrix
+from heuncli.scene.file_format.turns import rotation_from_matrix
 from heuncli.study.ask.expectations import compare
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read
@@ -34,7 +34,7 @@ def quaternion(x: float) -> str:
 
 def matrix(x: float) -> str:
     given = ((1.0 + x / 2, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    R = of_matrix(given)
+    R = rotation_from_matrix(given)
     near(R, np.eye(3), 1.0, 2 * x)
     return "as typed" if R == given else "made a rotation"
 
@@ -60,7 +60,7 @@ def strength(x: float) -> str:
 
 def expectation(wanted: str) -> str:
     done = study(bar(tail=f"expect: [{wanted}]"))
-    return "passed" if compare(done, done.spec.expect[0]).passed else "failed"
+    return "passed" if compare(done, done.spec.expect[0]).is_met else "failed"
 
 
 def relatively_off(x: float) -> str:

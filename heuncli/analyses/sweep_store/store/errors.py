@@ -1,4 +1,6 @@
-"""What SQLite complains of, as errors of heun: no room and no right to write leave with 5, as any other output does."""
+"""Convert SQLite's errors into errors of heun: a full disk or missing permission exits with 5, as for any other
+output.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +11,12 @@ from contextlib import contextmanager
 from heuncli.base.errors import OutputError, Problem, UsageError
 
 NOT_A_STORE = "not-a-store"
-OTHER = "name another file: it is made where there is none"
-ROOM = "make room, or name a place on another disk; what was done before is kept"
-# by the beginning of SQLite's name of the error: what is said, and what to do
+OTHER_FILE_HINT = "name another file: it is made where there is none"
+DISK_HINT = "make room, or name a place on another disk; what was done before is kept"
+# by the beginning of SQLite's name of the error: message, and hint
 REASONS = {
-    "SQLITE_FULL": ("the disk is full", ROOM),
-    "SQLITE_IOERR": ("it cannot be read or written", ROOM),
+    "SQLITE_FULL": ("the disk is full", DISK_HINT),
+    "SQLITE_IOERR": ("it cannot be read or written", DISK_HINT),
     "SQLITE_READONLY": ("it may not be written", "look at the permissions, or name another place"),
     "SQLITE_CANTOPEN": ("it cannot be opened", "look at the name and the permissions, or name another place"),
     "SQLITE_BUSY": ("another process has been writing for minutes", "wait for it, or end it"),
@@ -23,20 +25,22 @@ REASONS = {
 
 
 @contextmanager
-def told_errors(name: str) -> Iterator[None]:
-    """Of what goes wrong with a store of that name raise OutputError, or UsageError where it is none."""
+def convert_errors(name: str) -> Iterator[None]:
+    """Convert SQLite's errors within the context to OutputError, or to UsageError if the file is no store."""
     try:
         yield
     except sqlite3.Error as error:
-        raise _told(name, error) from None
+        raise _make_error(name, error) from None
 
 
-def _told(name: str, error: sqlite3.Error) -> OutputError | UsageError:
+def _make_error(name: str, error: sqlite3.Error) -> OutputError | UsageError:
     kind = getattr(error, "sqlite_errorname", "")
     if kind.startswith("SQLITE_NOTADB"):
-        return UsageError(Problem(NOT_A_STORE, f"{name}: this is no store of sweeps", hint=OTHER))
+        return UsageError(Problem(NOT_A_STORE, f"{name}: this is no store of sweeps", hint=OTHER_FILE_HINT))
     if kind.startswith("SQLITE_CORRUPT"):
         message = f"{name}: this store is damaged: {error}"
-        return UsageError(Problem(NOT_A_STORE, message, hint="sqlite3 FILE .recover saves what can be; " + OTHER))
-    found = next((told for begin, told in REASONS.items() if kind.startswith(begin)), (str(error), ROOM))
+        return UsageError(
+            Problem(NOT_A_STORE, message, hint="sqlite3 FILE .recover saves what can be; " + OTHER_FILE_HINT)
+        )
+    found = next((reason for begin, reason in REASONS.items() if kind.startswith(begin)), (str(error), DISK_HINT))
     return OutputError(Problem("output-failed", f"{name}: {found[0]}", hint=found[1]))

@@ -1,4 +1,4 @@
-"""What a sweep is of, as a store keeps it: JSON, and beside it what was drawn, as doubles."""
+"""Write and read the description of a sweep as a store holds it: JSON, and the draws as doubles."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import json
 import numpy as np
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure
-from heuncli.analyses.variants.axes import Drawn, ParameterAxis
+from heuncli.analyses.variants.axes import ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Draws, Plan
 
 DOUBLES = np.dtype("<f8")
 
 
-def texts_of_head(head: SweepHead) -> tuple[str, bytes | None]:
-    """A head as JSON, and the values that are drawn, None where none are."""
+def write_head(head: SweepHead) -> tuple[str, bytes | None]:
+    """Return a head as JSON, and the draws, None if there are none."""
     plan, draws = head.plan, head.plan.draws
     block = head._asdict() | {
         "measures": [tuple(one) for one in head.measures],
@@ -23,16 +23,24 @@ def texts_of_head(head: SweepHead) -> tuple[str, bytes | None]:
     return json.dumps(block), None if draws is None else draws.values.astype(DOUBLES).tobytes()
 
 
-def head_of_texts(text: str, values: bytes | None) -> SweepHead:
-    """The head that was kept."""
+def read_head(text: str, values: bytes | None) -> SweepHead:
+    """Return the stored head."""
     block = json.loads(text)
     plan = block["plan"]
-    axes, columns = (tuple(ParameterAxis(name, tuple(texts)) for name, texts in plan[of]) for of in ("axes", "columns"))
+    axes, columns = (
+        tuple(ParameterAxis(name, tuple(texts)) for name, texts in plan[key]) for key in ("axes", "columns")
+    )
     draws = None
     if plan["draws"] is not None and values is not None:
-        given = plan["draws"]
-        drawn = np.frombuffer(values, DOUBLES).reshape(given["values"])
-        draws = Draws(**{**given, "laws": tuple(Drawn(*law) for law in given["laws"]), "values": drawn})
+        draws_block = plan["draws"]
+        values_by_row = np.frombuffer(values, DOUBLES).reshape(draws_block["values"])
+        draws = Draws(
+            **{
+                **draws_block,
+                "laws": tuple(RandomVariable(*law) for law in draws_block["laws"]),
+                "values": values_by_row,
+            }
+        )
     measures = tuple(SweptMeasure(*one) for one in block["measures"])
-    made = Plan(**{**plan, "axes": axes, "columns": columns, "draws": draws})
-    return SweepHead(**{**block, "measures": measures, "plan": made})
+    stored_plan = Plan(**{**plan, "axes": axes, "columns": columns, "draws": draws})
+    return SweepHead(**{**block, "measures": measures, "plan": stored_plan})

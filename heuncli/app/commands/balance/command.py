@@ -1,4 +1,4 @@
-"""`heun balance`: mass effects over a cycle, by orders; what lowers them."""
+"""`heun balance`: mass effects over a cycle by orders, and counterweights or a flywheel that lower them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from heuncli.analyses.balancing.study import balance
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import emit, save
-from heuncli.app.cli.picture_files import saved_beside
-from heuncli.app.cli.solving import overrides, warn
-from heuncli.app.cli.target import format_of
+from heuncli.app.cli.picture_files import require_save_form
+from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.balance import page as report
-from heuncli.app.commands.balance.options import options
+from heuncli.app.commands.balance.options import parse_options
 from heuncli.app.commands.balance.request import BalanceRequest
-from heuncli.output.drawing.as_file import as_file
-from heuncli.output.tables.export import dump
+from heuncli.output.drawing.as_file import encode_drawing
+from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.table_units import Units
 
@@ -21,22 +21,25 @@ from heuncli.study.quantities.table_units import Units
 def main(request: BalanceRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, FORMATS)
-    drawn = saved_beside(request.save, request.output)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
+    form = choose_format(request.format, request.output, FORMATS)
+    figure_form = require_save_form(request.save, request.output)
+    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     if request.save is not None:
         require_other_file(request.save, [request.spec], "--save")
-    found = balance(spec, options(request, spec))
-    if drawn is not None and request.save is not None:
-        from heuncli.output.drawing.layout import laid_out
-        from heuncli.output.figures.orders import BalancedScene, orders
+    results = balance(spec, parse_options(request, spec))
+    if figure_form is not None and request.save is not None:
+        from heuncli.output.drawing.layout import lay_out
+        from heuncli.output.figures.orders import BalancedScene, make_orders_figure
 
-        save(as_file(laid_out(orders([BalancedScene("", found)], Units())), drawn), request.save)
+        save(
+            encode_drawing(lay_out(make_orders_figure([BalancedScene("", results)], Units())), figure_form),
+            request.save,
+        )
     if form == "json":
-        text = dump(report.block(found))
+        text = dump_json(report.to_block(results))
     else:
-        text = report.to_csv(found) if form == "csv" else report.write(found)
+        text = report.to_csv(results) if form == "csv" else report.render_page(results)
     emit(text, request.output)
-    warn(spec, None, request.quiet)
+    print_warnings(spec, None, request.quiet)
     return 0

@@ -1,139 +1,151 @@
-"""Counterweights with what they cost, and a flywheel, as tables."""
+"""Make the tables of counterweights with their cost, and of a flywheel."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 
-from heuncli.analyses.balancing.results import BalanceResults, Counterbalance, Flywheel, OverCycle
+from heuncli.analyses.balancing.results import BalanceResults, Counterbalance, CycleLoad, Flywheel
 from heuncli.base.tolerances import WRITTEN
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
-from heuncli.study.quantities.digits import OPEN, style, trim
+from heuncli.study.quantities.digits import OPEN, choose_style, trim_zeros
 
 WEIGHTS = "COUNTERWEIGHTS  of least {}; mass times radius from the body's axis, else its point; angle in body axes"
 COST = "COST  the scene solved again with the weights in it, loads and weight included: over the cycle, before -> after"
 FLYWHEEL = "FLYWHEEL  on {}: fastest less slowest is {:.4g} of the mean rate"
-OF = {
+OBJECTIVES = {
     "force": "force", "moment": "moment", "mix": "force² + moment²/lever², lever {:.6g} m",
 }  # fmt: skip
 SEVERAL = "others leave as little: these are the least; a second plane, --minimise mix or moment tells them apart"
 NO_RATE = "at 1 rad/s, for no rate is known: --rate tells one"
-LEFT_OPEN = "open: redundant joints leave it so (heun explain open)"
+INDETERMINATE = "open: redundant joints leave it so (heun explain open)"
 LABELS = {"force": "force of the masses [N]", "moment": "moment of the masses [N·m]", "drive": "drive [N·m]"}
-BY_RATE = {"force": "force of the masses [kg·m]", "moment": "moment of the masses [kg·m²]", "drive": "drive [N·m]"}
+RATE_FREE_LABELS = {
+    "force": "force of the masses [kg·m]",
+    "moment": "moment of the masses [kg·m²]",
+    "drive": "drive [N·m]",
+}
 AXES = ("x", "y", "z")
 RPM = 30.0 / math.pi
 
 
-def remedies(found: BalanceResults) -> Iterator[TextTable]:
-    """The tables of what was asked for."""
-    if found.counterbalance is not None:
-        yield weights_table(found.counterbalance)
-        yield cost_table(found.counterbalance, found)
-    if found.flywheel is not None:
-        yield wheel_table(found.flywheel)
+def make_remedy_tables(results: BalanceResults) -> Iterator[TextTable]:
+    """Yield the tables of the requested remedies."""
+    if results.counterbalance is not None:
+        yield make_weights_table(results.counterbalance)
+        yield make_cost_table(results.counterbalance, results)
+    if results.flywheel is not None:
+        yield make_wheel_table(results.flywheel)
 
 
-def weights_table(found: Counterbalance) -> TextTable:
-    """The counterweights, and what is left."""
+def make_weights_table(counterbalance: Counterbalance) -> TextTable:
+    """Make the table of the counterweights, with notes on what remains."""
     columns = (
         TextColumn("at", "left"), TextColumn("mass·radius [kg·m]"), TextColumn("angle°"), TextColumn("from", "left"),
         TextColumn("radius [m]"), TextColumn("mass [kg]"),
     )  # fmt: skip
-    products = numbers([weight.product for weight in found.weights])
-    masses = numbers([weight.mass for weight in found.weights])
+    products = format_numbers([weight.product for weight in counterbalance.weights])
+    masses = format_numbers([weight.mass for weight in counterbalance.weights])
     rows = tuple(
         (
-            f"{weight.body}.{weight.place}", products[k], f"{math.degrees(weight.angle):.4f}", side(weight.first),
+            f"{weight.body}.{weight.place}", products[k], f"{math.degrees(weight.angle):.4f}", format_direction(weight.reference_direction),
             f"{weight.radius:.6g}", masses[k],
         )
-        for k, weight in enumerate(found.weights)
+        for k, weight in enumerate(counterbalance.weights)
     )  # fmt: skip
-    notes = [f"left of force: {found.words['force']}", f"left of moment: {found.words['moment']}"]
-    notes += [SEVERAL] if found.several else []
-    idle = [f"{weight.body}.{weight.place}" for weight in found.weights if weight.product == 0.0]
-    notes += [f"no weight at {' or '.join(idle)} leaves less"] if idle else []
-    return TextTable(WEIGHTS.format(OF[found.minimised].format(found.lever or 0.0)), columns, rows, tuple(notes))
+    notes = [
+        f"left of force: {counterbalance.summaries['force']}",
+        f"left of moment: {counterbalance.summaries['moment']}",
+    ]
+    notes += [SEVERAL] if counterbalance.several else []
+    unneeded = [f"{weight.body}.{weight.place}" for weight in counterbalance.weights if weight.product == 0.0]
+    notes += [f"no weight at {' or '.join(unneeded)} leaves less"] if unneeded else []
+    return TextTable(
+        WEIGHTS.format(OBJECTIVES[counterbalance.objective].format(counterbalance.lever or 0.0)),
+        columns,
+        rows,
+        tuple(notes),
+    )
 
 
-def side(first: Array) -> str:
-    """The direction that an angle is counted from, in the body's axes."""
+def format_direction(first: Array) -> str:
+    """Format the direction from which an angle is counted, in the body's axes."""
     k = max(range(3), key=lambda i: abs(float(first[i])))
     if abs(abs(float(first[k])) - 1.0) <= WRITTEN:
         return f"{'-' if first[k] < 0.0 else ''}{AXES[k]}"
     return f"({', '.join(f'{value + 0.0:.4g}' for value in first)})"
 
 
-def cost_table(found: Counterbalance, all_found: BalanceResults) -> TextTable:
-    """Loads before and after."""
-    labels = LABELS if all_found.rate is not None else BY_RATE
+def make_cost_table(counterbalance: Counterbalance, results: BalanceResults) -> TextTable:
+    """Make the table of the loads before and after."""
+    labels = LABELS if results.rate is not None else RATE_FREE_LABELS
     columns = (
         TextColumn("", "left"), TextColumn("rms"), TextColumn("-> after"), TextColumn("peak"), TextColumn("-> after"),
         TextColumn("times"),
     )  # fmt: skip
     rows = []
-    for name, before in found.before.items():
-        after = found.after[name]
-        largest = max((x for x in (before.peak, after.peak) if x is not None), default=0.0)
-        off = max(before.error or 0.0, after.error or 0.0)
-        cells = [number(value, largest, off) for value in (before.rms, after.rms, before.peak, after.peak)]
-        rows.append((labels.get(name, f"{name} [N]"), *cells, factor(before, after)))
-    notes = [NO_RATE] if all_found.rate is None else []
-    notes += [LEFT_OPEN] if any(own.rms is None for own in found.before.values()) else []
+    for name, old in counterbalance.loads_without.items():
+        new = counterbalance.loads_with[name]
+        largest = max((x for x in (old.peak, new.peak) if x is not None), default=0.0)
+        error = max(old.error or 0.0, new.error or 0.0)
+        cells = [format_number(value, largest, error) for value in (old.rms, new.rms, old.peak, new.peak)]
+        rows.append((labels.get(name, f"{name} [N]"), *cells, format_ratio(old, new)))
+    notes = [NO_RATE] if results.rate is None else []
+    notes += [INDETERMINATE] if any(loads.rms is None for loads in counterbalance.loads_without.values()) else []
     return TextTable(COST, columns, tuple(rows), tuple(notes))
 
 
-def factor(before: OverCycle, after: OverCycle) -> str:
-    """How many times the root of the mean square is what it was."""
-    if before.rms is None or after.rms is None or before.rms <= WRITTEN * after.rms:
+def format_ratio(old: CycleLoad, new: CycleLoad) -> str:
+    """Format the ratio of the root mean squares after and before."""
+    if old.rms is None or new.rms is None or old.rms <= WRITTEN * new.rms:
         return ""
-    return f"{after.rms / before.rms:.3g}" if after.rms > WRITTEN * before.rms else "0"
+    return f"{new.rms / old.rms:.3g}" if new.rms > WRITTEN * old.rms else "0"
 
 
-def wheel_table(wheel: Flywheel) -> TextTable:
-    """The flywheel, beside the textbook's; each number with what it is known within."""
-    off = wheel.error
+def make_wheel_table(wheel: Flywheel) -> TextTable:
+    """Make the table of the flywheel, with the textbook's value; each number with its error."""
+    errors = wheel.error
     rows = (
         (
-            "added", f"{sure(wheel.added, off['added'])} kg·m²", f"{off['added']:.1g}",
-            f"ΔE/(δ ω²) less what turns evenly, the textbook's: {sure(wheel.textbook, off['textbook'])}",
+            "added", f"{format_certain(wheel.added, errors['added'])} kg·m²", f"{errors['added']:.1g}",
+            f"ΔE/(δ ω²) less what turns evenly, the textbook's: {format_certain(wheel.textbook, errors['textbook'])}",
         ),
-        ("own", f"{wheel.own:.6g} kg·m²", f"{off['own']:.1g}", "the machine's reduced inertia, mean over the cycle"),
-        ("ΔE", f"{wheel.energy:.6g} J", f"{off['energy']:.1g}",
+        ("own", f"{wheel.own:.6g} kg·m²", f"{errors['own']:.1g}", "the machine's reduced inertia, mean over the cycle"),
+        ("ΔE", f"{wheel.energy:.6g} J", f"{errors['energy']:.1g}",
          "of work that loads and inertia give and take at an even rate"),
-        ("unevenness", f"{wheel.present:.6g}", f"{off['present']:.1g}", "as it is, without the wheel"),
+        ("unevenness", f"{wheel.present:.6g}", f"{errors['present']:.1g}", "as it is, without the wheel"),
         ("mean", f"{wheel.mean_rate * RPM:.9g} rpm", "", "angle of the cycle over its time"),
-        ("start", *speed(wheel.start, off["start"]),
+        ("start", *format_speed(wheel.start, errors["start"]),
          "the rate at the start of the cycle that has this mean, with the wheel"),
-        ("slowest", *speed(wheel.slowest, off["slowest"]), "with the wheel"),
-        ("fastest", *speed(wheel.fastest, off["fastest"]), "with the wheel"),
+        ("slowest", *format_speed(wheel.slowest, errors["slowest"]), "with the wheel"),
+        ("fastest", *format_speed(wheel.fastest, errors["fastest"]), "with the wheel"),
     )  # fmt: skip
     columns = TextColumn("", "left"), TextColumn("", "left"), TextColumn("within"), TextColumn("", "left")
     return TextTable(FLYWHEEL.format(wheel.joint, wheel.delta), columns, rows)
 
 
-def sure(value: float, error: float) -> str:
-    """A number to nine digits, or to as many as its error leaves."""
+def format_certain(value: float, error: float) -> str:
+    """Format a number with nine digits, or with as many as its error allows."""
     digits = 9
     if error > 0.0 and value != 0.0:
         digits = min(digits, max(1, math.floor(math.log10(abs(value) / error)) + 1)) if error < abs(value) else 1
     return f"{value:.{digits}g}"
 
 
-def speed(rate: float, error: float) -> tuple[str, str]:
-    """A rate and its error, in rpm."""
-    return f"{sure(rate * RPM, error * RPM)} rpm", f"{error * RPM:.1g}"
+def format_speed(rate: float, error: float) -> tuple[str, str]:
+    """Format a rate [rad/s] and its error in rpm."""
+    return f"{format_certain(rate * RPM, error * RPM)} rpm", f"{error * RPM:.1g}"
 
 
-def number(value: float | None, largest: float, error: float) -> str:
-    """A number of a family that is known within an error, or that it is open."""
-    off = max(WRITTEN * largest, error)
-    return OPEN if value is None else style(largest, off, off).write(value)
+def format_number(value: float | None, largest: float, error: float) -> str:
+    """Format a number of a family with a common error, or `open` if it is indeterminate."""
+    uncertainty = max(WRITTEN * largest, error)
+    return OPEN if value is None else choose_style(largest, uncertainty, uncertainty).write(value)
 
 
-def numbers(values: Sequence[float]) -> list[str]:
-    """Numbers of one family to the digits of the largest."""
+def format_numbers(values: Sequence[float]) -> list[str]:
+    """Format numbers of one family with the digits of the largest."""
     scale = max((abs(value) for value in values), default=0.0)
-    how = style(scale, WRITTEN * scale)
-    return trim([how.write(value) for value in values])
+    number_style = choose_style(scale, WRITTEN * scale)
+    return trim_zeros([number_style.write(value) for value in values])

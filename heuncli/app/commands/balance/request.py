@@ -1,4 +1,4 @@
-"""What `heun balance` is asked for: its options and arguments."""
+"""Options and arguments of `heun balance`."""
 
 from typing import Annotated
 

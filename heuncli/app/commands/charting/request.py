@@ -1,4 +1,4 @@
-"""What `heun chart` is asked for: its options and arguments."""
+"""Options and arguments of `heun chart`."""
 
 from typing import Annotated
 

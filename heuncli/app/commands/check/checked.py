@@ -1,4 +1,4 @@
-"""What was found of one spec, as plain values: its cases, what went wrong, how long it took, what is to be said."""
+"""The result of checking one spec, as plain values: outcomes, problems, duration, messages."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ from heuncli.output.snapshots.outcomes import Outcome
 FAILED = 1
 
 
-class Golden(NamedTuple):
-    """The golden file of a spec: where it lies, and its text anew where that is to be written."""
+class GoldenUpdate(NamedTuple):
+    """The golden file of a spec: its path, and its new text if it is to be written."""
 
     path: str
     text: str | None = None
     is_new: bool = False
 
 
-class Checked(NamedTuple):
-    """One file: its outcomes, or the problems that kept it from being solved, with the exit code of that error.
+class CheckResult(NamedTuple):
+    """The result of one file: its outcomes, or the problems that kept it from being solved, with their exit code.
 
-    said: lines for standard error; refused: the command line itself is wrong, nothing is told.
+    messages: lines for standard error
+    is_usage_error: the command line itself is wrong; the command ends with a usage error
     """
 
     path: str
@@ -29,10 +30,10 @@ class Checked(NamedTuple):
     error: int = 0
     seconds: float = 0.0
     said: tuple[str, ...] = ()
-    golden: Golden | None = None
+    golden: GoldenUpdate | None = None
     refused: bool = False
 
     @property
     def exit_code(self) -> int:
-        """What this file alone would leave with."""
-        return self.error or (0 if all(outcome.passed for outcome in self.outcomes) else FAILED)
+        """The exit code that this file alone would give."""
+        return self.error or (0 if all(outcome.has_passed for outcome in self.outcomes) else FAILED)

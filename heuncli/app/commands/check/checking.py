@@ -1,4 +1,4 @@
-"""One spec against what it expects, and against what was kept of it. Runs in a process of its own, or in this one."""
+"""Check one spec against what it expects and against its golden file. Runs in a process of its own, or in this one."""
 
 from __future__ import annotations
 
@@ -10,149 +10,175 @@ from itertools import starmap
 from pathlib import Path
 
 from heuncli.app.cli import alarm, memory
-from heuncli.app.cli.entry import UsageError, contained, lines_of
+from heuncli.app.cli.entry import UsageError, format_problems, run_contained
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.solving import warning_lines
+from heuncli.app.cli.solving import format_warnings
 from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.checked import Checked
-from heuncli.app.commands.check.folders import Found
-from heuncli.app.commands.check.kept_outcomes import NO_FILE, kept_outcomes
+from heuncli.app.commands.check.checked import CheckResult
+from heuncli.app.commands.check.folders import FoundSpec
+from heuncli.app.commands.check.kept_outcomes import NO_FILE, compare_golden
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.base.errors import Finding, HeunError, SpecError
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.keep import keep
-from heuncli.output.snapshots.kept import ANOTHER, FORMAT, MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
-from heuncli.output.snapshots.outcomes import EXPECTED, Outcome, outcome_of
-from heuncli.output.snapshots.selection import told_by_default
+from heuncli.output.snapshots.keep import take_run_snapshot
+from heuncli.output.snapshots.kept import (
+    FORMAT,
+    MAX_BYTES,
+    REWRITE_HINT,
+    GoldenFile,
+    RunSnapshot,
+    SpecDigest,
+    read_golden_file,
+)
+from heuncli.output.snapshots.outcomes import EXPECTED, Outcome, make_outcome
+from heuncli.output.snapshots.selection import find_default_reports
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Expect, Spec
 from heuncli.scene.file_format.reading import read_bytes
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
-from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.memory_estimate import MemoryBudget
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import EVERYTHING, Selection, asked_by
+from heuncli.study.model.selection import EVERYTHING, Selection, select_paths
 from heuncli.study.workflow import solve
 from heuncli.version import VERSION
 
 STOPPED = "the scene was not solved"
 
 
-class Task(NamedTuple):
-    """A spec to be checked, and its golden file, if it is held against one; name: of the spec in that file."""
+class CheckTask(NamedTuple):
+    """A spec to check.
 
-    found: Found
+    spec: the spec
+    file: its golden file, if it is compared with one
+    name: the spec's name in that file
+    """
+
+    found: FoundSpec
     file: str | None = None
     name: str = ""
 
 
-def check(task: Task, request: CheckRequest, jobs: int) -> Checked:
-    """Check one spec; jobs: among how many at work memory is shared."""
-    path, begun = task.found.path, time.perf_counter()
+def check_spec(task: CheckTask, request: CheckRequest, jobs: int) -> CheckResult:
+    """Check one spec.
+
+    jobs: number of processes that share the memory
+    """
+    path, start = task.spec.path, time.perf_counter()
     items: list[tuple[str, Expect]] = []
     try:
-        if task.found.problem is not None:
-            raise SpecError(task.found.problem)
-        work = partial(alarm.limited, partial(_compared, task, request, jobs, items), request.time_limit_each)
-        checked = contained(work, ("check", path))
+        if task.spec.problem is not None:
+            raise SpecError(task.spec.problem)
+        work = partial(
+            alarm.run_with_limit, partial(_compare_spec, task, request, jobs, items), request.time_limit_each
+        )
+        checked = run_contained(work, ("check", path))
     except UsageError as error:
-        return Checked(path, problems=error.problems, error=error.exit_code, refused=True)
+        return CheckResult(path, problems=error.problems, error=error.exit_code, is_usage_error=True)
     except HeunError as error:
-        placed = all(problem.location for problem in error.problems)
-        lines = lines_of(error.problems, label="" if placed else f"{path}: ")
-        outcomes = () if isinstance(error, goldens.GoldenError) else tuple(starmap(_skipped, items))
-        checked = Checked(path, outcomes, error.problems, error.exit_code, said=tuple(lines))
-    return checked._replace(seconds=time.perf_counter() - begun)
+        has_locations = all(problem.location for problem in error.problems)
+        lines = format_problems(error.problems, label="" if has_locations else f"{path}: ")
+        outcomes = () if isinstance(error, goldens.GoldenError) else tuple(starmap(_make_skipped_outcome, items))
+        checked = CheckResult(path, outcomes, error.problems, error.exit_code, messages=tuple(lines))
+    return checked._replace(seconds=time.perf_counter() - start)
 
 
-def _skipped(case: str, item: Expect) -> Outcome:
-    """What would have been compared, of a spec that was not solved."""
+def _make_skipped_outcome(case: str, item: Expect) -> Outcome:
+    """Make the outcome of an expectation of a spec that was not solved."""
     line, column = item.location.line, item.location.column
-    return Outcome(EXPECTED, item.of, STOPPED, line, column, case=case, skipped=True)
+    return Outcome(EXPECTED, item.of, STOPPED, line, column, case=case, is_skipped=True)
 
 
-def _compared(task: Task, request: CheckRequest, jobs: int, items: list[tuple[str, Expect]]) -> Checked:
-    """What was found of a spec; items: what it expects, as soon as that is known."""
-    path = task.found.path
+def _compare_spec(task: CheckTask, request: CheckRequest, jobs: int, items: list[tuple[str, Expect]]) -> CheckResult:
+    """Solve a spec and compare it; adds its expectations to `items` as soon as they are known."""
+    path = task.spec.path
     spec, cases = load_with_cases(path)
     scenes = {"": spec, **cases}
     items += [(name, item) for name, one in scenes.items() for item in one.expect]
     require_other_file(request.output, [path])
     require_other_file(request.junit, [path], "--junit")
-    old = _golden(task, request) if task.file is not None else None
+    old = _read_golden(task, request) if task.file is not None else None
     outcomes: list[Outcome] = []
-    said: list[str] = []
-    runs: dict[str, KeptRun] = {}
+    messages: list[str] = []
+    runs: dict[str, RunSnapshot] = {}
     for name, one in scenes.items():
-        study = _solved(one, task, request, jobs)
-        outcomes += [outcome_of(compare(study, item), path, name) for item in one.expect]
+        study = _solve_scene(one, task, request, jobs)
+        outcomes += [make_outcome(compare(study, item), path, name) for item in one.expect]
         if task.file is not None:
-            runs[name] = keep(study, told_by_default(one), _even_at(old, name))
+            runs[name] = take_run_snapshot(study, find_default_reports(one), _find_even_instants(old, name))
         place = f"heun: {path}: case {name}" if name else f"heun: {path}"
-        said += [] if request.quiet else warning_lines(one, study.results, place, study.later_warnings)
+        messages += [] if request.quiet else format_warnings(one, study.results, place, study.later_warnings)
     golden = None
     if task.file is not None:
-        more, golden = kept_outcomes(task.file, old, _file(task, spec, runs), request)
-        outcomes += more
+        golden_outcomes_found, golden = compare_golden(task.file, old, _make_golden(task, spec, runs), request)
+        outcomes += golden_outcomes_found
         if old is None and not request.update and not request.strict and not request.quiet:
-            said.append(f"warning: {shown(path)}: {NO_FILE}")
-        said += [f"note: {shown(path)}: {outcome.note}" for outcome in more if outcome.note and not request.quiet]
+            messages.append(f"warning: {escape(path)}: {NO_FILE}")
+        messages += [
+            f"note: {escape(path)}: {outcome.note}"
+            for outcome in golden_outcomes_found
+            if outcome.note and not request.quiet
+        ]
     alarm.disarm()
-    return Checked(path, tuple(outcomes), said=tuple(said), golden=golden)
+    return CheckResult(path, tuple(outcomes), messages=tuple(messages), golden=golden)
 
 
-def _solved(spec: Spec, task: Task, request: CheckRequest, jobs: int) -> Study:
-    """A scene with all that is to be compared."""
-    asked = _asked(spec, task.file is not None)
-    room, each = memory.room("table")
+def _solve_scene(spec: Spec, task: CheckTask, request: CheckRequest, jobs: int) -> Study:
+    """Solve a scene for all that is compared."""
+    selection = _select_results(spec, task.file is not None)
+    available, bytes_each = memory.result_memory("table")
     options = Options(
-        wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(), room=Room(room / jobs, each),
+        requested_reports=selection.reports, entries=selection.entries, time_limit=alarm.remaining_time(), memory_budget=MemoryBudget(available / jobs, bytes_each),
         reduce=not request.no_reduce,
     )  # fmt: skip
     return solve(spec, options)
 
 
-def _asked(spec: Spec, keeps: bool) -> Selection:
-    """What of the results is needed: all that is expected, all that tables tell where that is kept."""
-    asked = asked_by([path for item in spec.expect for path in item.paths], spec) if spec.expect else None
-    if not keeps:
-        return asked or EVERYTHING
-    told = Selection(told_by_default(spec))
-    return told if asked is None else told.with_all(asked)
+def _select_results(spec: Spec, has_golden: bool) -> Selection:
+    """Return the results that are needed: all that is expected, and with a golden file all that tables show."""
+    expected = select_paths([path for item in spec.expect for path in item.paths], spec) if spec.expect else None
+    if not has_golden:
+        return expected or EVERYTHING
+    default = Selection(find_default_reports(spec))
+    return default if expected is None else default.union(expected)
 
 
-def _golden(task: Task, request: CheckRequest) -> KeptFile | None:
-    """What was kept of a spec; None where there is no file. Raises GoldenError."""
+def _read_golden(task: CheckTask, request: CheckRequest) -> GoldenFile | None:
+    """Read the golden file of a spec, or return None if there is none. Raises GoldenError."""
     assert task.file is not None and request.golden is not None
     goldens.require_inside(task.file, request.golden)
     if not Path(task.file).exists():
         return None
     try:
-        kept = read_kept(read_bytes(task.file, MOST_BYTES).decode("utf-8"))
+        golden_file = read_golden_file(read_bytes(task.file, MAX_BYTES).decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise goldens.told(task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", ANOTHER)) from None
+        raise goldens.make_golden_error(
+            task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", REWRITE_HINT)
+        ) from None
     except Finding as finding:
-        raise goldens.told(task.file, finding) from None
-    if kept.spec.path != task.name:
-        message = f"kept of another spec: {kept.spec.path}, not {task.name}"
-        raise goldens.told(task.file, Finding("not-golden", message, "move it back, or remove it and --update"))
-    return kept
+        raise goldens.make_golden_error(task.file, finding) from None
+    if golden_file.spec.path != task.name:
+        message = f"kept of another spec: {golden_file.spec.path}, not {task.name}"
+        raise goldens.make_golden_error(
+            task.file, Finding("not-golden", message, "move it back, or remove it and --update")
+        )
+    return golden_file
 
 
-def _file(task: Task, spec: Spec, runs: Mapping[str, KeptRun]) -> KeptFile:
-    """The golden file of a spec as it would be written now."""
-    tables = {name: _digest(table.x.tobytes() + table.y.tobytes()) for name, table in spec.tables.items()}
+def _make_golden(task: CheckTask, spec: Spec, runs: Mapping[str, RunSnapshot]) -> GoldenFile:
+    """Make the golden file of a spec as it would be written now."""
+    tables = {name: _compute_digest(table.x.tobytes() + table.y.tobytes()) for name, table in spec.tables.items()}
     cases = {name: run for name, run in runs.items() if name}
-    of = KeptSpec(path=task.name, sha256=spec.sha256)
-    return KeptFile(format=FORMAT, heun=VERSION, spec=of, tables=tables, base=runs[""], cases=cases)
+    spec_entry = SpecDigest(path=task.name, sha256=spec.sha256)
+    return GoldenFile(format=FORMAT, heun=VERSION, spec=spec_entry, tables=tables, base=runs[""], cases=cases)
 
 
-def _even_at(old: KeptFile | None, case: str) -> Sequence[float]:
-    """The even instants at which a run was kept."""
+def _find_even_instants(old: GoldenFile | None, case: str) -> Sequence[float]:
+    """Return the instants at equal steps that the golden file holds for a case."""
     run = None if old is None else old.cases.get(case) if case else old.base
     return run.even_at if run is not None else ()
 
 
-def _digest(content: bytes) -> str:
+def _compute_digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()

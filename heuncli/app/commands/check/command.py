@@ -1,4 +1,4 @@
-"""`heun check`: specs and folders of specs against what they expect, and against numbers that were kept."""
+"""`heun check`: compare specs and folders of specs with what they expect, and with golden files."""
 
 from __future__ import annotations
 
@@ -8,80 +8,80 @@ from functools import partial
 from pathlib import Path
 
 from heuncli.app.cli import jobs
-from heuncli.app.cli.entry import BUG, UsageError, lines_of, say_what_explains, worst
-from heuncli.app.cli.guard import require_other_file, same_file
-from heuncli.app.cli.output import as_bytes, emit, say
-from heuncli.app.cli.progress import progress
-from heuncli.app.cli.target import format_of, require_room
+from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, select_exit_code
+from heuncli.app.cli.guard import is_same_file, require_other_file
+from heuncli.app.cli.output import emit, encode_text, print_stderr
+from heuncli.app.cli.progress import show_progress
+from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.checked import FAILED, Checked
-from heuncli.app.commands.check.checking import Task, check
-from heuncli.app.commands.check.folders import Found, PassedBy, specs_below
-from heuncli.app.commands.check.picking import picked
+from heuncli.app.commands.check.checked import FAILED, CheckResult
+from heuncli.app.commands.check.checking import CheckTask, check_spec
+from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs
+from heuncli.app.commands.check.picking import select_specs
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
-from heuncli.app.commands.check.told import FORMS, AllChecked
+from heuncli.app.commands.check.told import FORMS, CheckSummary
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 
 NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
-OF_A_JOB = ("markdown", "github")  # formats that tell errors, too: nobody sees standard error beside them
+JOB_FORMATS = ("markdown", "github")  # formats that include errors: nobody sees standard error there
 
 
 def main(request: CheckRequest) -> int:
     """Run the command; returns the exit code."""
     if request.references:
-        return _references(request)
-    _require_sense(request)
-    skipped: list[PassedBy] = []
-    found = [one for argument in request.paths for one in specs_below(argument, skipped)]
+        return _check_references(request)
+    _require_consistent_options(request)
+    skipped: list[SkippedFolder] = []
+    specs = [one for argument in request.paths for one in find_specs(argument, skipped)]
     for folder in skipped if not request.quiet else ():
         if folder.reason:
-            say(f"heun: {shown(folder.path)} passed by: {shown(folder.reason)}")
-    if not found:
+            print_stderr(f"heun: {escape(folder.path)} passed by: {escape(folder.reason)}")
+    if not specs:
         message = f"no *.yaml in {', '.join(request.paths)}" if request.paths else "no PATH is given"
         raise UsageError(Problem("nothing-to-check", message, hint=NAMED))
-    form = format_of(request.format, request.output, FORMATS)
-    kept = goldens.files_of(found, request.golden) if request.golden is not None else {}
-    orphans = _without_spec(request, found, kept)
-    chosen = picked(found, request.select) if request.select is not None else found
-    paths = [one.path for one in chosen]
+    form = choose_format(request.format, request.output, FORMATS)
+    golden_files = goldens.map_golden_files(specs, request.golden) if request.golden is not None else {}
+    orphans = _report_orphans(request, specs, golden_files)
+    selected = select_specs(specs, request.select) if request.select is not None else specs
+    paths = [one.path for one in selected]
     _require_other_files(request, paths)
-    checked = _all(chosen, kept, request)
-    _require_other_files(request, paths)  # the tables of specs that are wrong, too
-    told = AllChecked(checked, skipped, orphans, request.strict)
-    if form in OF_A_JOB or any(not one.error for one in checked):  # with errors alone there is no result
-        emit(FORMS[form](told), request.output)
+    checked = _check_all(selected, golden_files, request)
+    _require_other_files(request, paths)  # also the tables of invalid specs
+    summary = CheckSummary(checked, skipped, orphans, request.strict)
+    if form in JOB_FORMATS or any(not one.error for one in checked):  # without any solved spec there is no result
+        emit(FORMS[form](summary), request.output)
     if request.junit is not None:
-        from heuncli.app.commands.check.junit import junit_text
+        from heuncli.app.commands.check.junit import render_junit
 
-        files.write(as_bytes(junit_text(checked, orphans, request.strict)), request.junit)
-    say_what_explains([problem for one in checked for problem in one.problems])
-    _say_slowest(checked, request.durations)
+        files.write(encode_text(render_junit(checked, orphans, request.strict)), request.junit)
+    print_explain_hint([problem for one in checked for problem in one.problems])
+    _print_slowest(checked, request.durations)
     codes = [one.exit_code for one in checked] + [FAILED] * (request.strict and bool(orphans))
-    return worst([*codes, *_written(checked, request)])
+    return select_exit_code([*codes, *_write_goldens(checked, request)])
 
 
-def _references(request: CheckRequest) -> int:
-    """The published cases in place of specs; returns the exit code."""
-    from heuncli.app.commands.check import references  # that only these need
+def _check_references(request: CheckRequest) -> int:
+    """Check the published cases instead of specs; returns the exit code."""
+    from heuncli.app.commands.check import references  # only needed here
 
     references.require_alone(request)
-    _require_sense(request)
+    _require_consistent_options(request)
     code, checked = references.main(request)
-    _say_slowest(checked, request.durations)
+    _print_slowest(checked, request.durations)
     return code
 
 
-def _require_sense(request: CheckRequest) -> None:
-    """Raise UsageError where options do not go together, or numbers mean nothing."""
-    goldens.require_sense(request)
+def _require_consistent_options(request: CheckRequest) -> None:
+    """Raise UsageError if options contradict each other, or a number is invalid."""
+    goldens.require_consistent_options(request)
     for word, number in (("--jobs", request.jobs), ("--durations", request.durations)):
         if number is not None and number < 1:
             raise UsageError(Problem("bad-option", f"{word} {number}: expected 1 or more", hint=f"such as {word} 2"))
     if request.junit is not None:
-        require_room(request.junit, "--junit")
-        if request.output is not None and same_file(request.junit, request.output):
+        require_writable(request.junit, "--junit")
+        if request.output is not None and is_same_file(request.junit, request.output):
             raise UsageError(Problem("bad-option", "--junit and -o name the same file", hint="name another file"))
 
 
@@ -91,88 +91,92 @@ def _require_other_files(request: CheckRequest, paths: Sequence[str]) -> None:
         require_other_file(request.junit, paths, "--junit")
 
 
-def _without_spec(request: CheckRequest, found: Sequence[Found], kept: dict[str, str]) -> list[str]:
-    """Golden files of no spec, told; where single specs are named nothing is known of the others."""
-    if request.golden is None or any(one.below is None for one in found):
+def _report_orphans(request: CheckRequest, specs: Sequence[FoundSpec], golden_files: dict[str, str]) -> list[str]:
+    """Print and return the golden files without a spec; none if single specs are named, since the others are not known
+    then.
+    """
+    if request.golden is None or any(one.folder is None for one in specs):
         return []
-    orphans = goldens.without_spec(request.golden, kept.values())
+    orphans = goldens.find_orphans(request.golden, golden_files.values())
     for path in orphans if not request.quiet or request.strict else ():
-        say(f"{'heun' if request.strict else 'warning'}: {shown(path)}: a golden file without a spec")
+        print_stderr(f"{'heun' if request.strict else 'warning'}: {escape(path)}: a golden file without a spec")
     return orphans
 
 
-def _all(chosen: Sequence[Found], kept: dict[str, str], request: CheckRequest) -> list[Checked]:
-    """What was found of each, in their order; what there is to say is said as they come."""
-    tasks = [_task(one, kept.get(one.path), request) for one in chosen]
-    at_once = jobs.how_many(request.jobs, len(tasks))
-    checked: list[Checked] = []
-    work = partial(check, request=request, jobs=at_once)
-    is_last = _fails if request.first else _none
-    with progress(request.quiet) as tell:
-        for one in jobs.each(work, tasks, at_once, _dead, is_last, apart=request.time_limit_each is not None):
-            if one.refused:
+def _check_all(specs: Sequence[FoundSpec], golden_files: dict[str, str], request: CheckRequest) -> list[CheckResult]:
+    """Check all specs; returns the results in their order, and prints their messages as they come."""
+    tasks = [_make_task(one, golden_files.get(one.path), request) for one in specs]
+    job_count = jobs.choose_job_count(request.jobs, len(tasks))
+    checked: list[CheckResult] = []
+    work = partial(check_spec, request=request, jobs=job_count)
+    is_last = _has_failed if request.first else _never
+    with show_progress(request.quiet) as report:
+        for one in jobs.run_in_order(
+            work, tasks, job_count, _make_death_result, is_last, separate_process=request.time_limit_each is not None
+        ):
+            if one.is_usage_error:
                 raise UsageError(*one.problems)
             checked.append(one)
-            for line in one.said:
-                say(line)
-            tell(len(checked), len(tasks), one.path)
+            for line in one.messages:
+                print_stderr(line)
+            report(len(checked), len(tasks), one.path)
     return checked
 
 
-def _task(one: Found, file: str | None, request: CheckRequest) -> Task:
+def _make_task(one: FoundSpec, file: str | None, request: CheckRequest) -> CheckTask:
     if file is None or request.golden is None or one.problem is not None:
-        return Task(one)
-    return Task(one, file, goldens.name_of(file, one.path, request.golden))
+        return CheckTask(one)
+    return CheckTask(one, file, goldens.make_spec_name(file, one.path, request.golden))
 
 
-def _fails(one: Checked) -> bool:
+def _has_failed(one: CheckResult) -> bool:
     return bool(one.exit_code)
 
 
-def _none(one: Checked) -> bool:
+def _never(one: CheckResult) -> bool:
     return False
 
 
-def _dead(task: Task, died: jobs.Died) -> Checked:
-    """What stands for a spec whose process died."""
-    path = task.found.path
+def _make_death_result(task: CheckTask, death: jobs.Died) -> CheckResult:
+    """Make the result of a spec whose process died."""
+    path = task.spec.path
     hint = "the memory may not have sufficed: --jobs 1; else please report it with the spec"
-    problem = died.problem("checked it", hint)
-    error = died.code if died.is_time_up else BUG
-    return Checked(path, problems=(problem,), error=error, said=tuple(lines_of([problem], f"{path}: ")))
+    problem = death.make_problem("checked it", hint)
+    error = death.code if death.is_time_up else BUG
+    return CheckResult(path, problems=(problem,), error=error, messages=tuple(format_problems([problem], f"{path}: ")))
 
 
-def _say_slowest(checked: Sequence[Checked], most: int | None) -> None:
-    """The slowest specs, on standard error: times differ from run to run, results do not."""
-    if most is None:
+def _print_slowest(results: Sequence[CheckResult], limit: int | None) -> None:
+    """Print the slowest specs to standard error, since times differ from run to run and results do not."""
+    if limit is None:
         return
-    say(f"slowest {min(most, len(checked))} of {len(checked)}:")
-    for one in sorted(checked, key=lambda one: -one.seconds)[:most]:
-        say(f"{one.seconds:9.3f} s  {shown(one.path)}")
+    print_stderr(f"slowest {min(limit, len(results))} of {len(results)}:")
+    for one in sorted(results, key=lambda one: -one.seconds)[:limit]:
+        print_stderr(f"{one.seconds:9.3f} s  {escape(one.path)}")
 
 
-def _written(checked: Sequence[Checked], request: CheckRequest) -> list[int]:
-    """Write the golden files that are to be written, none where one that stands there cannot be used; exit codes."""
-    given = [one.golden for one in checked if one.golden is not None and one.golden.text is not None]
-    if any(problem.code == "not-golden" for one in checked for problem in one.problems):
-        if given:
-            say("heun: no golden file was written: one that stands there cannot be used")
+def _write_goldens(results: Sequence[CheckResult], request: CheckRequest) -> list[int]:
+    """Write the golden files that are to be written; none if an existing one cannot be used. Returns exit codes."""
+    updates = [one.golden for one in results if one.golden is not None and one.golden.text is not None]
+    if any(problem.code == "not-golden" for one in results for problem in one.problems):
+        if updates:
+            print_stderr("heun: no golden file was written: one that stands there cannot be used")
         return []
-    for golden in given:
-        _write_golden(golden.path, as_bytes(golden.text or ""))
+    for golden in updates:
+        _write_golden(golden.path, encode_text(golden.text or ""))
         if not request.quiet:
-            say(f"heun: {shown(golden.path)} {'written' if golden.is_new else 'written anew'}")
+            print_stderr(f"heun: {escape(golden.path)} {'written' if golden.is_new else 'written anew'}")
     return []
 
 
 def _write_golden(path: str, content: bytes) -> None:
-    """Write a golden file, with the folders above it; where it cannot be written no new folder is left empty."""
+    """Write a golden file and its folders; if that fails no new folder is left empty. Raises OutputError."""
     missing = [folder for folder in Path(path).parents if not folder.exists()]
     try:
         try:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
         except OSError as reason:
-            raise OutputError(files.failed(path, reason)) from None
+            raise OutputError(files.write_problem(path, reason)) from None
         files.write(content, path)
     except OutputError:
         for folder in missing:  # the innermost first

@@ -1,7 +1,7 @@
-"""Where the golden file of a spec lies, and what stands there. Impure: reads folders and files.
+"""Find the golden file of a spec, and check the options about golden files. Impure: reads folders and files.
 
-A spec found in a folder has its file at the same path below DIR, with `.json`. One that is named itself has it at the
-longest end of its path that is there, so that a hook which names single files finds those of the whole folder.
+The golden file of a spec found in a folder has the same path below DIR, with `.json`. That of a spec named directly has
+the longest end of its path that exists there, so that a hook that names single files finds those of the whole folder.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePath
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.commands.check.folders import Found
+from heuncli.app.commands.check.folders import FoundSpec
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.base.errors import Finding, HeunError, Problem, SourceLocation
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.scene.file_format.reading import STANDARD_INPUT
 
 SUFFIX = ".json"
-NOT_SET = ("", "0", "false", "no")  # what CI may say where it is not meant
+CI_OFF = ("", "0", "false", "no")  # values of CI that mean "no"
 
 
 class GoldenError(HeunError):
@@ -27,14 +27,14 @@ class GoldenError(HeunError):
     exit_code = 2
 
 
-def require_sense(request: CheckRequest) -> None:
-    """Raise UsageError where the options about golden files do not go together."""
+def require_consistent_options(request: CheckRequest) -> None:
+    """Raise UsageError if the options about golden files contradict each other."""
     if request.golden is None:
-        for word, given in (
+        for word, is_given in (
             ("--update", request.update), ("--strict", request.strict),
             ("--golden-tolerance", request.golden_tolerance is not None),
         ):  # fmt: skip
-            if given:
+            if is_given:
                 raise UsageError(Problem("bad-option", f"{word} without --golden", hint="such as --golden golden"))
         return
     if request.force and not request.update:
@@ -45,7 +45,7 @@ def require_sense(request: CheckRequest) -> None:
     if share is not None and not 0.0 < share < 1.0:
         hint = "such as 1e-6; without it the stated errors hold"
         raise UsageError(Problem("bad-option", f"--golden-tolerance {share:g}: expected a share below 1", hint=hint))
-    if request.update and not request.force and os.environ.get("CI", "").lower() not in NOT_SET:
+    if request.update and not request.force and os.environ.get("CI", "").lower() not in CI_OFF:
         hint = "run it where the change is made, look at what changed, and commit the files; --force writes here, too"
         raise UsageError(Problem("bad-option", "--update where CI is set: a pipeline would approve itself", hint=hint))
     folder = Path(request.golden)
@@ -56,14 +56,16 @@ def require_sense(request: CheckRequest) -> None:
         raise UsageError(Problem("bad-option", f"--golden {request.golden}: there is no such folder", hint=hint))
 
 
-def files_of(found: Sequence[Found], folder: str) -> dict[str, str]:
-    """The golden files of specs, by the paths of these. Raises UsageError where two specs would have the same."""
+def map_golden_files(specs: Sequence[FoundSpec], folder: str) -> dict[str, str]:
+    """Return the golden file of each spec, by the spec's path. Raises UsageError if two specs would have the same
+    one.
+    """
     files: dict[str, str] = {}
     owners: dict[str, str] = {}
-    for one in found:
+    for one in specs:
         if one.path == STANDARD_INPUT:
             raise UsageError(Problem("bad-option", "--golden with standard input: it has no path", hint="name a file"))
-        file = file_of(one, folder)
+        file = find_golden_file(one, folder)
         other = owners.setdefault(file, one.path)
         if os.path.realpath(other) != os.path.realpath(one.path):
             hint = "name the folder above both, or check one after the other with folders of their own"
@@ -74,38 +76,40 @@ def files_of(found: Sequence[Found], folder: str) -> dict[str, str]:
     return files
 
 
-def file_of(one: Found, folder: str) -> str:
-    """The golden file of a spec."""
-    if one.below is not None:
-        return str(Path(folder, os.path.relpath(one.path, one.below)).with_suffix(SUFFIX))
+def find_golden_file(one: FoundSpec, folder: str) -> str:
+    """Return the path of a spec's golden file."""
+    if one.folder is not None:
+        return str(Path(folder, os.path.relpath(one.path, one.folder)).with_suffix(SUFFIX))
     parts = [part for part in PurePath(one.path).parts if part not in (os.curdir, os.pardir, os.sep)]
     tails = [str(Path(folder, *parts[start:]).with_suffix(SUFFIX)) for start in range(len(parts))]
     return next((tail for tail in tails if Path(tail).is_file()), tails[-1])
 
 
-def name_of(file: str, spec: str, folder: str) -> str:
-    """The path of a spec as its golden file names it: where the file lies below the folder, with the spec's ending."""
+def make_spec_name(file: str, spec: str, folder: str) -> str:
+    """Return the path by which a golden file names its spec: its own path below the folder, with the spec's ending."""
     return PurePath(os.path.relpath(file, folder)).with_suffix(PurePath(spec).suffix).as_posix()
 
 
 def require_inside(file: str, folder: str) -> None:
-    """Raise GoldenError where a file is a link that leads out of the folder, or a folder itself."""
+    """Raise GoldenError if a file is a link that leads out of the folder, or a folder itself."""
     inside, real = os.path.realpath(folder), os.path.realpath(file)
     if os.path.commonpath([inside, real]) != inside:
-        raise told(
-            file, Finding("not-golden", f"this leads out of {shown(folder)}: to {shown(real)}", "remove the link")
+        raise make_golden_error(
+            file, Finding("not-golden", f"this leads out of {escape(folder)}: to {escape(real)}", "remove the link")
         )
     if Path(file).is_dir():
-        raise told(file, Finding("not-golden", "this is a folder", "remove it, or choose another place for --golden"))
+        raise make_golden_error(
+            file, Finding("not-golden", "this is a folder", "remove it, or choose another place for --golden")
+        )
 
 
-def told(file: str, finding: Finding) -> GoldenError:
-    """The error that says what is wrong with a file."""
+def make_golden_error(file: str, finding: Finding) -> GoldenError:
+    """Make the error of a golden file."""
     return GoldenError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint))
 
 
-def without_spec(folder: str, files: Iterable[str]) -> list[str]:
-    """The golden files below a folder that are of none of the specs, sorted."""
+def find_orphans(folder: str, files: Iterable[str]) -> list[str]:
+    """Return the golden files in a folder that belong to none of the specs, sorted."""
     known = {os.path.realpath(file) for file in files}
-    found = (str(path) for path in sorted(Path(folder).rglob("*" + SUFFIX)) if path.is_file())
-    return [path for path in found if os.path.realpath(path) not in known]
+    paths = (str(path) for path in sorted(Path(folder).rglob("*" + SUFFIX)) if path.is_file())
+    return [path for path in paths if os.path.realpath(path) not in known]

@@ -1,4 +1,6 @@
-"""A JUnit report, as Jenkins and GitLab read it: a suite a spec, a case an expectation, and one that says it solves."""
+"""Render a JUnit report for Jenkins and GitLab: a suite per spec, a case per expectation, and one case for solving
+it.
+"""
 
 from __future__ import annotations
 
@@ -7,90 +9,97 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from pathlib import PurePath
 
-from heuncli.app.commands.check.checked import Checked
-from heuncli.app.commands.check.told import words
+from heuncli.app.commands.check.checked import CheckResult
+from heuncli.app.commands.check.told import format_failure
 from heuncli.output.snapshots.outcomes import Outcome
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 
 
-def junit_text(checked: Sequence[Checked], orphans: Sequence[str], strict: bool) -> str:
-    """The report."""
+def render_junit(results: Sequence[CheckResult], orphans: Sequence[str], strict: bool) -> str:
+    """Render the report as XML."""
     suites = ET.Element("testsuites", {"name": "heun check"})
-    for one in checked:
-        suites.append(_suite(one))
+    for one in results:
+        suites.append(_make_suite(one))
     if orphans:
-        suites.append(_of_orphans(orphans, strict))
+        suites.append(_make_orphan_suite(orphans, strict))
     totals = {key: sum(int(suite.get(key, "0")) for suite in suites) for key in ("tests", "failures", "errors")}
     for key, total in totals.items():
         suites.set(key, str(total))
-    suites.set("time", f"{sum(one.seconds for one in checked):.3f}")
+    suites.set("time", f"{sum(one.seconds for one in results):.3f}")
     ET.indent(suites, " ")
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
 
 
-def _suite(one: Checked) -> ET.Element:
+def _make_suite(one: CheckResult) -> ET.Element:
     name = PurePath(one.path).with_suffix("").as_posix()
-    cases = [_solves(one, name), *(_case(one, name, outcome) for outcome in one.outcomes)]
-    return _counted({"name": _place(one.path), "file": _place(one.path), "time": f"{one.seconds:.3f}"}, cases)
+    cases = [_make_solve_case(one, name), *(_make_case(one, name, outcome) for outcome in one.outcomes)]
+    return _make_counted_suite(
+        {"name": _format_path(one.path), "file": _format_path(one.path), "time": f"{one.seconds:.3f}"}, cases
+    )
 
 
-def _counted(given: dict[str, str], cases: Sequence[ET.Element]) -> ET.Element:
-    """A suite of cases, with how many of them failed."""
-    suite = ET.Element("testsuite", given | {"tests": str(len(cases))})
+def _make_counted_suite(attributes: dict[str, str], cases: Sequence[ET.Element]) -> ET.Element:
+    """Make a suite of cases, with the numbers of failures, errors and skipped cases."""
+    suite = ET.Element("testsuite", attributes | {"tests": str(len(cases))})
     for key, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
         suite.set(key, str(sum(case.find(tag) is not None for case in cases)))
     suite.extend(cases)
     return suite
 
 
-def _solves(one: Checked, name: str) -> ET.Element:
-    """The case that says whether it could be solved."""
+def _make_solve_case(one: CheckResult, name: str) -> ET.Element:
+    """Make the case that says whether the spec could be solved."""
     line = next((problem.location.line for problem in one.problems if problem.location is not None), 1)
-    case = _element(name, "solves", one.path, line, one.seconds)
+    case = _make_element(name, "solves", one.path, line, one.seconds)
     if one.error:
-        told = "\n".join(map(str, one.problems))
+        text = "\n".join(map(str, one.problems))
         message = one.problems[0].message if one.problems else "not solved"
         ET.SubElement(case, "error", {"type": one.problems[0].code if one.problems else "error",
-                                      "message": legible(message)}).text = legible(told)  # fmt: skip
+                                      "message": escape_forbidden(message)}).text = escape_forbidden(text)  # fmt: skip
     return case
 
 
-def _case(one: Checked, name: str, outcome: Outcome) -> ET.Element:
-    case = _element(name, outcome.name, one.path, outcome.line, 0.0)
-    if outcome.skipped:
-        ET.SubElement(case, "skipped", {"message": legible(outcome.failure or "")})
-    elif outcome.failure is not None and not outcome.warned:
-        found = ET.SubElement(case, "failure", {"type": outcome.kind, "message": legible(outcome.failure)})
-        found.text = legible(words(outcome))
+def _make_case(one: CheckResult, name: str, outcome: Outcome) -> ET.Element:
+    case = _make_element(name, outcome.name, one.path, outcome.line, 0.0)
+    if outcome.is_skipped:
+        ET.SubElement(case, "skipped", {"message": escape_forbidden(outcome.failure or "")})
+    elif outcome.failure is not None and not outcome.is_warning:
+        failure = ET.SubElement(case, "failure", {"type": outcome.kind, "message": escape_forbidden(outcome.failure)})
+        failure.text = escape_forbidden(format_failure(outcome))
     elif outcome.failure is not None:
-        ET.SubElement(case, "system-out").text = legible(words(outcome))
+        ET.SubElement(case, "system-out").text = escape_forbidden(format_failure(outcome))
     return case
 
 
-def _of_orphans(orphans: Sequence[str], strict: bool) -> ET.Element:
+def _make_orphan_suite(orphans: Sequence[str], strict: bool) -> ET.Element:
     cases = []
     for path in orphans:
-        case = _element("golden", path, path, 1, 0.0)
-        told = "a golden file without a spec"
+        case = _make_element("golden", path, path, 1, 0.0)
+        message = "a golden file without a spec"
         if strict:
-            ET.SubElement(case, "failure", {"type": "golden", "message": told}).text = told
+            ET.SubElement(case, "failure", {"type": "golden", "message": message}).text = message
         else:
-            ET.SubElement(case, "skipped", {"message": told})
+            ET.SubElement(case, "skipped", {"message": message})
         cases.append(case)
-    return _counted({"name": "golden files without a spec", "time": "0.000"}, cases)
+    return _make_counted_suite({"name": "golden files without a spec", "time": "0.000"}, cases)
 
 
-def _element(classname: str, name: str, file: str, line: int, seconds: float) -> ET.Element:
-    given = {"classname": legible(classname), "name": legible(name), "file": _place(file), "line": str(line)}
-    return ET.Element("testcase", given | {"time": f"{seconds:.3f}"})
+def _make_element(classname: str, name: str, file: str, line: int, seconds: float) -> ET.Element:
+    attributes = {
+        "classname": escape_forbidden(classname),
+        "name": escape_forbidden(name),
+        "file": _format_path(file),
+        "line": str(line),
+    }
+    return ET.Element("testcase", attributes | {"time": f"{seconds:.3f}"})
 
 
-def _place(path: str) -> str:
-    """A path as those who read a report look for it: without a ./ before it."""
-    return legible(PurePath(path).as_posix())
+def _format_path(path: str) -> str:
+    """Format a path for a report, without a leading ./."""
+    return escape_forbidden(PurePath(path).as_posix())
 
 
-def legible(text: str) -> str:
-    """The text with what XML cannot hold written as it is in Python."""
+def escape_forbidden(text: str) -> str:
+    """Escape characters that XML cannot hold, as Python does."""
     return FORBIDDEN.sub(lambda found: f"\\x{ord(found[0]):02x}", text)

@@ -1,77 +1,82 @@
-"""What a golden file says to the numbers of today: an outcome for each that differs, and what is written anew."""
+"""Compare a golden file with the new numbers: an outcome for each that differs, and the text to write."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-from heuncli.app.commands.check.checked import Golden
+from heuncli.app.commands.check.checked import GoldenUpdate
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.change_words import number_text, why
-from heuncli.output.snapshots.changes import EXTRA, MISSING, changes
-from heuncli.output.snapshots.kept import KeptFile, KeptRun, text_of
-from heuncli.output.snapshots.outcomes import KEPT, Outcome
+from heuncli.output.snapshots.change_words import describe_failure, format_value
+from heuncli.output.snapshots.changes import EXTRA, MISSING, find_changes
+from heuncli.output.snapshots.kept import GoldenFile, RunSnapshot, format_golden_file
+from heuncli.output.snapshots.outcomes import GOLDEN, Outcome
 from heuncli.version import VERSION
 
 NO_FILE = "no golden file: --update writes it"
 HOLDS_LESS = "kept by an earlier version without means, so less is compared; --update renews it"
 
 
-def kept_outcomes(
-    file: str, old: KeptFile | None, new: KeptFile, request: CheckRequest
-) -> tuple[list[Outcome], Golden]:
-    """The outcomes, and the file, with its text where --update writes it."""
+def compare_golden(
+    file: str, old: GoldenFile | None, new: GoldenFile, request: CheckRequest
+) -> tuple[list[Outcome], GoldenUpdate]:
+    """Compare the numbers; returns the outcomes, and the golden file with its text if --update writes it."""
     if old is None:
-        text = text_of(new) if request.update else None
+        text = format_golden_file(new) if request.update else None
         if request.update:
-            return [], Golden(file, text, is_new=True)
+            return [], GoldenUpdate(file, text, is_new=True)
         block = {"golden": file, "passed": not request.strict, "message": NO_FILE}
-        return [Outcome(KEPT, file, NO_FILE, block=block, warned=not request.strict)], Golden(file)
-    found = [(case, change) for case, run, was in _runs(old, new) for change in _of(was, run, request)]
-    since = _since(old, new)
-    if not found:
-        return _unchanged(file, old, new, request)
-    outcomes = [_outcome(file, case, change, since, request.update) for case, change in found]
-    return outcomes, Golden(file, text_of(new) if request.update else None)
+        return [Outcome(GOLDEN, file, NO_FILE, block=block, is_warning=not request.strict)], GoldenUpdate(file)
+    changes_found = [
+        (case, change) for case, run, old_run in _pair_runs(old, new) for change in _list_changes(old_run, run, request)
+    ]
+    context = _describe_context(old, new)
+    if not changes_found:
+        return _make_unchanged_outcome(file, old, new, request)
+    outcomes = [_make_outcome(file, case, change, context, request.update) for case, change in changes_found]
+    return outcomes, GoldenUpdate(file, format_golden_file(new) if request.update else None)
 
 
-def _unchanged(file: str, old: KeptFile, new: KeptFile, request: CheckRequest) -> tuple[list[Outcome], Golden]:
-    """The outcome where no number left its bounds, and what --update renews then: the digests, or what a file of an
-    earlier format does not hold."""
-    notes = [f"{changed}, and no number left its bounds"] if (changed := _changed_files(old, new)) else []
-    notes += [] if old.holds_courses else [HOLDS_LESS]
+def _make_unchanged_outcome(
+    file: str, old: GoldenFile, new: GoldenFile, request: CheckRequest
+) -> tuple[list[Outcome], GoldenUpdate]:
+    """Make the outcome if no number changed, and what --update renews then: the digests, or what a file of an earlier
+    format lacks.
+    """
+    notes = [f"{changed}, and no number left its bounds"] if (changed := _describe_changed_files(old, new)) else []
+    notes += [] if old.has_courses else [HOLDS_LESS]
     text = None
     if request.update and notes:
-        kept = old.model_copy(update={"spec": new.spec, "tables": new.tables})
-        text = text_of(kept if old.holds_courses else new)
+        renewed = old.model_copy(update={"spec": new.spec, "tables": new.tables})
+        text = format_golden_file(renewed if old.has_courses else new)
     note = "; ".join(notes)
     block = {"golden": file, "passed": True, "message": note or "as kept"} | ({"written": True} if text else {})
-    return [Outcome(KEPT, file, None, block=block, note=note)], Golden(file, text)
+    return [Outcome(GOLDEN, file, None, block=block, note=note)], GoldenUpdate(file, text)
 
 
-def _runs(old: KeptFile, new: KeptFile) -> Iterator[tuple[str, KeptRun | None, KeptRun | None]]:
-    """Each run that is kept or was made: the scene as it stands, and its cases by their names."""
+def _pair_runs(old: GoldenFile, new: GoldenFile) -> Iterator[tuple[str, RunSnapshot | None, RunSnapshot | None]]:
+    """Yield each run by name, new and old; the scene as it is first."""
     yield "", new.base, old.base
     for name in sorted(old.cases.keys() | new.cases.keys()):
         yield name, new.cases.get(name), old.cases.get(name)
 
 
-def _of(old: KeptRun | None, new: KeptRun | None, request: CheckRequest) -> list[Change]:
+def _list_changes(old: RunSnapshot | None, new: RunSnapshot | None, request: CheckRequest) -> list[Change]:
     if old is None or new is None:
-        return [Change("the case", "", "", None, None, why=EXTRA if old is None else MISSING)]
-    return changes(old, new, request.golden_tolerance)
+        return [Change("the case", "", "", None, None, reason=EXTRA if old is None else MISSING)]
+    return find_changes(old, new, request.golden_tolerance)
 
 
-def _since(old: KeptFile, new: KeptFile) -> str:
-    """What else is not as it was when the numbers were kept."""
-    changed = _changed_files(old, new)
+def _describe_context(old: GoldenFile, new: GoldenFile) -> str:
+    """Describe what else changed since the golden file was written: spec, tables, version."""
+    changed = _describe_changed_files(old, new)
     version = f"kept by version {old.heun}" if old.heun != VERSION else ""
     return "; ".join(part for part in (changed, version) if part)
 
 
-def _changed_files(old: KeptFile, new: KeptFile) -> str:
-    """Which of the spec and its tables changed since the numbers were kept."""
+def _describe_changed_files(old: GoldenFile, new: GoldenFile) -> str:
+    """Describe which of the spec and its tables changed since the golden file was written."""
     parts = ["the spec"] if old.spec.sha256 != new.spec.sha256 else []
     tables = sorted(
         name for name in old.tables.keys() | new.tables.keys() if old.tables.get(name) != new.tables.get(name)
@@ -80,13 +85,13 @@ def _changed_files(old: KeptFile, new: KeptFile) -> str:
     return f"{' and '.join(parts)} changed since it was kept" if parts else ""
 
 
-def _outcome(file: str, case: str, change: Change, since: str, written: bool) -> Outcome:
-    message = why(change) + (f"; {since}" if since else "")
+def _make_outcome(file: str, case: str, change: Change, context: str, is_written: bool) -> Outcome:
+    message = describe_failure(change) + (f"; {context}" if context else "")
     block: dict[str, Any] = {"golden": file, **({"case": case} if case else {}), "of": change.path, "when": change.what}
-    block |= {"unit": change.unit, "expected": change.old, "found": change.new, "tolerance": change.allowed}
-    block |= {"passed": written, "message": message} | ({"written": True} if written else {})
+    block |= {"unit": change.unit, "expected": change.old, "found": change.new, "tolerance": change.tolerance}
+    block |= {"passed": is_written, "message": message} | ({"written": True} if is_written else {})
     return Outcome(
-        KEPT, change.path, message, case=case, when=change.what, expected=number_text(change.old, change.unit),
-        found=number_text(change.new, change.unit), block=block, warned=written,
-        allowed="" if change.allowed is None else f"{change.allowed:.3g}",
+        GOLDEN, change.path, message, case=case, when=change.what, expected_text=format_value(change.old, change.unit),
+        found_text=format_value(change.new, change.unit), block=block, is_warning=is_written,
+        tolerance_text="" if change.tolerance is None else f"{change.tolerance:.3g}",
     )  # fmt: skip

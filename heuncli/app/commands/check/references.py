@@ -1,4 +1,4 @@
-"""`heun check --references [NAME...]`: the cases that others published, solved and held against what they printed."""
+"""`heun check --references [NAME...]`: solve published cases, and compare them with the printed numbers."""
 
 from __future__ import annotations
 
@@ -6,105 +6,116 @@ import time
 from collections.abc import Sequence
 from functools import partial
 
-from heuncli.analyses.published.cases import case_of
-from heuncli.analyses.published.compared import compared
-from heuncli.analyses.published.files import names
+from heuncli.analyses.published.cases import read_case
+from heuncli.analyses.published.compared import compare_case
+from heuncli.analyses.published.files import list_names
 from heuncli.app.cli import alarm, jobs
-from heuncli.app.cli.entry import BUG, UsageError, contained, lines_of, say_what_explains, worst
-from heuncli.app.cli.output import as_bytes, emit, say
-from heuncli.app.cli.progress import progress
-from heuncli.app.cli.target import format_of
-from heuncli.app.commands.check.checked import Checked
-from heuncli.app.commands.check.references_told import FORMS, CheckedCase, outcomes_of
+from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, run_contained, select_exit_code
+from heuncli.app.cli.output import emit, encode_text, print_stderr
+from heuncli.app.cli.progress import show_progress
+from heuncli.app.cli.target import choose_format
+from heuncli.app.commands.check.checked import CheckResult
+from heuncli.app.commands.check.references_told import FORMS, ReferenceResult, iter_outcomes
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
-from heuncli.app.commands.check.told import AllChecked, for_github
+from heuncli.app.commands.check.told import CheckSummary, render_github
 from heuncli.base import files
 from heuncli.base.errors import HeunError, Problem
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.study.model.options import Options
 
-NOT_WITH = (("--golden", "golden"), ("--update", "update"), ("--strict", "strict"), ("-k", "select"))
+EXCLUDED_OPTIONS = (("--golden", "golden"), ("--update", "update"), ("--strict", "strict"), ("-k", "select"))
 PLACE = "heuncli/analyses/published/numbers/{}.yaml"
 
 
 def require_alone(request: CheckRequest) -> None:
-    """Raise UsageError where --references stands with options that mean nothing beside it."""
-    for word, field in NOT_WITH:
+    """Raise UsageError for options that have no meaning together with --references."""
+    for word, field in EXCLUDED_OPTIONS:
         if getattr(request, field):
             hint = "published cases are held against what was printed, and nothing else"
             raise UsageError(Problem("bad-option", f"--references with {word}: these do not go together", hint=hint))
 
 
-def main(request: CheckRequest) -> tuple[int, list[Checked]]:
-    """Check the cases; returns the exit code, and what was found of each."""
-    chosen = _chosen(request)
-    form = format_of(request.format, request.output, FORMATS)
-    checked = _all(chosen, request)
-    own = [one.checked for one in checked]
-    text = for_github(AllChecked(own)) if form == "github" else FORMS[form](checked, bool(request.paths))
+def main(request: CheckRequest) -> tuple[int, list[CheckResult]]:
+    """Check the cases; returns the exit code, and the result of each case."""
+    names_chosen = _select_names(request)
+    form = choose_format(request.format, request.output, FORMATS)
+    checked = _check_all(names_chosen, request)
+    spec_results = [one.result for one in checked]
+    text = render_github(CheckSummary(spec_results)) if form == "github" else FORMS[form](checked, bool(request.paths))
     emit(text, request.output)
     if request.junit is not None:
-        from heuncli.app.commands.check.junit import junit_text
+        from heuncli.app.commands.check.junit import render_junit
 
-        files.write(as_bytes(junit_text(own, (), strict=False)), request.junit)
-    say_what_explains([problem for one in own for problem in one.problems])
-    return worst([one.exit_code for one in checked]), own
+        files.write(encode_text(render_junit(spec_results, (), strict=False)), request.junit)
+    print_explain_hint([problem for one in spec_results for problem in one.problems])
+    return select_exit_code([one.exit_code for one in checked]), spec_results
 
 
-def _chosen(request: CheckRequest) -> Sequence[str]:
-    """The names asked for, else all. Raises UsageError."""
-    known = names()
+def _select_names(request: CheckRequest) -> Sequence[str]:
+    """Return the requested names, or all. Raises UsageError."""
+    known = list_names()
     for name in request.paths:
         if name not in known:
-            hint = did_you_mean(name, known, "cases")
+            hint = suggest(name, known, "cases")
             raise UsageError(Problem("bad-option", f"--references {name}: there is no such published case", hint=hint))
     return tuple(dict.fromkeys(request.paths)) or known
 
 
-def _all(chosen: Sequence[str], request: CheckRequest) -> list[CheckedCase]:
-    at_once = jobs.how_many(request.jobs, len(chosen))
-    is_last = _fails if request.first else _none
-    checked: list[CheckedCase] = []
-    with progress(request.quiet) as tell:
-        apart = request.time_limit_each is not None
-        for one in jobs.each(partial(check, request=request), chosen, at_once, _dead, is_last, apart=apart):
+def _check_all(names_chosen: Sequence[str], request: CheckRequest) -> list[ReferenceResult]:
+    job_count = jobs.choose_job_count(request.jobs, len(names_chosen))
+    is_last = _has_failed if request.first else _never
+    checked: list[ReferenceResult] = []
+    with show_progress(request.quiet) as report:
+        separate_process = request.time_limit_each is not None
+        for one in jobs.run_in_order(
+            partial(check_case, request=request),
+            names_chosen,
+            job_count,
+            _make_death_result,
+            is_last,
+            separate_process=separate_process,
+        ):
             checked.append(one)
-            for line in one.checked.said:
-                say(line)
-            tell(len(checked), len(chosen), one.case.name)
+            for line in one.result.messages:
+                print_stderr(line)
+            report(len(checked), len(names_chosen), one.case.name)
     return checked
 
 
-def check(name: str, request: CheckRequest) -> CheckedCase:
-    """One case, solved and compared."""
-    begun, case = time.perf_counter(), case_of(name)
+def check_case(name: str, request: CheckRequest) -> ReferenceResult:
+    """Solve one case, and compare it with the printed numbers."""
+    start, case = time.perf_counter(), read_case(name)
     place = PLACE.format(name)
 
-    def work() -> CheckedCase:
-        options = Options(time_limit=alarm.remaining(), reduce=not request.no_reduce)
-        tables = compared(case, options)
+    def work() -> ReferenceResult:
+        options = Options(time_limit=alarm.remaining_time(), reduce=not request.no_reduce)
+        tables = compare_case(case, options)
         alarm.disarm()
-        return CheckedCase(case, tables, Checked(place, tuple(outcomes_of(tables))))
+        return ReferenceResult(case, tables, CheckResult(place, tuple(iter_outcomes(tables))))
 
     try:
-        found = contained(partial(alarm.limited, work, request.time_limit_each), ("check", "--references", name))
+        result = run_contained(
+            partial(alarm.run_with_limit, work, request.time_limit_each), ("check", "--references", name)
+        )
     except HeunError as error:
-        said = tuple(lines_of(error.problems, label=f"{name}: "))
-        found = CheckedCase(case, (), Checked(place, (), error.problems, error.exit_code, said=said))
-    return found._replace(checked=found.checked._replace(seconds=time.perf_counter() - begun))
+        messages = tuple(format_problems(error.problems, label=f"{name}: "))
+        result = ReferenceResult(case, (), CheckResult(place, (), error.problems, error.exit_code, messages=messages))
+    return result._replace(result=result.result._replace(seconds=time.perf_counter() - start))
 
 
-def _fails(one: CheckedCase) -> bool:
+def _has_failed(one: ReferenceResult) -> bool:
     return bool(one.exit_code)
 
 
-def _none(one: CheckedCase) -> bool:
+def _never(one: ReferenceResult) -> bool:
     return False
 
 
-def _dead(name: str, died: jobs.Died) -> CheckedCase:
-    """What stands for a case whose process died."""
-    problem = died.problem("checked it", "please report it")
-    said = tuple(lines_of([problem], f"{name}: "))
-    error = died.code if died.is_time_up else BUG
-    return CheckedCase(case_of(name), (), Checked(PLACE.format(name), (), (problem,), error, said=said))
+def _make_death_result(name: str, death: jobs.Died) -> ReferenceResult:
+    """Make the result of a case whose process died."""
+    problem = death.make_problem("checked it", "please report it")
+    messages = tuple(format_problems([problem], f"{name}: "))
+    error = death.code if death.is_time_up else BUG
+    return ReferenceResult(
+        read_case(name), (), CheckResult(PLACE.format(name), (), (problem,), error, messages=messages)
+    )

@@ -1,4 +1,4 @@
-"""What `heun check` is asked for: its options and arguments."""
+"""Options and arguments of `heun check`."""
 
 from typing import Annotated
 

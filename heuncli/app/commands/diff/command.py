@@ -1,19 +1,26 @@
-"""`heun diff`: what changed between two specs, golden files or results by more than both state."""
+"""`heun diff`: compare two specs, golden files or results, and list what changed by more than their stated errors."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.output import emit, say
-from heuncli.app.cli.target import format_of
+from heuncli.app.cli.output import emit, print_stderr
+from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.diff.request import FORMATS, DiffRequest
-from heuncli.app.commands.diff.sides import RESULT, Side, at_common_instants, require_alike, side_of, solved
-from heuncli.app.commands.diff.told import FORMS, Difference, ordered
-from heuncli.base.foreign_text import shown
+from heuncli.app.commands.diff.sides import (
+    RESULT,
+    Side,
+    read_side,
+    require_same_kind,
+    restrict_to_common_instants,
+    solve_side,
+)
+from heuncli.app.commands.diff.told import FORMS, Difference, sort_changes
+from heuncli.base.foreign_text import escape
 from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.changes import EXTRA, MISSING, changes
-from heuncli.output.snapshots.kept import KeptRun
+from heuncli.output.snapshots.changes import EXTRA, MISSING, find_changes
+from heuncli.output.snapshots.kept import RunSnapshot
 
 CHANGED = 1
 SAMPLED = "results in JSON hold samples: what lies between these is not compared"
@@ -23,38 +30,38 @@ HOLDS_LESS = "{} was kept by an earlier version without means, so less is compar
 
 def main(request: DiffRequest) -> int:
     """Run the command; returns the exit code."""
-    form = format_of(request.format, request.output, FORMATS)
+    form = choose_format(request.format, request.output, FORMATS)
     require_other_file(request.output, [request.before, request.after])
-    before, after = side_of(request.before), side_of(request.after)
-    require_alike(before, after)
+    before, after = read_side(request.before), read_side(request.after)
+    require_same_kind(before, after)
     notes: list[str] = []
     if before.kind == RESULT:
-        before, after, notes = at_common_instants(before, after)
+        before, after, notes = restrict_to_common_instants(before, after)
         notes.append(SAMPLED)
-    before, said = solved(before, _even(after), request.time_limit_each)
-    after, more = solved(after, _even(before), request.time_limit_each)
-    for line in [] if request.quiet else dict.fromkeys([*said, *more]):
-        say(line)
+    before, warnings = solve_side(before, _list_even_instants(after), request.time_limit_each)
+    after, other_warnings = solve_side(after, _list_even_instants(before), request.time_limit_each)
+    for line in [] if request.quiet else dict.fromkeys([*warnings, *other_warnings]):
+        print_stderr(line)
     require_other_file(request.output, [request.before, request.after])  # the tables of specs, too
-    found = [(case, change) for case, one, other in _pairs(before, after) for change in _changes(one, other)]
+    changed = [(case, change) for case, one, other in _pair_runs(before, after) for change in _compare_runs(one, other)]
     compared = sum(len(run.numbers) + len(run.certain_sums) + len(run.open) for run in after.runs.values())
-    notes += [OTHER_SPEC] if not found and before.digest and after.digest and before.digest != after.digest else []
-    notes += [HOLDS_LESS.format(shown(side.path)) for side in (before, after) if not side.holds_courses]
-    emit(FORMS[form](Difference(request.before, request.after, ordered(found), compared, notes)), request.output)
-    return CHANGED if found and request.exit_code else 0
+    notes += [OTHER_SPEC] if not changed and before.digest and after.digest and before.digest != after.digest else []
+    notes += [HOLDS_LESS.format(escape(side.path)) for side in (before, after) if not side.holds_courses]
+    emit(FORMS[form](Difference(request.before, request.after, sort_changes(changed), compared, notes)), request.output)
+    return CHANGED if changed and request.exit_code else 0
 
 
-def _even(side: Side) -> Mapping[str, Sequence[float]]:
-    """The even instants at which a side is known, by load case."""
+def _list_even_instants(side: Side) -> Mapping[str, Sequence[float]]:
+    """Return the instants at equal steps of a side, by load case."""
     return {case: run.even_at for case, run in side.runs.items()}
 
 
-def _pairs(before: Side, after: Side) -> list[tuple[str, KeptRun | None, KeptRun | None]]:
-    names = dict.fromkeys([*before.runs, *after.runs])
-    return [(name, before.runs.get(name), after.runs.get(name)) for name in names]
+def _pair_runs(old: Side, new: Side) -> list[tuple[str, RunSnapshot | None, RunSnapshot | None]]:
+    names = dict.fromkeys([*old.runs, *new.runs])
+    return [(name, old.runs.get(name), new.runs.get(name)) for name in names]
 
 
-def _changes(before: KeptRun | None, after: KeptRun | None) -> list[Change]:
-    if before is None or after is None:
-        return [Change("the case", "", "", None, None, why=EXTRA if before is None else MISSING)]
-    return changes(before, after)
+def _compare_runs(old: RunSnapshot | None, new: RunSnapshot | None) -> list[Change]:
+    if old is None or new is None:
+        return [Change("the case", "", "", None, None, reason=EXTRA if old is None else MISSING)]
+    return find_changes(old, new)

@@ -1,4 +1,4 @@
-"""What `heun diff` is asked for: its options and arguments."""
+"""Options and arguments of `heun diff`."""
 
 from typing import Annotated
 

@@ -1,26 +1,32 @@
-"""What changed, as text: a table, JSON, markdown, lines for a GitHub workflow; the largest change of all first."""
+"""Render the changes as text: a table, JSON, markdown, lines for a GitHub workflow; the largest change first."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.change_words import difference_text, number_text
-from heuncli.output.tables.export import dump
+from heuncli.output.snapshots.change_words import format_difference, format_value
+from heuncli.output.tables.export import dump_json
 from heuncli.output.tables.markdown_text import escape_line
-from heuncli.output.tables.plurals import count
-from heuncli.output.tables.text_table import TextColumn, TextTable, markdown, plain
-from heuncli.output.tables.workflow_lines import Annotation, lines
+from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.text_table import TextColumn, TextTable, format_markdown, format_plain
+from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
 HEADS = ("of", "at", "before", "after", "change", "allowed")
-MOST_ROWS = 200  # of a table; JSON holds all
+MAX_ROWS = 200  # of a table; JSON holds all
 
 
 class Difference(NamedTuple):
-    """Two paths, the changes with their load cases, how many numbers were compared, and what is to be said of it."""
+    """The difference of two files.
+
+    old_path, new_path: their paths
+    changes: each with its load case
+    compared_count: how many numbers were compared
+    notes: remarks for the user
+    """
 
     before: str
     after: str
@@ -29,80 +35,88 @@ class Difference(NamedTuple):
     notes: Sequence[str] = ()
 
 
-def ordered(changes: Sequence[tuple[str, Change]]) -> list[tuple[str, Change]]:
-    """Verdicts and counts first, then by how much a number changed of the larger of the two."""
+def sort_changes(changes: Sequence[tuple[str, Change]]) -> list[tuple[str, Change]]:
+    """Sort changes: verdicts and counts first, then numbers by their change relative to the larger of the two."""
     return sorted(changes, key=lambda pair: (-pair[1].relative, pair[0], pair[1].path, pair[1].what))
 
 
-def table(told: Difference) -> str:
-    """The changes as a table, and a line that sums it up."""
-    made = _table(told)
-    return (plain(made) + "\n" if made.rows else "") + "".join(f"{line}\n" for line in _ends(told))
+def render_table(difference: Difference) -> str:
+    """Render the changes as a table, and a summary line."""
+    changes = _make_table(difference)
+    return (format_plain(changes) + "\n" if changes.rows else "") + "".join(
+        f"{line}\n" for line in _format_notes(difference)
+    )
 
 
-def in_markdown(told: Difference) -> str:
-    """The same for a comment or a summary."""
-    made = _table(told)
-    paths = escape_line(f"{told.before} → {told.after}")
-    head = f"### heun diff: {summary(told)}\n\n{paths}\n"
-    notes = "".join(f"\n{escape_line(note)}\n" for note in told.notes)
-    return head + ("\n" + markdown(made) if made.rows else "") + notes
+def render_markdown(difference: Difference) -> str:
+    """Render the same as markdown, for a comment or a summary."""
+    changes = _make_table(difference)
+    paths = escape_line(f"{difference.old_path} → {difference.new_path}")
+    head = f"### heun diff: {format_summary(difference)}\n\n{paths}\n"
+    notes = "".join(f"\n{escape_line(note)}\n" for note in difference.notes)
+    return head + ("\n" + format_markdown(changes) if changes.rows else "") + notes
 
 
-def _table(told: Difference) -> TextTable:
-    rows = [_row(case, change) for case, change in told.changes[:MOST_ROWS]]
+def _make_table(difference: Difference) -> TextTable:
+    rows = [_make_row(case, change) for case, change in difference.changes[:MAX_ROWS]]
     return TextTable("CHANGED", tuple(TextColumn(head, "left") for head in HEADS), tuple(rows))
 
 
-def _row(case: str, change: Change) -> tuple[str, ...]:
-    of = f"{case}: {change.path}" if case else change.path
-    by = change.why or difference_text(change)
-    by += f"; {change.alike} more of its values" if change.alike else ""
-    allowed = f"{change.allowed:.2g}" if change.allowed and not change.why else ""
-    values = (number_text(value, change.unit) for value in (change.old, change.new))
-    return tuple(map(shown, (of, change.what, *values, by, allowed)))
+def _make_row(case: str, change: Change) -> tuple[str, ...]:
+    name = f"{case}: {change.path}" if case else change.path
+    change_text = change.reason or format_difference(change)
+    change_text += f"; {change.n_similar} more of its values" if change.n_similar else ""
+    allowed = f"{change.tolerance:.2g}" if change.tolerance and not change.reason else ""
+    values = (format_value(value, change.unit) for value in (change.old, change.new))
+    return tuple(map(escape, (name, change.what, *values, change_text, allowed)))
 
 
-def _ends(told: Difference) -> list[str]:
-    more = len(told.changes) - MOST_ROWS
-    return [*([f"{more} more: --format json"] if more > 0 else []), summary(told), *told.notes]
+def _format_notes(difference: Difference) -> list[str]:
+    omitted = len(difference.changes) - MAX_ROWS
+    return [*([f"{omitted} more: --format json"] if omitted > 0 else []), format_summary(difference), *difference.notes]
 
 
-def summary(told: Difference) -> str:
-    """How much changed of how much."""
-    if not told.changes:
-        return f"nothing changed by more than both state: {count(told.compared, 'quantity')} compared"
-    return f"{count(len(told.changes), 'change')}, {count(told.compared, 'quantity')} compared"
+def format_summary(difference: Difference) -> str:
+    """Format how many quantities changed, and how many were compared."""
+    if not difference.changes:
+        return (
+            f"nothing changed by more than both state: {format_count(difference.compared_count, 'quantity')} compared"
+        )
+    return f"{format_count(len(difference.changes), 'change')}, {format_count(difference.compared_count, 'quantity')} compared"
 
 
-def in_json(told: Difference) -> str:
-    """Every change."""
-    changed = [_block(case, change) for case, change in told.changes]
-    block: Mapping[str, Any] = {"before": told.before, "after": told.after, "compared": told.compared}
-    return dump({**block, "notes": list(told.notes), "changes": changed})
+def render_json(difference: Difference) -> str:
+    """Render every change as JSON."""
+    changed = [_make_block(case, change) for case, change in difference.changes]
+    block: Mapping[str, Any] = {
+        "before": difference.old_path,
+        "after": difference.new_path,
+        "compared": difference.compared_count,
+    }
+    return dump_json({**block, "notes": list(difference.notes), "changes": changed})
 
 
-def _block(case: str, change: Change) -> dict[str, Any]:
+def _make_block(case: str, change: Change) -> dict[str, Any]:
     relative = change.relative if change.difference is not None else None
     return {
         **({"case": case} if case else {}), "of": change.path, "at": change.what, "unit": change.unit,
         "before": change.old, "after": change.new, "difference": change.difference, "relative": relative,
-        "allowed": change.allowed, "why": change.why, "alike": change.alike,
+        "allowed": change.tolerance, "why": change.reason, "alike": change.n_similar,
     }  # fmt: skip
 
 
-def for_github(told: Difference) -> str:
-    """A line for each change, and the sum of it all."""
-    made = (
-        Annotation("warning", f"heun: {' '.join(row[:2]).strip()}", _sentence(row), told.after)
-        for row in (_row(case, change) for case, change in told.changes)
+def render_github(difference: Difference) -> str:
+    """Render one workflow line per change, and the summary."""
+    annotations = (
+        Annotation("warning", f"heun: {' '.join(row[:2]).strip()}", _format_change(row), difference.new_path)
+        for row in (_make_row(case, change) for case, change in difference.changes)
     )
-    return "".join(lines(made)) + summary(told) + "\n"
+    return "".join(iter_lines(annotations)) + format_summary(difference) + "\n"
 
 
-def _sentence(row: Sequence[str]) -> str:
+def _format_change(row: Sequence[str]) -> str:
     values = f"{row[2]} → {row[3]}" if row[2] or row[3] else ""
     return "\n".join(part for part in (values, row[4]) if part)
 
 
-FORMS = {"table": table, "json": in_json, "markdown": in_markdown, "github": for_github}
+FORMS = {"table": render_table, "json": render_json, "markdown": render_markdown, "github": render_github}

@@ -1,4 +1,4 @@
-"""What `heun explain` is asked for: its options and arguments."""
+"""Options and arguments of `heun explain`."""
 
 from typing import Annotated
 

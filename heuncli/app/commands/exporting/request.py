@@ -1,4 +1,4 @@
-"""What `heun export` is asked for: its options and arguments."""
+"""Options and arguments of `heun export`."""
 
 from typing import Annotated
 

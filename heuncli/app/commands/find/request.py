@@ -1,4 +1,4 @@
-"""What `heun find` is asked for: its options and arguments."""
+"""Options and arguments of `heun find`."""
 
 from typing import Annotated
 

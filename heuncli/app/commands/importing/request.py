@@ -1,4 +1,4 @@
-"""What `heun import` is asked for: its options and arguments."""
+"""Options and arguments of `heun import`."""
 
 from typing import Annotated
 

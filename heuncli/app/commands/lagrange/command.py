@@ -1,19 +1,25 @@
-"""`heun lagrange`: Lagrange's equations in numbers."""
+"""`heun lagrange`: compute Lagrange's equations in numbers."""
 
 from __future__ import annotations
 
-from heuncli.analyses.lagrange.over import over
-from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.cli import alarm
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import overrides, warn
-from heuncli.app.cli.target import format_of
-from heuncli.app.cli.units import say_what_stays, units
+from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.units import note_si_format, parse_units
 from heuncli.app.commands.lagrange import course_page, forms, page
-from heuncli.app.commands.lagrange.options import places, range_of, require_instant, require_together, words
+from heuncli.app.commands.lagrange.options import (
+    parse_names,
+    parse_places,
+    parse_range,
+    require_instant,
+    require_together,
+)
 from heuncli.app.commands.lagrange.request import LagrangeRequest
-from heuncli.output.tables.export import dump
+from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
@@ -24,38 +30,40 @@ FORMATS = ("table", "json", "csv", "m")
 def main(request: LagrangeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, FORMATS)
+    form = choose_format(request.format, request.output, FORMATS)
     require_together(request, form)
-    shown = units(request.units)
-    asked = LagrangeQuestion(
+    units_shown = parse_units(request.units)
+    question = LagrangeOptions(
         at=request.at,
-        coordinates=words(request.coordinates),
-        seen=places(request.seen),
+        coordinates=parse_names(request.coordinates),
+        seen=parse_places(request.seen),
         christoffel=request.christoffel,
         state_space=request.state_space,
-        inputs=words(request.inputs),
-        outputs=words(request.outputs),
-        time_limit=alarm.remaining(),
+        inputs=parse_names(request.inputs),
+        outputs=parse_names(request.outputs),
+        time_limit=alarm.remaining_time(),
     )
-    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
+    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     require_instant(request.at, spec)
-    emit(written(spec, request, asked, form, shown), request.output)
-    say_what_stays(request.units, form, request.quiet)
-    warn(spec, None, request.quiet)
+    emit(render_result(spec, request, question, form, units_shown), request.output)
+    note_si_format(request.units, form, request.quiet)
+    print_warnings(spec, None, request.quiet)
     return 0
 
 
-def written(spec: Spec, request: LagrangeRequest, asked: LagrangeQuestion, form: str, shown: Units) -> str:
-    """What is asked for, in one of the formats; tables in the units shown."""
+def render_result(
+    spec: Spec, request: LagrangeRequest, question: LagrangeOptions, form: str, units_shown: Units
+) -> str:
+    """Compute the requested result, and render it in a format; tables in the given units."""
     if request.over is not None:
-        course = over(spec, range_of(request.over, spec))
+        course = find_inertia_curve(spec, parse_range(request.over, spec))
         if form == "json":
-            return dump(course_page.block(course))
-        return course_page.to_csv(course) if form == "csv" else course_page.write(course, shown)
-    found = lagrange(spec, asked)
-    if form == "m" and found.state_space is not None:
-        return forms.to_m(found.state_space)
+            return dump_json(course_page.to_block(course))
+        return course_page.to_csv(course) if form == "csv" else course_page.render_page(course, units_shown)
+    results = solve_lagrange(spec, question)
+    if form == "m" and results.state_space is not None:
+        return forms.to_m(results.state_space)
     if form == "json":
-        return dump(forms.block(found, words(request.only)))
-    return forms.to_csv(found) if form == "csv" else page.write(found, words(request.only), shown)
+        return dump_json(forms.to_block(results, parse_names(request.only)))
+    return forms.to_csv(results) if form == "csv" else page.render_page(results, parse_names(request.only), units_shown)

@@ -1,4 +1,4 @@
-"""The inertia and the forces over a range, as a table, as JSON, and in long form."""
+"""Render inertia and forces over a range of the coordinate, as a table, as JSON, and in long form."""
 
 from __future__ import annotations
 
@@ -6,11 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.kinds import LENGTH, units_of
-from heuncli.analyses.lagrange.results import InertiaCourse
-from heuncli.app.commands.lagrange.page import number
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
+from heuncli.analyses.lagrange.kinds import LENGTH, get_units
+from heuncli.analyses.lagrange.results import InertiaCurve
+from heuncli.app.commands.lagrange.page import format_number
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import (
+    DEFAULT_WIDTH,
+    TextColumn,
+    TextTable,
+    format_head,
+    format_labelled_lines,
+    format_plain,
+)
 from heuncli.study.quantities.labels import distinguish
 from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
@@ -19,72 +26,86 @@ TOTAL = "k"
 COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
 
 
-def write(found: InertiaCourse, shown_in: Units) -> str:
-    """The page of a course as text, in units."""
-    lines = [("heun", f"{VERSION}  {found.title}")]
-    own = units_of(found.name)
-    unit, size = shown_in.of(own.value)
-    low, high = int(np.argmin(found.epsilon)), int(np.argmax(found.epsilon))
-    least, most = (f"{found.epsilon[i]:.6g} {own.inertia} at {found.values[i] * size:.6g} {unit}" for i in (low, high))
-    mean = "has no mean that settles" if np.isnan(found.mean) else f"mean {found.mean:.6g} {own.inertia} over the range"
-    lines.append(("inertia", f"ε {mean}; of the values least {least}, largest {most}"))
-    return labelled(lines) + "\n" + "".join(plain(part, WIDTH) for part in fit(table(found, shown_in), WIDTH))
+def render_page(course: InertiaCurve, units: Units) -> str:
+    """Render the page of a course as text, in the given units."""
+    lines = [("heun", f"{VERSION}  {course.title}")]
+    unit_set = get_units(course.name)
+    unit, size = units.find(unit_set.value)
+    low, high = int(np.argmin(course.epsilon)), int(np.argmax(course.epsilon))
+    least, largest = (
+        f"{course.epsilon[i]:.6g} {unit_set.inertia} at {course.values[i] * size:.6g} {unit}" for i in (low, high)
+    )
+    mean = (
+        "has no mean that settles"
+        if np.isnan(course.mean)
+        else f"mean {course.mean:.6g} {unit_set.inertia} over the range"
+    )
+    lines.append(("inertia", f"ε {mean}; of the values least {least}, largest {largest}"))
+    return (
+        format_labelled_lines(lines)
+        + "\n"
+        + "".join(
+            format_plain(part, DEFAULT_WIDTH) for part in split_to_width(make_table(course, units), DEFAULT_WIDTH)
+        )
+    )
 
 
-def table(found: InertiaCourse, shown_in: Units) -> TextTable:
-    """A row a value."""
-    own = units_of(found.name)
-    per = np.abs(found.values).max() if own is LENGTH else 1.0
-    most = float(found.epsilon.max())
-    named = [
-        (found.name, own.value, found.values, 0.0),
-        ("ε", own.inertia, found.epsilon, 0.0),
-        ("½ dε/dq", own.slope, found.half, most / per),
+def make_table(course: InertiaCurve, units: Units) -> TextTable:
+    """Make the table with one row per value of the coordinate."""
+    unit_set = get_units(course.name)
+    length_scale = np.abs(course.values).max() if unit_set is LENGTH else 1.0
+    largest_inertia = float(course.epsilon.max())
+    columns_of_values = [
+        (course.name, unit_set.value, course.values, 0.0),
+        ("ε", unit_set.inertia, course.epsilon, 0.0),
+        ("½ dε/dq", unit_set.slope, course.half, largest_inertia / length_scale),
     ]
-    forces = [(TOTAL, found.total), *((distinguish(name, (TOTAL,)), k) for name, k in found.forces.items())]
-    named += [(name, own.force, k, found.reach) for name, k in forces]
+    forces = [(TOTAL, course.total_force), *((distinguish(name, (TOTAL,)), k) for name, k in course.forces.items())]
+    columns_of_values += [(name, unit_set.force, k, course.force_scale) for name, k in forces]
     heads, cells = [], []
-    for name, unit, values, scale in named:
-        shown_unit, size = shown_in.of(unit)
-        heads.append(head(name, shown_unit))
+    for name, unit, values, scale in columns_of_values:
+        shown_unit, size = units.find(unit)
+        heads.append(format_head(name, shown_unit))
         largest = max(scale, float(np.abs(values).max(initial=0.0)))
-        cells.append([number(x * size, largest * size) for x in values])
+        cells.append([format_number(x * size, largest * size) for x in values])
     rows = tuple(zip(*cells, strict=True))
-    unit, size = shown_in.of(own.rate)
-    return TextTable(COURSE.format(rate=found.rate * size, unit=unit), tuple(map(TextColumn, heads)), rows)
+    unit, size = units.find(unit_set.rate)
+    return TextTable(COURSE.format(rate=course.rate * size, unit=unit), tuple(map(TextColumn, heads)), rows)
 
 
-def block(found: InertiaCourse) -> dict[str, Any]:
-    """As JSON has it: what lists over coordinates are of an instant, with an axis of the values before."""
+def to_block(course: InertiaCurve) -> dict[str, Any]:
+    """Return the course as the JSON has it: lists over the coordinates have an additional first axis over the
+    values.
+    """
     return {
-        "title": found.title,
-        "over": {"coordinate": found.name, "values": found.values.tolist()},
-        "coordinates": [found.name],
-        "units": [units_of(found.name).value],
-        "driven": [found.driven],
-        "rates": [[found.rate]] * len(found.values),
-        "epsilon": found.epsilon[:, None, None].tolist(),
-        "eta": (1.0 / found.epsilon)[:, None, None].tolist(),
-        "gamma": found.half[:, None, None, None].tolist(),
-        "momenta": (found.epsilon * found.rate)[:, None].tolist(),
-        "coriolis": (found.half * found.rate**2)[:, None].tolist(),
-        "half_slope": found.half.tolist(),
+        "title": course.title,
+        "over": {"coordinate": course.name, "values": course.values.tolist()},
+        "coordinates": [course.name],
+        "units": [get_units(course.name).value],
+        "driven": [course.is_driven],
+        "rates": [[course.rate]] * len(course.values),
+        "epsilon": course.epsilon[:, None, None].tolist(),
+        "eta": (1.0 / course.epsilon)[:, None, None].tolist(),
+        "gamma": course.half[:, None, None, None].tolist(),
+        "momenta": (course.epsilon * course.rate)[:, None].tolist(),
+        "coriolis": (course.half * course.rate**2)[:, None].tolist(),
+        "half_slope": course.half.tolist(),
         "forces": {
-            "total": found.total[:, None].tolist(),
-            "shares": {name: k[:, None].tolist() for name, k in found.forces.items()},
+            "total": course.total_force[:, None].tolist(),
+            "shares": {name: k[:, None].tolist() for name, k in course.forces.items()},
         },
-        "mean": None if np.isnan(found.mean) else found.mean,
+        "mean": None if np.isnan(course.mean) else course.mean,
     }
 
 
-def to_csv(found: InertiaCourse) -> str:
-    """A line a value and quantity."""
-    own = units_of(found.name)
+def to_csv(course: InertiaCurve) -> str:
+    """Return the course in long form, one line per value and quantity."""
+    unit_set = get_units(course.name)
     lines = ["coordinate,at,quantity,component,unit,value"]
-    for i, value in enumerate(found.values.tolist()):
-        head = f"{found.name},{value!r}"
-        lines.append(f"{head},epsilon,,{own.inertia},{float(found.epsilon[i])!r}")
-        lines.append(f"{head},half_slope,,{own.slope},{float(found.half[i])!r}")
-        lines.append(f"{head},force,,{own.force},{float(found.total[i])!r}")
-        lines += [f"{head},force,{name},{own.force},{float(k[i])!r}" for name, k in found.forces.items()]
+    for i, value in enumerate(course.values.tolist()):
+        head = f"{course.name},{value!r}"
+        lines.append(f"{head},epsilon,,{unit_set.inertia},{float(course.epsilon[i])!r}")
+        lines.append(f"{head},half_slope,,{unit_set.slope},{float(course.half[i])!r}")
+        lines.append(f"{head},force,,{unit_set.force},{float(course.total_force[i])!r}")
+        lines += [f"{head},force,{name},{unit_set.force},{float(k[i])!r}" for name, k in course.forces.items()]
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""The Lagrange side of an instant as JSON, in long form, and as a script of matrices."""
+"""Convert Lagrange's equations at an instant to JSON, to long form, and to a script of matrices."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.kinds import MIXED, units_of
+from heuncli.analyses.lagrange.kinds import MIXED_INERTIA_UNIT, get_units
 from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
-from heuncli.analyses.lagrange.section_forces import lists
+from heuncli.analyses.lagrange.section_forces import to_lists
 from heuncli.base.joint_kinds import is_length
 from heuncli.version import VERSION
 
@@ -30,46 +30,58 @@ KEYS = {  # of JSON, by what --only names
 }  # fmt: skip
 
 
-def beside_nan(x: float) -> float | None:
-    """A number, or None."""
+def nan_to_none(x: float) -> float | None:
+    """Return the number, or None for nan."""
     return None if np.isnan(x) else float(x)
 
 
-def block(found: LagrangeResults, only: Sequence[str] = ()) -> dict[str, Any]:
-    """As JSON has it: lists over the coordinates; gamma and alpha by i, l, k. only: parts, by KEYS."""
-    whole = everything(found)
-    kept = {*ALWAYS, *(key for part in only for key in KEYS[part])}
-    return {key: value for key, value in whole.items() if not only or key in kept}
+def to_block(results: LagrangeResults, parts: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the results as the JSON has them: lists over the coordinates; gamma and alpha by i, l, k.
+
+    parts: the parts to keep, by KEYS; empty: all
+    """
+    whole = make_full_block(results)
+    keys = {*ALWAYS, *(key for part in parts for key in KEYS[part])}
+    return {key: value for key, value in whole.items() if not parts or key in keys}
 
 
-def everything(found: LagrangeResults) -> dict[str, Any]:
-    """All parts."""
+def make_full_block(results: LagrangeResults) -> dict[str, Any]:
+    """Return all parts of the JSON."""
     return {
-        "title": found.title,
-        "time": found.t,
-        "coordinates": list(found.names),
-        "units": [units_of(name).value for name in found.names],
-        "driven": list(found.driven),
-        "values": [beside_nan(x) for x in found.values],
-        "rates": found.rates.tolist(),
-        "accelerations": found.accelerations.tolist(),
-        "epsilon": found.epsilon.tolist(),
-        "eta": found.eta.tolist(),
-        "gamma": None if found.gamma is None else found.gamma.tolist(),
-        "alpha": None if found.alpha is None else found.alpha.tolist(),
-        "momenta": found.momenta.tolist(),
+        "title": results.title,
+        "time": results.t,
+        "coordinates": list(results.names),
+        "units": [get_units(name).value for name in results.names],
+        "driven": list(results.is_driven),
+        "values": [nan_to_none(x) for x in results.values],
+        "rates": results.rates.tolist(),
+        "accelerations": results.accelerations.tolist(),
+        "epsilon": results.epsilon.tolist(),
+        "eta": results.eta.tolist(),
+        "gamma": None if results.gamma is None else results.gamma.tolist(),
+        "alpha": None if results.alpha is None else results.alpha.tolist(),
+        "momenta": results.momenta.tolist(),
         "energy": {
-            "total": found.energy,
-            **{name: beside_nan(x) for name, x in zip(PARTS, found.energies, strict=True)},
+            "total": results.energy,
+            **{name: nan_to_none(x) for name, x in zip(PARTS, results.energies, strict=True)},
         },
-        "reciprocal_energy": found.reciprocal_energy,
-        "forces": {"total": found.total.tolist(), "shares": {name: k.tolist() for name, k in found.forces.items()}},
-        "drives": found.drives.tolist(),
-        "coriolis": found.coriolis.tolist(),
-        "coriolis_matrix": found.coriolis_matrix.tolist(),
-        "residual": found.residual,
-        "seen": {one.name: {"unit": one.unit, "locked": one.locked, "free": one.free} for one in found.seen},
-        "sections": {name: {"s": lists(own), **struck(found, name)} for name, own in found.sections.items()},
+        "reciprocal_energy": results.reciprocal_energy,
+        "forces": {
+            "total": results.total_force.tolist(),
+            "shares": {name: k.tolist() for name, k in results.forces.items()},
+        },
+        "drives": results.drives.tolist(),
+        "coriolis": results.coriolis.tolist(),
+        "coriolis_matrix": results.coriolis_matrix.tolist(),
+        "residual": results.residual,
+        "seen": {
+            one.name: {"unit": one.unit, "locked": one.others_locked, "free": one.others_free}
+            for one in results.apparent_inertias
+        },
+        "sections": {
+            name: {"s": to_lists(section), **make_impulse_block(results, name)}
+            for name, section in results.sections.items()
+        },
         "blows": [
             {
                 "time": blow.t,
@@ -77,39 +89,39 @@ def everything(found: LagrangeResults) -> dict[str, Any]:
                 "drives": blow.drives.tolist(),
                 "jumps": blow.jumps.tolist(),
                 "reciprocal_energy": blow.reciprocal_energy,
-                "sections": {name: lists(own) for name, own in blow.sections.items()},
+                "sections": {name: to_lists(section) for name, section in blow.sections.items()},
             }
-            for blow in found.blows
+            for blow in results.impulses
         ],
-        "partials": dict(found.partials),
-        "left_out": list(found.left_out),
-        "state_space": None if found.state_space is None else linear_block(found.state_space),
-        "notes": list(found.notes),
+        "partials": dict(results.partials),
+        "left_out": list(results.left_out),
+        "state_space": None if results.state_space is None else make_state_space_block(results.state_space),
+        "notes": list(results.notes),
     }
 
 
-def to_csv(found: LagrangeResults) -> str:
-    """In long form, a line a number; of matrices the component names the second coordinate."""
+def to_csv(results: LagrangeResults) -> str:
+    """Return the results in long form, one number per line; for matrices the component names the second coordinate."""
     lines = [CSV_COLUMNS]
-    for i, name in enumerate(found.names):
-        units = units_of(name)
+    for i, name in enumerate(results.names):
+        units = get_units(name)
         for quantity, unit, values in (
-            ("value", units.value, found.values), ("rate", units.rate, found.rates),
-            ("acceleration", units.acceleration, found.accelerations), ("momentum", units.momentum, found.momenta),
-            ("coriolis", units.force, found.coriolis), ("force", units.force, found.total),
-            ("drive", units.force, found.drives),
+            ("value", units.value, results.values), ("rate", units.rate, results.rates),
+            ("acceleration", units.acceleration, results.accelerations), ("momentum", units.momentum, results.momenta),
+            ("coriolis", units.force, results.coriolis), ("force", units.force, results.total_force),
+            ("drive", units.force, results.drives),
         ):  # fmt: skip
             lines.append(f"{name},{quantity},,{unit},{float(values[i])!r}")
-        for cause, k in found.forces.items():
+        for cause, k in results.forces.items():
             lines.append(f"{name},force,{cause},{units.force},{float(k[i])!r}")
-        for j, other in enumerate(found.names):
-            unit = units.inertia if is_length(name) == is_length(other) else MIXED
-            lines.append(f"{name},epsilon,{other},{unit},{float(found.epsilon[i, j])!r}")
+        for j, other in enumerate(results.names):
+            unit = units.inertia if is_length(name) == is_length(other) else MIXED_INERTIA_UNIT
+            lines.append(f"{name},epsilon,{other},{unit},{float(results.epsilon[i, j])!r}")
     return "\n".join(lines) + "\n"
 
 
-def linear_block(linear: StateSpace) -> dict[str, Any]:
-    """A state space as JSON has it."""
+def make_state_space_block(linear: StateSpace) -> dict[str, Any]:
+    """Return a state space as the JSON has it."""
     return {
         "A": linear.A.tolist(), "B": linear.B.tolist(), "C": linear.C.tolist(), "D": linear.D.tolist(),
         "states": list(linear.states), "inputs": list(linear.inputs), "outputs": list(linear.outputs),
@@ -118,7 +130,7 @@ def linear_block(linear: StateSpace) -> dict[str, Any]:
 
 
 def to_m(linear: StateSpace) -> str:
-    """A state space as a script for Matlab and Octave."""
+    """Return a state space as a script for Matlab and Octave."""
     lines = ["% " + part for part in (f"heun {VERSION}", "x' = A x + B u, y = C x + D u")]
     for name, matrix in (("A", linear.A), ("B", linear.B), ("C", linear.C), ("D", linear.D)):
         rows = "; ".join(" ".join(repr(float(x)) for x in row) for row in matrix)
@@ -130,6 +142,6 @@ def to_m(linear: StateSpace) -> str:
     return "\n".join(lines) + "\n"
 
 
-def struck(found: LagrangeResults, section: str) -> dict[str, Any]:
-    """r' of a section in the first blow, if something strikes."""
-    return {"r": lists(found.blows[0].sections[section])} if found.blows else {}
+def make_impulse_block(results: LagrangeResults, section: str) -> dict[str, Any]:
+    """Return r' of a section in the first impulse, or nothing if there is no impulse."""
+    return {"r": to_lists(results.impulses[0].sections[section])} if results.impulses else {}

@@ -1,4 +1,4 @@
-"""The Lagrange side of an instant as tables."""
+"""Render Lagrange's equations at an instant as tables."""
 
 from __future__ import annotations
 
@@ -8,11 +8,18 @@ from operator import attrgetter
 
 import numpy as np
 
-from heuncli.analyses.lagrange.kinds import ANGLE, LENGTH, units_of
+from heuncli.analyses.lagrange.kinds import ANGLE, LENGTH, get_units
 from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
-from heuncli.analyses.lagrange.section_forces import cuts
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
+from heuncli.analyses.lagrange.section_forces import list_cuts
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import (
+    DEFAULT_WIDTH,
+    TextColumn,
+    TextTable,
+    format_head,
+    format_labelled_lines,
+    format_plain,
+)
 from heuncli.results.results import Array
 from heuncli.study.quantities.labels import distinguish
 from heuncli.study.quantities.table_units import Units
@@ -27,10 +34,10 @@ BLOWS = "BLOWS  ε [q'] = h + drives; r': what the piece beyond a cut does on th
 SECTIONS = "SECTIONS  s' along each coordinate: what the piece beyond the cut does on the rest"
 STATE_SPACE = "STATE SPACE  x' = A x + B u: A by the states, B by the inputs"
 OUTPUTS = "OUTPUTS  y = C x + D u"
-OWN_ROWS = ("k", "C")  # behind those of the causes
+OWN_ROWS = ("k", "C")  # after the rows of the causes
 SI = Units()
-SHOWN = 6  # coordinates, of which matrices are written out
-ROUNDING = 1e-13  # of what a number is summed from, or of the largest of a matrix: less is told as 0
+MAX_COORDINATES = 6  # with more coordinates matrices are not shown
+ROUNDING = 1e-13  # relative to the summed terms, or to the largest entry: less is shown as 0
 MIXED = ". Angles in {}, {}; lengths in {}, {}"
 COLUMNS: tuple[tuple[str, attrgetter[str]], ...] = (
     ("q", attrgetter("value")), ("q'", attrgetter("rate")), ("p = ∂E/∂q'", attrgetter("momentum")),
@@ -39,182 +46,226 @@ COLUMNS: tuple[tuple[str, attrgetter[str]], ...] = (
 )  # fmt: skip
 
 
-def write(found: LagrangeResults, only: Sequence[str] = (), units: Units = SI) -> str:
-    """The page as text; only: parts, as forms.KEYS names them."""
-    above = labelled([("heun", f"{VERSION}  {found.title}"), *energy_lines(found, units)])
-    asked = [table for part, table in tables(found, units) if not only or part in only]
-    return "\n".join([above, *("".join(plain(part, WIDTH) for part in fit(table, WIDTH)) for table in asked)])
+def render_page(results: LagrangeResults, parts: Sequence[str] = (), units: Units = SI) -> str:
+    """Render the page as text.
+
+    parts: the parts to show, as forms.KEYS names them; empty: all
+    """
+    heading = format_labelled_lines([("heun", f"{VERSION}  {results.title}"), *format_energy(results, units)])
+    selected = [table for part, table in make_tables(results, units) if not parts or part in parts]
+    return "\n".join(
+        [
+            heading,
+            *(
+                "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH))
+                for table in selected
+            ),
+        ]
+    )
 
 
-def energy_lines(found: LagrangeResults, units: Units) -> Iterator[tuple[str, str]]:
-    """Label and text of the lines above the tables."""
-    unit, size = units.of("J")
-    free, mixed, driven = (size * part for part in found.energies)
+def format_energy(results: LagrangeResults, units: Units) -> Iterator[tuple[str, str]]:
+    """Yield label and text of the lines above the tables."""
+    unit, size = units.find("J")
+    free, mixed, driven = (size * part for part in results.energies)
     parts = (
         f": free {free:.6g}, mixed {mixed:.6g}, driven {driven:.6g} {unit}"
-        if any(found.driven) and free and not np.isnan(free)
+        if any(results.is_driven) and free and not np.isnan(free)
         else ""
     )
-    yield "energy", f"E = {size * found.energy:.6g} {unit}, F = {size * found.reciprocal_energy:.6g} {unit}{parts}"
-    yield "", f"ε q'' + C = k + drive is met to {found.residual:.1g} of what its terms are summed from"
-    for note in found.notes:
+    yield "energy", f"E = {size * results.energy:.6g} {unit}, F = {size * results.reciprocal_energy:.6g} {unit}{parts}"
+    yield "", f"ε q'' + C = k + drive is met to {results.residual:.1g} of what its terms are summed from"
+    for note in results.notes:
         yield "", note
 
 
-def tables(found: LagrangeResults, units: Units) -> Iterator[tuple[str, TextTable]]:
-    """The parts that are told, a table each; matrices of few coordinates."""
-    yield "equations", equations(found, units)
-    yield "mass", seen(found)
-    if len(found.names) <= SHOWN:
-        yield "reciprocal", reciprocal(found)
-        yield "forces", forces(found, units)
-        if found.gamma is not None:
-            yield "christoffel", christoffel(found)
-    if found.sections:
-        yield "sections", sections(found, units)
-    if found.blows:
-        yield "blows", blows(found, units)
-    if found.state_space is not None:
-        yield from (("state_space", table) for table in linear_tables(found.state_space))
+def make_tables(results: LagrangeResults, units: Units) -> Iterator[tuple[str, TextTable]]:
+    """Yield the parts to show, one table each; matrices only for few coordinates."""
+    yield "equations", make_equation_table(results, units)
+    yield "mass", make_mass_table(results)
+    if len(results.names) <= MAX_COORDINATES:
+        yield "reciprocal", make_reciprocal_table(results)
+        yield "forces", make_force_table(results, units)
+        if results.gamma is not None:
+            yield "christoffel", make_christoffel_table(results)
+    if results.sections:
+        yield "sections", make_section_table(results, units)
+    if results.impulses:
+        yield "blows", make_impulse_table(results, units)
+    if results.state_space is not None:
+        yield from (("state_space", table) for table in make_linear_tables(results.state_space))
 
 
-def linear_tables(linear: StateSpace) -> Iterator[TextTable]:
-    """A and B, and C and D, side by side."""
+def make_linear_tables(linear: StateSpace) -> Iterator[TextTable]:
+    """Yield the table of A and B, and that of C and D."""
     for heading, left, right, rows in (
         (STATE_SPACE, linear.A, linear.B, [f"d/dt {name}" for name in linear.states]),
         (OUTPUTS, linear.C, linear.D, linear.outputs),
     ):
         whole = np.hstack([left, right])
         sizes = np.abs(whole).max(axis=1, initial=0.0)
-        told = tuple(
-            (name, *(number(x, size) for x in row)) for name, row, size in zip(rows, whole, sizes, strict=True)
+        cells_of_rows = tuple(
+            (name, *(format_number(x, size) for x in row)) for name, row, size in zip(rows, whole, sizes, strict=True)
         )
-        yield TextTable(heading, (TextColumn("", "left"), *map(TextColumn, (*linear.states, *linear.inputs))), told)
+        yield TextTable(
+            heading, (TextColumn("", "left"), *map(TextColumn, (*linear.states, *linear.inputs))), cells_of_rows
+        )
 
 
-def number(value: float | None, scale: float = 0.0) -> str:
-    """Six digits; 0 of what is rounding beside a scale."""
+def format_number(value: float | None, scale: float = 0.0) -> str:
+    """Format a number to six digits; rounding errors relative to the scale become 0."""
     if value is None or np.isnan(value):
         return ""
     return "0" if abs(value) <= ROUNDING * scale else f"{value:.6g}"
 
 
-def label(found: LagrangeResults, i: int) -> str:
-    """A coordinate, with whether a drive moves it."""
-    return f"{found.names[i]}{'  driven' if found.driven[i] else ''}"
+def format_label(results: LagrangeResults, i: int) -> str:
+    """Return the name of a coordinate, and whether a drive moves it."""
+    return f"{results.names[i]}{'  driven' if results.is_driven[i] else ''}"
 
 
-def equations(found: LagrangeResults, units: Units) -> TextTable:
-    """A row a coordinate, in units by the columns' heads, or by the heading where angles and lengths meet."""
-    columns = (found.values, found.rates, found.momenta, found.coriolis, found.total, found.drives, found.accelerations)
-    none = np.zeros(len(found.names))
-    scales = (none, none, none, found.scale, found.scale, found.scale, np.abs(found.eta) @ found.scale)
+def make_equation_table(results: LagrangeResults, units: Units) -> TextTable:
+    """Make the table with one row per coordinate; units stand in the heads, or in the heading if angles and lengths are
+    mixed.
+    """
+    columns = (
+        results.values,
+        results.rates,
+        results.momenta,
+        results.coriolis,
+        results.total_force,
+        results.drives,
+        results.accelerations,
+    )
+    none = np.zeros(len(results.names))
+    scales = (none, none, none, results.scale, results.scale, results.scale, np.abs(results.eta) @ results.scale)
     rows = []
-    for i, name in enumerate(found.names):
-        own = units_of(name)
-        sizes = [units.of(unit(own))[1] for _, unit in COLUMNS]
-        cells = (number(x[i] * by, scale[i] * by) for x, scale, by in zip(columns, scales, sizes, strict=True))
-        rows.append((label(found, i), *cells))
-    heading, kinds = HEADING.format(at=found.at), {units_of(name) for name in found.names}
+    for i, name in enumerate(results.names):
+        unit_set = get_units(name)
+        sizes = [units.find(unit(unit_set))[1] for _, unit in COLUMNS]
+        cells = (
+            format_number(x[i] * factor, scale[i] * factor)
+            for x, scale, factor in zip(columns, scales, sizes, strict=True)
+        )
+        rows.append((format_label(results, i), *cells))
+    heading, kinds = HEADING.format(at=results.instant_text), {get_units(name) for name in results.names}
     if len(kinds) == 1:
-        heads = [head(name, units.of(unit(own))[0]) for own in kinds for name, unit in COLUMNS]
+        heads = [format_head(name, units.find(unit(unit_set))[0]) for unit_set in kinds for name, unit in COLUMNS]
     else:
         heads = [name for name, _ in COLUMNS]
-        heading += MIXED.format(*(units.of(unit)[0] for own in (ANGLE, LENGTH) for unit in (own.value, own.force)))
+        heading += MIXED.format(
+            *(units.find(unit)[0] for unit_set in (ANGLE, LENGTH) for unit in (unit_set.value, unit_set.force))
+        )
     return TextTable(heading, (TextColumn("coordinate", "left"), *map(TextColumn, heads)), tuple(rows))
 
 
-def seen(found: LagrangeResults) -> TextTable:
-    """The mass matrix where it is small, and the inertias that are seen."""
-    shows = len(found.names) <= SHOWN and {one.name for one in found.seen} == set(found.names)
-    sizes = beside_diagonal(found.epsilon)
+def make_mass_table(results: LagrangeResults) -> TextTable:
+    """Make the table of the mass matrix if it is small, and of the effective inertias."""
+    shows_matrix = len(results.names) <= MAX_COORDINATES and {one.name for one in results.apparent_inertias} == set(
+        results.names
+    )
+    sizes = entry_scales(results.epsilon)
     rows = []
-    for one in found.seen:
-        own = []
-        if shows:
-            i = found.names.index(one.name)
-            own = [number(x, size) for x, size in zip(found.epsilon[i], sizes[i], strict=True)]
-        rows.append((one.name, *own, one.unit, number(one.locked), number(one.free)))
-    columns = [TextColumn(f"ε {name}") for name in found.names] if shows else []
+    for one in results.apparent_inertias:
+        matrix_cells = []
+        if shows_matrix:
+            i = results.names.index(one.name)
+            matrix_cells = [format_number(x, size) for x, size in zip(results.epsilon[i], sizes[i], strict=True)]
+        rows.append(
+            (one.name, *matrix_cells, one.unit, format_number(one.others_locked), format_number(one.others_free))
+        )
+    columns = [TextColumn(f"ε {name}") for name in results.names] if shows_matrix else []
     heads = (TextColumn("seen at", "left"), *columns, TextColumn("unit", "left"), TextColumn("others held"))
     return TextTable(MASS, (*heads, TextColumn("others free")), tuple(rows))
 
 
-def beside_diagonal(matrix: Array) -> Array:
-    """How large the entries of a positive definite matrix can be: the root of the product of the diagonal's two."""
+def entry_scales(matrix: Array) -> Array:
+    """Return an upper bound of the entries of a positive definite matrix: sqrt(m_ii m_jj)."""
     root = np.sqrt(np.diag(matrix))
     return np.asarray(np.outer(root, root))
 
 
-def reciprocal(found: LagrangeResults) -> TextTable:
-    """The inverse of the mass matrix."""
-    named = zip(found.names, found.eta, beside_diagonal(found.eta), strict=True)
-    rows = tuple((name, *map(number, row, sizes)) for name, row, sizes in named)
-    return TextTable(RECIPROCAL, (TextColumn("", "left"), *map(TextColumn, found.names)), rows)
+def make_reciprocal_table(results: LagrangeResults) -> TextTable:
+    """Make the table of the inverse of the mass matrix."""
+    rows_of_matrix = zip(results.names, results.eta, entry_scales(results.eta), strict=True)
+    rows = tuple((name, *map(format_number, row, sizes)) for name, row, sizes in rows_of_matrix)
+    return TextTable(RECIPROCAL, (TextColumn("", "left"), *map(TextColumn, results.names)), rows)
 
 
-def forces(found: LagrangeResults, units: Units) -> TextTable:
-    """k by cause."""
-    shown = [units.of(units_of(name).force) for name in found.names]
+def make_force_table(results: LagrangeResults, units: Units) -> TextTable:
+    """Make the table of the generalized forces k by cause."""
+    display_units = [units.find(get_units(name).force) for name in results.names]
 
     def row(cause: str, k: Array) -> tuple[str, ...]:
-        told = zip(k, found.scale, shown, strict=True)
-        return cause, *(number(x * by, size * by) for x, size, (_, by) in told)
+        told = zip(k, results.scale, display_units, strict=True)
+        return cause, *(format_number(x * by, size * by) for x, size, (_, by) in told)
 
-    rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in found.forces.items()]
-    rows += [row(name, k) for name, k in zip(OWN_ROWS, (found.total, found.coriolis), strict=True)]
-    heads = (TextColumn(head(name, unit)) for name, (unit, _) in zip(found.names, shown, strict=True))
+    rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in results.forces.items()]
+    rows += [row(name, k) for name, k in zip(OWN_ROWS, (results.total_force, results.coriolis), strict=True)]
+    heads = (TextColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True))
     return TextTable(FORCES, (TextColumn("cause", "left"), *heads), tuple(rows))
 
 
-def christoffel(found: LagrangeResults) -> TextTable:
-    """The symbols that are not 0, each pair l, k once."""
-    assert found.gamma is not None and found.alpha is not None
-    sizes = [float(np.abs(x).max(initial=0.0)) for x in (found.gamma, found.alpha)]
+def make_christoffel_table(results: LagrangeResults) -> TextTable:
+    """Make the table of the Christoffel symbols that are not 0, each pair l, k once."""
+    assert results.gamma is not None and results.alpha is not None
+    sizes = [float(np.abs(x).max(initial=0.0)) for x in (results.gamma, results.alpha)]
     rows = []
-    f = len(found.names)
+    f = len(results.names)
     for i, j, k in product(range(f), repeat=3):
         if k < j:
             continue
-        both = [number(x[i, j, k], size) for x, size in zip((found.gamma, found.alpha), sizes, strict=True)]
+        both = [format_number(x[i, j, k], size) for x, size in zip((results.gamma, results.alpha), sizes, strict=True)]
         if both != ["0", "0"]:
-            rows.append((found.names[i], found.names[j], found.names[k], *both))
+            rows.append((results.names[i], results.names[j], results.names[k], *both))
     heads = (*(TextColumn(name, "left") for name in ("i", "l", "k")), TextColumn("γ"), TextColumn("α"))
     return TextTable(CHRISTOFFEL, heads, tuple(rows), () if rows else ("all are 0",))
 
 
-def sections(found: LagrangeResults, units: Units) -> TextTable:
-    """s' of each cut."""
-    shown = [units.of(units_of(name).force) for name in found.names]
-    sizes = [by for _, by in shown]
-    rows = [(cut, *cells(s, sizes, own.reach)) for name, own in found.sections.items() for cut, s in cuts(name, own)]
-    heads = (TextColumn(head(name, unit)) for name, (unit, _) in zip(found.names, shown, strict=True))
+def make_section_table(results: LagrangeResults, units: Units) -> TextTable:
+    """Make the table of s' of each cut."""
+    display_units = [units.find(get_units(name).force) for name in results.names]
+    sizes = [factor for _, factor in display_units]
+    rows = [
+        (cut, *format_cells(s, sizes, section.scale))
+        for name, section in results.sections.items()
+        for cut, s in list_cuts(name, section)
+    ]
+    heads = (TextColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True))
     return TextTable(SECTIONS, (TextColumn("section", "left"), *heads), tuple(rows))
 
 
-def blows(found: LagrangeResults, units: Units) -> TextTable:
-    """Of each blow h, what drives exert, the jumps of the rates, and what sections pass on."""
-    own = [units_of(name) for name in found.names]
-    impulses, rates = ([units.of(unit)[1] for unit in by] for by in ([x.momentum for x in own], [x.rate for x in own]))
+def make_impulse_table(results: LagrangeResults, units: Units) -> TextTable:
+    """Make the table of each impulse h, of the drives, of the jumps of the rates, and of what the sections transmit."""
+    unit_sets = [get_units(name) for name in results.names]
+    impulses, rates = (
+        [units.find(unit)[1] for unit in by] for by in ([x.momentum for x in unit_sets], [x.rate for x in unit_sets])
+    )
     rows = []
-    for blow in found.blows:
-        at = f"t = {blow.t:.6g} s"
-        rows += [(at, "h", *cells(blow.h, impulses)), (at, "[q']", *cells(blow.jumps, rates))]
-        rows += [(at, "drives", *cells(blow.drives, impulses))] if blow.drives.any() else []
+    for blow in results.impulses:
+        time_text = f"t = {blow.t:.6g} s"
+        rows += [
+            (time_text, "h", *format_cells(blow.h, impulses)),
+            (time_text, "[q']", *format_cells(blow.jumps, rates)),
+        ]
+        rows += [(time_text, "drives", *format_cells(blow.drives, impulses))] if blow.drives.any() else []
         for section, passed in blow.sections.items():
-            rows += [(at, f"r' {cut}", *cells(r, impulses, passed.reach)) for cut, r in cuts(section, passed)]
-    unit, size = units.of("J")
-    notes = [f"F = h η h / 2 = {blow.reciprocal_energy * size:.6g} {unit}" for blow in found.blows]
-    for kind in sorted(set(own)):
-        told = ", ".join(units.of(unit)[0] for unit in (kind.momentum, kind.rate))
-        notes.append(f"along {'lengths' if kind is LENGTH else 'angles'}: {told}")
-    heads = (TextColumn("blow", "left", once=True), TextColumn("", "left"), *map(TextColumn, found.names))
+            rows += [
+                (time_text, f"r' {cut}", *format_cells(r, impulses, passed.scale))
+                for cut, r in list_cuts(section, passed)
+            ]
+    unit, size = units.find("J")
+    notes = [f"F = h η h / 2 = {blow.reciprocal_energy * size:.6g} {unit}" for blow in results.impulses]
+    for kind in sorted(set(unit_sets)):
+        unit_names = ", ".join(units.find(unit)[0] for unit in (kind.momentum, kind.rate))
+        notes.append(f"along {'lengths' if kind is LENGTH else 'angles'}: {unit_names}")
+    heads = (TextColumn("blow", "left", is_shown_once=True), TextColumn("", "left"), *map(TextColumn, results.names))
     return TextTable(BLOWS, heads, tuple(rows), tuple(notes))
 
 
-def cells(values: Array | None, sizes: Sequence[float], reach: Array | float = 0.0) -> list[str]:
-    """Numbers along the coordinates in the units shown, 0 of rounding beside a reach; `open` where none is unique."""
+def format_cells(values: Array | None, sizes: Sequence[float], reach: Array | float = 0.0) -> list[str]:
+    """Format numbers along the coordinates in display units, rounding errors as 0; `open` if they are indeterminate."""
     if values is None:
         return ["open"] * len(sizes)
-    by = np.array(sizes)
-    return [number(x, size) for x, size in zip(values * by, reach * by, strict=True)]
+    factors = np.array(sizes)
+    return [format_number(x, size) for x, size in zip(values * factors, reach * factors, strict=True)]

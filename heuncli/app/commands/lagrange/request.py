@@ -1,4 +1,4 @@
-"""What `heun lagrange` is asked for: its options and arguments."""
+"""Options and arguments of `heun lagrange`."""
 
 from typing import Annotated
 

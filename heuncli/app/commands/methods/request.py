@@ -1,4 +1,4 @@
-"""What `heun methods` is asked for: its options and arguments."""
+"""Options and arguments of `heun methods`."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""`heun model`: which model is made of a scene, and why."""
+"""`heun model`: describe which mechanical model is made of a scene, and why."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import overrides, warn
-from heuncli.app.cli.target import format_of
+from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.model.request import ModelRequest
 from heuncli.base.errors import Problem
-from heuncli.output.tables.export import dump
-from heuncli.output.tables.model_text import note
+from heuncli.output.tables.export import dump_json
+from heuncli.output.tables.model_text import format_model
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import describe
 
@@ -23,29 +23,31 @@ FORMATS = ("text", "json")
 def main(request: ModelRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, FORMATS)
+    form = choose_format(request.format, request.output, FORMATS)
     require_sketch(request, form)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
+    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
-    text = dump(dict(model)) if form == "json" else note(spec.title, model)
+    text = dump_json(dict(model)) if form == "json" else format_model(spec.title, model)
     if request.sketch:
-        from heuncli.app.commands.model.sketch import sketch  # what few ask for
+        from heuncli.app.commands.model.sketch import render_sketch  # rarely used
 
-        text += "\n" + sketch(spec, request)
+        text += "\n" + render_sketch(spec, request)
     emit(text, request.output)
-    warn(spec, None, request.quiet)
+    print_warnings(spec, None, request.quiet)
     return 0
 
 
 def require_sketch(request: ModelRequest, form: str) -> None:
-    """Say before the work what does not go with a drawing, or goes with it alone. Raises UsageError."""
+    """Raise UsageError before the work for options that do not go with a drawing, or only with one."""
     if request.sketch and form != "text":
         message = f"--sketch is a drawing in letters, and not in {form}"
         raise UsageError(Problem("bad-option", message, hint="heun plot SPEC scene -o x.svg draws the scene as a file"))
-    given = [name for name, value in (("--view", request.view), ("--width", request.width)) if value is not None]
-    if given and not request.sketch:
-        message = f"{', '.join(given)}: of a drawing, which is not asked for"
+    drawing_options = [
+        name for name, value in (("--view", request.view), ("--width", request.width)) if value is not None
+    ]
+    if drawing_options and not request.sketch:
+        message = f"{', '.join(drawing_options)}: of a drawing, which is not asked for"
         raise UsageError(Problem("bad-option", message, hint="add --sketch"))
     if request.view is not None:
         from heuncli.app.cli.views import require_view

@@ -1,4 +1,4 @@
-"""What `heun model` is asked for: its options and arguments."""
+"""Options and arguments of `heun model`."""
 
 from typing import Annotated
 

@@ -1,33 +1,33 @@
-"""`heun modes`: small oscillations about the pose at rest."""
+"""`heun modes`: compute small oscillations about the pose at rest."""
 
 from __future__ import annotations
 
-from heuncli.analyses.modes.study import modes
-from heuncli.analyses.modes.without import without
+from heuncli.analyses.modes.study import compute_spec_modes
+from heuncli.analyses.modes.without import exclude_entries
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.left_out import named
+from heuncli.app.cli.left_out import find_excluded
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import overrides, warn
-from heuncli.app.cli.target import format_of
+from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.modes import page as report
 from heuncli.app.commands.modes.request import ModesRequest
-from heuncli.output.tables.export import dump
+from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 
 
 def main(request: ModesRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, FORMATS)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
-    entries = named(spec, request.without)
+    form = choose_format(request.format, request.output, FORMATS)
+    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    entries = find_excluded(spec, request.without)
     require_other_file(request.output, [request.spec])
-    found = modes(without(spec, entries), entries)
+    scene_modes = compute_spec_modes(exclude_entries(spec, entries), entries)
     if form == "json":
-        text = dump(found.block())
+        text = dump_json(scene_modes.to_block())
     else:
-        text = report.to_csv(found) if form == "csv" else report.write(found)
+        text = report.to_csv(scene_modes) if form == "csv" else report.render_page(scene_modes)
     emit(text, request.output)
-    warn(spec, None, request.quiet)
+    print_warnings(spec, None, request.quiet)
     return 0

@@ -1,16 +1,16 @@
-"""Modes as a table, and in long form."""
+"""Render modes as a table, and in long form."""
 
 from __future__ import annotations
 
 import math
 
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.base.joint_kinds import is_length
 from heuncli.motion.linearisation.modes import SceneModes
 from heuncli.motion.linearisation.oscillations import Mode
-from heuncli.output.tables.mode_words import about, figures_of, notes
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, TextColumn, TextTable, plain
+from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_plain
 from heuncli.version import VERSION
 
 HEADING = "MODES  motions exp(growth t) cos(2π frequency t): damping ratio -growth/|growth + 2πi frequency|"
@@ -19,50 +19,55 @@ COLUMNS = (
     TextColumn("growth 1/s"), TextColumn("kind", "left"), TextColumn("what moves most (rad, m)", "left"),
 )  # fmt: skip
 CSV_COLUMNS = "mode,kind,name,quantity,component,unit,value"
-ALMOST = 0.02  # of the largest: a smaller part of the other phase is not worth a table's room
+PHASE_TOLERANCE = 0.02  # relative; a smaller out-of-phase part is not shown
 
 
-def table(found: SceneModes) -> TextTable:
-    """The modes, a row each; notes say what is unstable, and what nothing holds."""
-    rows = tuple(row(k, mode, found) for k, mode in enumerate(found.modes))
-    return TextTable(HEADING, COLUMNS, rows, tuple(notes(found)))
+def make_table(scene_modes: SceneModes) -> TextTable:
+    """Make the table of the modes, one row each; notes name unstable modes and free directions."""
+    rows = tuple(make_row(k, mode, scene_modes) for k, mode in enumerate(scene_modes.modes))
+    return TextTable(HEADING, COLUMNS, rows, tuple(iter_notes(scene_modes)))
 
 
-def page(found: SceneModes) -> list[tuple[str, str]]:
-    """Label and text of the lines above the table."""
-    state, *more = about(found)
-    return [("heun", f"{VERSION}  {found.title}"), ("modes", state), *(("", line) for line in more)]
+def format_heading(scene_modes: SceneModes) -> list[tuple[str, str]]:
+    """Return label and text of the lines above the table."""
+    state, *further_lines = describe_modes(scene_modes)
+    return [("heun", f"{VERSION}  {scene_modes.title}"), ("modes", state), *(("", line) for line in further_lines)]
 
 
-def write(found: SceneModes) -> str:
-    """The page as text."""
-    lines = page(found)
-    head = "".join(f"{label.ljust(5)}  {shown(text)}\n" for label, text in lines)
-    return head + ("\n" + "".join(plain(part, WIDTH) for part in fit(table(found), WIDTH)) if found.modes else "")
+def render_page(scene_modes: SceneModes) -> str:
+    """Render the page as text."""
+    lines = format_heading(scene_modes)
+    head = "".join(f"{label.ljust(5)}  {escape(text)}\n" for label, text in lines)
+    return head + (
+        "\n"
+        + "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(make_table(scene_modes), DEFAULT_WIDTH))
+        if scene_modes.modes
+        else ""
+    )
 
 
-def row(k: int, mode: Mode, found: SceneModes) -> tuple[str, ...]:
-    """A mode's cells: digits as far as its error lets them be."""
-    return str(k + 1), *figures_of(mode), mode.kind, moving(k, found)
+def make_row(k: int, mode: Mode, scene_modes: SceneModes) -> tuple[str, ...]:
+    """Make the cells of a mode, with as many digits as its error allows."""
+    return str(k + 1), *format_mode(mode), mode.kind, format_shape(k, scene_modes)
 
 
-def moving(k: int, found: SceneModes) -> str:
-    """The coordinates that move most, with their amplitudes."""
-    shape = found.shapes[k]
-    return ", ".join(f"{name} {amplitude(shape[name])}" for name in found.largest[k] if name in shape)
+def format_shape(k: int, scene_modes: SceneModes) -> str:
+    """Format the coordinates that move most, with their amplitudes."""
+    shape = scene_modes.shapes[k]
+    return ", ".join(f"{name} {format_amplitude(shape[name])}" for name in scene_modes.largest[k] if name in shape)
 
 
-def amplitude(x: complex) -> str:
-    """An amplitude relative to the largest, with its phase where that is neither along nor against it."""
-    if abs(x.imag) <= ALMOST * abs(x):
+def format_amplitude(x: complex) -> str:
+    """Format an amplitude relative to the largest, with its phase if that is neither 0° nor 180°."""
+    if abs(x.imag) <= PHASE_TOLERANCE * abs(x):
         return f"{x.real:.3g}"
     return f"{abs(x):.3g}∠{math.degrees(math.atan2(x.imag, x.real)):.0f}°"
 
 
-def to_csv(found: SceneModes) -> str:
-    """The modes in long form, a line a number."""
+def to_csv(scene_modes: SceneModes) -> str:
+    """Return the modes in long form, one number per line."""
     lines = [CSV_COLUMNS]
-    for k, (mode, shape) in enumerate(zip(found.modes, found.shapes, strict=True)):
+    for k, (mode, shape) in enumerate(zip(scene_modes.modes, scene_modes.shapes, strict=True)):
         for quantity, unit, value in (
             ("frequency", "Hz", mode.frequency), ("damping", "1", mode.damping), ("growth", "1/s", mode.growth),
             ("error", "1/s", mode.error),

@@ -1,4 +1,4 @@
-"""What `heun modes` is asked for: its options and arguments."""
+"""Options and arguments of `heun modes`."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""What `heun new` is asked for: its arguments."""
+"""Arguments of `heun new`."""
 
 from typing import Annotated
 

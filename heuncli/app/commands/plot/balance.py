@@ -1,22 +1,22 @@
-"""`heun plot SPEC balance`: mass effects over a cycle, by orders."""
+"""`heun plot SPEC balance`: draw mass effects over a cycle, by orders."""
 
 from __future__ import annotations
 
 from heuncli.analyses.balancing.study import balance
-from heuncli.app.cli.solving import warn
-from heuncli.app.cli.units import units
-from heuncli.app.commands.plot.asked import PlotAsked
+from heuncli.app.cli.solving import print_warnings
+from heuncli.app.cli.units import parse_units
+from heuncli.app.commands.plot.asked import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
-from heuncli.app.commands.plot.sources import require_no_paths, specs_of
+from heuncli.app.commands.plot.sources import load_specs, require_no_paths
 from heuncli.output.drawing.figure import Figure
-from heuncli.output.figures.orders import BalancedScene, orders
+from heuncli.output.figures.orders import BalancedScene, make_orders_figure
 
 
-def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
-    """The figure. Raises UsageError, SpecError, SolveError."""
-    require_no_paths(asked)
+def draw(target: PlotTarget, request: PlotRequest) -> Figure:
+    """Draw the figure. Raises UsageError, SpecError, SolveError."""
+    require_no_paths(target)
     sources = []
-    for name, spec in specs_of(asked.files, request):
+    for name, spec in load_specs(target.files, request):
         sources.append(BalancedScene(name, balance(spec)))
-        warn(spec, None, request.quiet)
-    return orders(sources, units(request.units))
+        print_warnings(spec, None, request.quiet)
+    return make_orders_figure(sources, parse_units(request.units))

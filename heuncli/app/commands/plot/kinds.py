@@ -1,4 +1,4 @@
-"""The kinds of pictures, and which options mean something to each: one that would do nothing is refused."""
+"""The kinds of figures, and which options apply to each; an option without effect is refused."""
 
 from __future__ import annotations
 
@@ -6,49 +6,57 @@ from collections.abc import Iterator
 from typing import cast
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.options import Request, fields_of
+from heuncli.app.cli.options import Request, list_fields
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 
 
-class PictureKind(NamedTuple):
-    """A kind of picture: what it is of, in words, and the fields of the request that it heeds beside EVERY."""
+class FigureKind(NamedTuple):
+    """A kind of figure.
+
+    what: its name in messages
+    options: the fields of the request that apply to it, besides COMMON_OPTIONS
+    """
 
     what: str
     heeds: tuple[str, ...]
 
 
-EVERY = ("words", "output", "width", "time_limit", "quiet")
-SCENE = ("set", "case")
-SOLVING = (*SCENE, "method", "step", "tolerance", "no_reduce", "least_norm")
+COMMON_OPTIONS = ("words", "output", "width", "time_limit", "quiet")
+SCENE_OPTIONS = ("set", "case")
+SOLVER_OPTIONS = (*SCENE_OPTIONS, "method", "step", "tolerance", "no_reduce", "least_norm")
 KINDS = {
-    "history": PictureKind("numbers over time", ("x", "measured", "axes", "units", *SOLVING)),
-    "sections": PictureKind("section diagrams", ("at", "tension_side", "units", *SOLVING)),
-    "polar": PictureKind("polar diagrams", ("axes", "view", "units", *SOLVING)),
-    "scene": PictureKind("scenes", ("at", "view", "units", *SOLVING)),
-    "modes": PictureKind("mode shapes", ("view", "without", *SCENE)),
-    "balance": PictureKind("harmonics by orders", ("units", *SCENE)),
-    "sweep": PictureKind("sweeps", ("units",)),
+    "history": FigureKind("numbers over time", ("x", "measured", "axes", "units", *SOLVER_OPTIONS)),
+    "sections": FigureKind("section diagrams", ("at", "tension_side", "units", *SOLVER_OPTIONS)),
+    "polar": FigureKind("polar diagrams", ("axes", "view", "units", *SOLVER_OPTIONS)),
+    "scene": FigureKind("scenes", ("at", "view", "units", *SOLVER_OPTIONS)),
+    "modes": FigureKind("mode shapes", ("view", "without", *SCENE_OPTIONS)),
+    "balance": FigureKind("harmonics by orders", ("units", *SCENE_OPTIONS)),
+    "sweep": FigureKind("sweeps", ("units",)),
 }
 
 
-def require_heeded(kind: str, request: PlotRequest) -> None:
-    """Raise UsageError for options that mean nothing to that kind of picture, all of them."""
-    problems = list(_unheeded(kind, request))
+def require_applicable_options(kind: str, request: PlotRequest) -> None:
+    """Raise UsageError with every option that has no effect on this kind of figure."""
+    problems = list(_iter_problems(kind, request))
     if problems:
         raise UsageError(*problems)
 
 
-def _unheeded(kind: str, request: PlotRequest) -> Iterator[Problem]:
-    """What is wrong with options that are given."""
-    own = KINDS[kind]
-    for field in fields_of(cast("type[Request]", PlotRequest)):
+def _iter_problems(kind: str, request: PlotRequest) -> Iterator[Problem]:
+    """Yield the problems of the given options."""
+    figure_kind = KINDS[kind]
+    for field in list_fields(cast("type[Request]", PlotRequest)):
         name = field.name
-        if name in EVERY or name in own.heeds or getattr(request, name) == request._field_defaults[name]:
+        if (
+            name in COMMON_OPTIONS
+            or name in figure_kind.options
+            or getattr(request, name) == request._field_defaults[name]
+        ):
             continue
-        of = [other.what for other in KINDS.values() if name in other.heeds]
-        message = f"{field.option.words[0]} does nothing to {own.what}"
-        yield Problem("bad-option", message, hint=f"leave it out: it is of {', '.join(of)}")
+        others = [other.what for other in KINDS.values() if name in other.options]
+        message = f"{field.option.words[0]} does nothing to {figure_kind.what}"
+        yield Problem("bad-option", message, hint=f"leave it out: it is of {', '.join(others)}")
     if request.output is not None and request.width is not None:
         yield Problem("bad-option", "--width is of pictures in letters, not of files", hint="leave it out, or -o FILE")

@@ -1,4 +1,4 @@
-"""What `heun plot` is asked for: its options and arguments."""
+"""Options and arguments of `heun plot`."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""`heun probe`: what a motion comes near to, of what methods cannot bear."""
+"""`heun probe`: find where a motion comes near to states that numerical methods cannot handle."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from heuncli.analyses.probing.study import probe
 from heuncli.app.cli import alarm
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import overrides, warn
-from heuncli.app.cli.target import format_of
+from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.probing import page as report
 from heuncli.app.commands.probing.request import ProbeRequest
-from heuncli.output.tables.export import dump
+from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 
@@ -20,10 +20,10 @@ FORMATS = ("table", "json")
 def main(request: ProbeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, FORMATS)
-    spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
+    form = choose_format(request.format, request.output, FORMATS)
+    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
-    found = probe(spec, Options(time_limit=alarm.remaining()))
-    emit(dump(found.block()) if form == "json" else report.write(found), request.output)
-    warn(spec, None, request.quiet)
+    results = probe(spec, Options(time_limit=alarm.remaining_time()))
+    emit(dump_json(results.to_block()) if form == "json" else report.render_page(results), request.output)
+    print_warnings(spec, None, request.quiet)
     return 0

@@ -1,4 +1,4 @@
-"""What `heun probe` is asked for: its options and arguments."""
+"""Options and arguments of `heun probe`."""
 
 from typing import Annotated
 

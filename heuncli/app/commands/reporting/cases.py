@@ -1,4 +1,4 @@
-"""The load cases of a report: read, solved one after the other, held against what the spec expects."""
+"""Solve the load cases of a report one after the other, and compare them with what the spec expects."""
 
 from __future__ import annotations
 
@@ -6,130 +6,144 @@ from collections.abc import Iterator, Mapping
 
 from heuncli.app.cli import alarm, memory
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.solving import overrides, solver_options, warn
-from heuncli.app.cli.units import units
+from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
+from heuncli.app.cli.units import parse_units
 from heuncli.app.commands.reporting.request import ReportRequest
 from heuncli.base.errors import HeunError, Problem
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.base.records import replace
-from heuncli.output.client_report.reported import AS_IT_STANDS, LOADS, Imprint, Reported, ReportedRun
-from heuncli.output.snapshots.keep import keep, looks_between
-from heuncli.output.snapshots.outcomes import Outcome, outcome_of
+from heuncli.output.client_report.reported import AS_IT_STANDS, LOADS, Imprint, ReportData, ReportedRun
+from heuncli.output.snapshots.keep import is_searched_between_samples, take_run_snapshot
+from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.tables.cut_runs import LOADS as RESULTANTS
-from heuncli.output.tables.page import page_of
+from heuncli.output.tables.page import make_page
 from heuncli.scene.file_format.digest import digest
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
-from heuncli.scene.file_format.source import text_in
+from heuncli.scene.file_format.source import read_text
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
-from heuncli.study.model.error_places import placed
-from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.memory_estimate import MemoryBudget
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import Selection, asked_by
-from heuncli.study.quantities.labels import labels_of
+from heuncli.study.model.selection import Selection, select_paths
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.workflow import solve
 
-DRAWN = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
-BLOWS_ALONE = frozenset({"impulses"})
-EMPTY: frozenset[str] = frozenset()
+DRAWING_REPORTS = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
+IMPULSES_ONLY = frozenset({"impulses"})
+NO_REPORTS: frozenset[str] = frozenset()
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
 
 
 class DigestedFiles(NamedFiles):
-    """The files beside a spec; of each that is read its digest is kept, by its name."""
+    """The data files of a spec; keeps the digest of each file that is read, by its name."""
 
     def __init__(self, spec: str) -> None:
         super().__init__(spec)
         self.digests: dict[str, str] = {}
 
-    def content(self, name: str) -> bytes | bytearray:
-        """The bytes of a file. Raises Finding."""
+    def read_content(self, name: str) -> bytes | bytearray:
+        """Return the bytes of a file. Raises Finding."""
         content = super().content(name)
         self.digests[name] = digest(content)
         return content
 
 
-def reported(request: ReportRequest) -> Reported:
-    """All cases that are asked for, solved. Raises what solving raises: with a case unsolved there is no report."""
-    shown, options = units(request.units), solver_options(request)
-    given = overrides(request.set)
-    text = text_in(request.spec)
+def solve_report_cases(request: ReportRequest) -> ReportData:
+    """Solve the requested cases, and collect the content of the report.
+
+    Raises what solving raises: if one case cannot be solved there is no report.
+    """
+    units_shown, options = parse_units(request.units), make_solver_options(request)
+    settings = parse_overrides(request.set)
+    text = read_text(request.spec)
     files = DigestedFiles(request.spec)
-    spec, cases = load_with_cases(request.spec, given, not given, text, files)
-    chosen = _chosen(request, cases)
-    told = chosen or {"": spec}
+    spec, cases = load_with_cases(request.spec, settings, not settings, text, files)
+    chosen = _select_cases(request, cases)
+    selected = chosen or {"": spec}
     outcomes: list[Outcome] = []
     runs: list[ReportedRun] = []
-    if "" not in told and request.case is None and spec.expect:  # what is expected of the scene as it stands
-        outcomes += _outcomes(_solved("", spec, options, told=False), request, "")
-    for name, one in told.items():
-        study = _solved(name, one, options, told=True)
-        outcomes += _outcomes(study, request, name)
-        runs.append(_run(name, spec.cases.get(name, ""), study, shown))
-        warn(one, study.results, request.quiet, f"heun: case {name}" if name else "heun", study.later_warnings)
+    if "" not in selected and request.case is None and spec.expect:  # the expectations of the scene without a case
+        outcomes += _compare_expectations(_solve_case("", spec, options, is_reported=False), request, "")
+    for name, scene in selected.items():
+        study = _solve_case(name, scene, options, is_reported=True)
+        outcomes += _compare_expectations(study, request, name)
+        runs.append(_make_run(name, spec.cases.get(name, ""), study, units_shown))
+        print_warnings(
+            scene, study.results, request.quiet, f"heun: case {name}" if name else "heun", study.later_warnings
+        )
     imprint = Imprint(request.date or "", request.author or "", request.project or "")
-    left_out = [name for name in cases if name not in told]
+    left_out = [name for name in cases if name not in selected]
     unchecked = [AS_IT_STANDS] if request.case is not None and spec.expect else []
     unchecked += [name for name in left_out if cases[name].expect]
-    return Reported(
-        spec, text, files.digests, runs, outcomes, list(_given(request)), left_out, unchecked,
-        not request.no_reduce, shown, imprint,
+    return ReportData(
+        spec, text, files.digests, runs, outcomes, list(_iter_numeric_options(request)), left_out, unchecked,
+        not request.no_reduce, units_shown, imprint,
     )  # fmt: skip
 
 
-def _chosen(request: ReportRequest, cases: Mapping[str, Spec]) -> dict[str, Spec]:
-    """The cases of `--case`, all without it. Raises UsageError."""
+def _select_cases(request: ReportRequest, cases: Mapping[str, Spec]) -> dict[str, Spec]:
+    """Return the cases of `--case`, or all without it. Raises UsageError."""
     if request.case is None:
         return dict(cases)
     names = [name.strip() for name in request.case.split(",")]
     for name in names:
         if name not in cases:
-            hint = did_you_mean(name, cases, "cases") if cases else "cases: {NAME: {set: {PARAMETER: VALUE}}}"
+            hint = suggest(name, cases, "cases") if cases else "cases: {NAME: {set: {PARAMETER: VALUE}}}"
             raise UsageError(Problem("unknown-case", f"--case {name}: there is no such load case", hint=hint))
     return {name: cases[name] for name in names}
 
 
-def _solved(name: str, spec: Spec, options: Options, *, told: bool) -> Study:
-    """A case with all that is told of it, and all that is expected. Raises what `solve` does, with the case's name."""
-    asked = asked_by([path for item in spec.expect for path in item.paths], spec) if spec.expect else Selection(EMPTY)
-    if told:
-        asked = asked.with_all(Selection(wanted_of(spec) | DRAWN))
-    own = replace(options, wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(),
-                  room=Room(*memory.room("table")))  # fmt: skip
+def _solve_case(name: str, spec: Spec, options: Options, *, is_reported: bool) -> Study:
+    """Solve a case for what is reported and expected of it. Raises what `solve` does, with the case's name."""
+    selection = (
+        select_paths([path for item in spec.expect for path in item.paths], spec)
+        if spec.expect
+        else Selection(NO_REPORTS)
+    )
+    if is_reported:
+        selection = selection.union(Selection(select_reports(spec) | DRAWING_REPORTS))
+    case_options = replace(options, requested_reports=selection.reports, entries=selection.entries, time_limit=alarm.remaining_time(),
+                  memory_budget=MemoryBudget(*memory.result_memory("table")))  # fmt: skip
     try:
-        with placed(spec):
-            return solve(spec, own)
+        with attach_locations(spec):
+            return solve(spec, case_options)
     except HeunError as error:
         if name:
-            error.tell(*(each._replace(message=f"in case {name}: {each.message}") for each in error.problems))
+            error.replace_problems(
+                *(each._replace(message=f"in case {name}: {each.message}") for each in error.problems)
+            )
         raise
 
 
-def wanted_of(spec: Spec) -> frozenset[str]:
-    """The reports that are told of a scene: of blows at time 0 alone the blows."""
-    return BLOWS_ALONE if spec.analysis.type == "impulse" else LOADS
+def select_reports(spec: Spec) -> frozenset[str]:
+    """Return the reports to show of a scene; for impulses at time 0 only the impulses."""
+    return IMPULSES_ONLY if spec.analysis.type == "impulse" else LOADS
 
 
-def _outcomes(study: Study, request: ReportRequest, name: str) -> list[Outcome]:
-    return [outcome_of(compare(study, item), request.spec, name) for item in study.spec.expect]
+def _compare_expectations(study: Study, request: ReportRequest, name: str) -> list[Outcome]:
+    return [make_outcome(compare(study, item), request.spec, name) for item in study.spec.expect]
 
 
-def _run(name: str, title: str, study: Study, shown: Units) -> ReportedRun:
-    """A case with its numbers, as they are told."""
-    labels = replace(labels_of(study.spec), units=shown)
-    page = page_of(study.results, labels, study.magnitudes)
+def _make_run(name: str, title: str, study: Study, units: Units) -> ReportedRun:
+    """Make the reported run of a case, with its numbers as they are shown."""
+    labels = replace(make_labels(study.spec), units=units)
+    page = make_page(study.results, labels, study.magnitudes)
     if study.results.impulses:
-        page = page._replace(struck=study.struck_along([load.name for load in RESULTANTS]))
-    wanted = wanted_of(study.spec)
-    kept, searched = keep(study, wanted, whole_course=False), looks_between(study, wanted)
-    return ReportedRun(name, title, study, kept, page, searched)
+        page = page._replace(impact_extremes=study.find_impulse_extremes([load.name for load in RESULTANTS]))
+    reports = select_reports(study.spec)
+    snapshot, searched = (
+        take_run_snapshot(study, reports, whole_course=False),
+        is_searched_between_samples(study, reports),
+    )
+    return ReportedRun(name, title, study, snapshot, page, searched)
 
 
-def _given(request: ReportRequest) -> Iterator[str]:
-    """What of the command line changes the numbers, as it was given."""
+def _iter_numeric_options(request: ReportRequest) -> Iterator[str]:
+    """Yield the options of the command line that change the numbers, as they were given."""
     yield from (f"--set {word}" for word in request.set)
     for name in OPTIONS:
         if (value := getattr(request, name)) is not None:

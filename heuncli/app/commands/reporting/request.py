@@ -1,4 +1,4 @@
-"""What `heun report` is asked for: its options and arguments."""
+"""Options and arguments of `heun report`."""
 
 from typing import Annotated
 

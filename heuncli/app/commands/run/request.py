@@ -1,4 +1,4 @@
-"""What `heun run` is asked for: its options and arguments."""
+"""Options and arguments of `heun run`."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""One scene solved, and told in the form that is asked for."""
+"""Solve one scene, and render its results in the requested format."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from heuncli.app.api import solve_spec
-from heuncli.app.cli.output import say
-from heuncli.app.cli.solving import instants, timings, warn
+from heuncli.app.cli.output import print_stderr
+from heuncli.app.cli.solving import format_timings, parse_instants, print_warnings
 from heuncli.app.cli.units import TABLES
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.output.snapshots.tables import TablesAsked, tables_of
-from heuncli.output.tables.heading import write_heading, write_heading_markdown
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, TextTable, markdown, plain
+from heuncli.output.snapshots.tables import TablesQuery, make_tables
+from heuncli.output.tables.heading import format_heading, format_heading_markdown
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_markdown, format_plain
 from heuncli.results.results import Results
-from heuncli.results.stored_arrays import StoredArray, in_parts
+from heuncli.results.stored_arrays import StoredArray, iter_chunks
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.study import Study
-from heuncli.study.model.error_places import placed
+from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
-from heuncli.study.quantities.labels import Labels, labels_of
+from heuncli.study.quantities.labels import Labels, make_labels
 from heuncli.study.quantities.table_units import Units
 
 if TYPE_CHECKING:
@@ -34,7 +34,13 @@ if TYPE_CHECKING:
 
 
 class RunTask(NamedTuple):
-    """What is to be told of a scene: the options, what is asked for, and in which units tables show it."""
+    """The options of a run.
+
+    selection: the results to show
+    measures: measures of --measure
+    collective: load collectives of --collective
+    units: display units of tables
+    """
 
     request: RunRequest
     form: str
@@ -45,89 +51,97 @@ class RunTask(NamedTuple):
     counted: CollectiveTask | None = None
 
 
-def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
-    """A scene solved, and what is told of it as text, in pieces that are made as they are asked for."""
-    request, what = task.request, task.what
+def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
+    """Solve a scene; returns the study and the text of its results, in pieces that are made on demand."""
+    request, selection = task.request, task.selection
     study = solve_spec(spec, task.options)
-    with placed(spec):
-        if task.asked:
+    with attach_locations(spec):
+        if task.measures:
             from heuncli.output.snapshots import measure
 
-            return study, [measure.write(task.asked, study, task.form)]
-        if task.counted is not None:
-            from heuncli.app.commands.run.collective import told
+            return study, [measure.format_measures(task.measures, study, task.form)]
+        if task.collective is not None:
+            from heuncli.app.commands.run.collective import render_collectives
 
-            return study, [_counted(task, study, told(task.counted, study, task.form, task.units))]
-        named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
-        labels = replace(labels_of(spec), units=task.units)
+            return study, [
+                _render_collectives(task, study, render_collectives(task.collective, study, task.form, task.units))
+            ]
+        is_explicit = (request.only is not None or spec.report is not None) and "foundation" in selection.reports
+        labels = replace(make_labels(spec), units=task.units)
         if task.form not in TABLES:
             return study, _export(request, task.form, study, labels)
-        return study, [_report(request, task.form, study, labels, what, details=named)]
+        return study, [_report(request, task.form, study, labels, selection, details=is_explicit)]
 
 
-def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
-    """Tell warnings and times; returns the exit code."""
+def finish(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
+    """Print warnings and times; returns the exit code."""
     later = list(study.later_warnings)
-    if task.asked:
+    if task.measures:
         from heuncli.output.snapshots import measure
 
-        later += measure.warnings(task.asked, study)
-    warnings = warn(spec, study.results, task.request.quiet, place, later)
+        later += measure.find_warnings(task.measures, study)
+    warnings = print_warnings(spec, study.results, task.request.quiet, place, later)
     if task.request.verbose:
-        say(f"{place}: {timings(study.results.work)}")
-    return _strict(study.results, warnings) if task.request.strict else 0
+        print_stderr(f"{place}: {format_timings(study.results.work)}")
+    return _check_strict(study.results, warnings) if task.request.strict else 0
 
 
 def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Iterator[str]:
-    from heuncli.output.tables.export import csv_pieces, json_pieces  # tables do without
+    from heuncli.output.tables.export import iter_csv_pieces, iter_json_pieces  # not needed for tables
 
-    at = instants(request.at, study) if request.at is not None else None
-    shown = study.results if at is None else study.resample(at)
-    return json_pieces(shown) if form == "json" else csv_pieces(shown, labels)
-
-
-def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
-    at = instants(request.at, study) if request.at is not None else None
-    tables = tables_of(study, labels, TablesAsked(what, at, request.all, details))
-    return _headed(request, form, study, tables)
+    times = parse_instants(request.at, study) if request.at is not None else None
+    results = study.results if times is None else study.resample(times)
+    return iter_json_pieces(results) if form == "json" else iter_csv_pieces(results, labels)
 
 
-def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
-    """Collectives as text."""
-    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
+def _report(
+    request: RunRequest, form: str, study: Study, labels: Labels, selection: Selection, *, details: bool
+) -> str:
+    times = parse_instants(request.at, study) if request.at is not None else None
+    tables = make_tables(study, labels, TablesQuery(selection, times, request.all, details))
+    return _add_heading(request, form, study, tables)
 
 
-def _headed(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
-    """Tables below what was solved, and how well."""
+def _render_collectives(task: RunTask, study: Study, content: str | list[TextTable]) -> str:
+    """Render collectives as text."""
+    return content if isinstance(content, str) else _add_heading(task.request, task.form, study, content)
+
+
+def _add_heading(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
+    """Render tables below the heading of the run."""
     if form == "markdown":
-        return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
-    return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
+        return format_heading_markdown(study.results, request.verbose) + "\n".join(map(format_markdown, tables))
+    return format_heading(study.results, request.verbose) + "".join(
+        "\n" + text for text in _choose_renderer(request)(tables)
+    )
 
 
-def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
-    """How tables become text: fitted to a terminal where one is written to, else to a page."""
+def _choose_renderer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
+    """Return the function that renders tables: fitted to the terminal if output goes there, else to a page."""
     if request.output is None:
-        from heuncli.app.cli import terminal  # a file needs nothing of it
+        from heuncli.app.cli import terminal  # not needed for a file
 
-        if terminal.present():
-            return terminal.write
-    return lambda tables: [plain(part, WIDTH) for table in tables for part in fit(table, WIDTH)]
+        if terminal.is_terminal():
+            return terminal.render_tables
+    return lambda tables: [
+        format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)
+    ]
 
 
-def _strict(results: Results, warnings: list[str]) -> int:
-    """1 if there are warnings or open reactions, and why."""
+def _check_strict(results: Results, warnings: list[str]) -> int:
+    """Return 1 if there are warnings or indeterminate reactions, and print why."""
     loads = [results.joints, results.sections, results.foundation.get("supports", {})]
-    for struck in results.impulses:
-        supports = struck.get("foundation", {}).get("supports", {})
-        loads += [struck.get("joints", {}), struck.get("sections", {}), supports]
-    unsure = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
+    for impulse in results.impulses:
+        supports = impulse.get("foundation", {}).get("supports", {})
+        loads += [impulse.get("joints", {}), impulse.get("sections", {}), supports]
+    indeterminate = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
     if warnings:
-        say(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")
-    if unsure:
-        say(f"heun: --strict: open reactions in {', '.join(dict.fromkeys(unsure))}")
-    return int(bool(warnings or unsure))
+        print_stderr(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")
+    if indeterminate:
+        print_stderr(f"heun: --strict: open reactions in {', '.join(dict.fromkeys(indeterminate))}")
+    return int(bool(warnings or indeterminate))
 
 
 def _has_open(part: dict[str, Any]) -> bool:
-    told = (part[key] for key in ("force", "moment", "N") if isinstance(part.get(key), np.ndarray | StoredArray))
-    return any(np.isnan(rows).any() for values in told for rows in in_parts(values))
+    arrays = (part[key] for key in ("force", "moment", "N") if isinstance(part.get(key), np.ndarray | StoredArray))
+    return any(np.isnan(rows).any() for values in arrays for rows in iter_chunks(values))

@@ -1,7 +1,7 @@
-"""`heun run --watch`: again at each save of the spec, or of a file that it reads, until somebody ends it.
+"""`heun run --watch`: run again whenever the spec, or a file that it reads, is saved, until interrupted.
 
-Looking at a file's state five times a second needs nothing of the system, and sees editors that put a new file in the
-place of the old one. Impure: files, time, terminal.
+Checking the status of the files five times a second works on every system, and also notices editors that replace the
+old file by a new one. Impure: files, time, terminal.
 """
 
 from __future__ import annotations
@@ -13,67 +13,69 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from heuncli.app.cli import terminal
-from heuncli.app.cli.entry import UsageError, contained, report_problems
-from heuncli.app.cli.output import say
+from heuncli.app.cli.entry import UsageError, report_problems, run_contained
+from heuncli.app.cli.output import print_stderr
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.errors import Finding, HeunError, Problem
-from heuncli.base.foreign_text import shown
-from heuncli.scene.file_format.names import mapping
+from heuncli.base.foreign_text import escape
+from heuncli.scene.file_format.names import as_mapping
 from heuncli.scene.file_format.reading import STANDARD_INPUT
-from heuncli.scene.file_format.source import read
+from heuncli.scene.file_format.source import read_source
 
-PAUSE = 0.2  # s between two looks
+CHECK_INTERVAL = 0.2  # s between two checks
 CLEAR = "\x1b[2J\x1b[3J\x1b[H"
 State = tuple[tuple[str, int, int, int] | None, ...]
 
 
 def watch(request: RunRequest, run: Callable[[RunRequest], int]) -> NoReturn:
-    """Run again and again; ended by an interrupt. Raises UsageError where there is nothing to watch."""
-    for given, word in ((request.time_limit is not None, "--time-limit"), (request.spec == STANDARD_INPUT, "-")):
-        if given:
+    """Run again after each change, until interrupted. Raises UsageError if there is no file to watch."""
+    for is_given, word in ((request.time_limit is not None, "--time-limit"), (request.spec == STANDARD_INPUT, "-")):
+        if is_given:
             hint = "--watch goes on until Ctrl-C, and looks at a file"
             raise UsageError(Problem("bad-option", f"--watch with {word}", hint=hint))
-    once = request._replace(watch=False)
+    single_run = request._replace(watch=False)
     while True:
-        before = state(request.spec)
-        _clear()
+        old_state = read_state(request.spec)
+        _clear_screen()
         try:
-            contained(lambda: run(once), ("run", request.spec))
+            run_contained(lambda: run(single_run), ("run", request.spec))
         except HeunError as error:
             report_problems(error.problems)
         if not request.quiet:
-            say(f"heun: watching {shown(request.spec)}; Ctrl-C ends it")
-        while (now := state(request.spec)) == before or now[0] is None:  # gone for the moment in which it is replaced
-            time.sleep(PAUSE)
+            print_stderr(f"heun: watching {escape(request.spec)}; Ctrl-C ends it")
+        while (new_state := read_state(request.spec)) == old_state or new_state[
+            0
+        ] is None:  # briefly missing while an editor replaces it
+            time.sleep(CHECK_INTERVAL)
 
 
-def _clear() -> None:
-    """An empty screen, where there is one."""
-    if terminal.present() and terminal.styled():
+def _clear_screen() -> None:
+    """Clear the screen, if there is one."""
+    if terminal.is_terminal() and terminal.supports_styles():
         sys.stdout.write(CLEAR)
         sys.stdout.flush()
 
 
-def state(spec: str) -> State:
-    """What tells whether a file was saved: of the spec, and of the tables and curves that it names."""
-    return tuple(_stamp(Path(name)) for name in (spec, *_files_of(spec)))
+def read_state(spec: str) -> State:
+    """Return the status of the spec and of the tables and curves that it names; it differs after a save."""
+    return tuple(_read_stamp(Path(name)) for name in (spec, *_iter_files(spec)))
 
 
-def _stamp(path: Path) -> tuple[str, int, int, int] | None:
+def _read_stamp(path: Path) -> tuple[str, int, int, int] | None:
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return str(path), found.st_mtime_ns, found.st_size, found.st_ino
+    return str(path), status.st_mtime_ns, status.st_size, status.st_ino
 
 
-def _files_of(spec: str) -> Iterator[str]:
-    """The files that a spec names; none while it cannot be read."""
+def _iter_files(spec: str) -> Iterator[str]:
+    """Yield the files that a spec names; none while it cannot be read."""
     try:
-        data = mapping(read(spec, None).data)
+        data = as_mapping(read_source(spec, None).data)
     except (HeunError, Finding):
         return
     expected: Any = data.get("expect")
-    named = [mapping(table).get("file") for table in mapping(data.get("tables")).values()]
-    named += [mapping(item).get("curve") for item in (expected if isinstance(expected, list) else [])]
-    yield from (str(Path(spec).parent / name) for name in named if isinstance(name, str))
+    names = [as_mapping(table).get("file") for table in as_mapping(data.get("tables")).values()]
+    names += [as_mapping(item).get("curve") for item in (expected if isinstance(expected, list) else [])]
+    yield from (str(Path(spec).parent / name) for name in names if isinstance(name, str))

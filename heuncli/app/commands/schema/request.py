@@ -1,4 +1,4 @@
-"""What `heun schema` is asked for: its options."""
+"""Options of `heun schema`."""
 
 from typing import Annotated
 

@@ -1,70 +1,70 @@
-"""`heun sensitivity`: what measures hang on, and what tolerances make of them."""
+"""`heun sensitivity`: derivatives of measures by parameters, and the effect of tolerances on them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from heuncli.analyses.sensitivity.derivative import derivative
+from heuncli.analyses.sensitivity.derivative import compute_derivative
 from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
-from heuncli.analyses.sensitivity.spread import NumberSpread, summed
-from heuncli.analyses.sensitivity.spread_words import spreads_of
-from heuncli.analyses.variants.asking import Asker, Measured, Recipe
-from heuncli.analyses.variants.once import REASONS, ROUNDING, AnswersOnce
+from heuncli.analyses.sensitivity.spread import NumberSpread, combine_tolerances
+from heuncli.analyses.sensitivity.spread_words import parse_spreads
+from heuncli.analyses.variants.asking import MeasureValue, Recipe, VariantEvaluator
+from heuncli.analyses.variants.once import REASONS, ROUNDING, CachedEvaluator
 from heuncli.analyses.variants.written import WrittenNumber, WrittenNumbers
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.progress import progress
-from heuncli.app.cli.solving import all_or_errors, overrides, tolerance
-from heuncli.app.cli.target import format_of
-from heuncli.app.cli.units import say_what_stays, units
-from heuncli.app.cli.variant_warnings import warn_of_variants
+from heuncli.app.cli.progress import show_progress
+from heuncli.app.cli.solving import collect_results, parse_overrides, require_tolerance
+from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.units import note_si_format, parse_units
+from heuncli.app.cli.variant_warnings import print_variant_warnings
 from heuncli.app.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
 from heuncli.app.commands.sensitivity.request import SensitivityRequest
 from heuncli.base.errors import Problem
 from heuncli.output.snapshots import measure
-from heuncli.scene.file_format.source import text_in
+from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.stated import unit_of
+from heuncli.study.quantities.stated import find_unit
 
-USUAL = 10  # variants for each number, mostly
+VARIANTS_PER_NUMBER = 10  # usual number
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
 
 
 def main(request: SensitivityRequest) -> int:
     """Run the command; returns the exit code."""
-    path, names = spec_and_names(request.words)
+    path, names = parse_words(request.words)
     require_other_file(request.output, [path])
-    form = format_of(request.format, request.output, FORMATS)
-    shown = units(request.units)
-    asker = Asker(recipe_of(request, path))
-    recipe, spec = asker.recipe, asker.spec
+    form = choose_format(request.format, request.output, FORMATS)
+    units_shown = parse_units(request.units)
+    evaluator = VariantEvaluator(make_recipe(request, path))
+    recipe, spec = evaluator.recipe, evaluator.spec
     require_other_file(request.output, [path])
     written = WrittenNumbers(recipe, spec)
-    measure.known(recipe.measures, spec, [partial(written.named, name) for name in names])
-    spreads = spreads_of(request.spread, written) if request.spread is not None else []
-    numbers = asked_numbers(names, spreads, written)
-    # a value of another dimension, or none that may be set
-    all_or_errors(partial(asker.load, {number.name: number.text(number.value)}) for number in numbers)
+    measure.check_with_others(recipe.measures, spec, [partial(written.find_number, name) for name in names])
+    spreads = parse_spreads(request.spread, written) if request.spread is not None else []
+    numbers = select_numbers(names, spreads, written)
+    # raises SpecError for a wrong dimension, or a key that cannot be set
+    collect_results(partial(evaluator.load, {number.name: number.format_value(number.value)}) for number in numbers)
     texts = zip(request.measure, recipe.measures, strict=True)
-    heads = [(text, unit_of(asked.path, spec)) for text, asked in texts]
-    most = 1 + USUAL * len(numbers)
-    with progress(request.quiet) as tell:
-        once = AnswersOnce(asker, lambda runs: tell(min(runs, most), most, "variants"))
-        if once.of({}).code:
-            asker.study({})  # raises its own error, with its place
-        found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
-    page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(found), once.runs, shown)
+    heads = [(text, find_unit(measure_request.path, spec)) for text, measure_request in texts]
+    variant_count = 1 + VARIANTS_PER_NUMBER * len(numbers)
+    with show_progress(request.quiet) as report:
+        cached = CachedEvaluator(evaluator, lambda runs: report(min(runs, variant_count), variant_count, "variants"))
+        if cached.evaluate({}).code:
+            evaluator.solve({})  # raises the error with its location
+        all_findings = [analyse_measure(cached, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
+    page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(all_findings), cached.runs, units_shown)
     emit(FORMS[form](page), request.output)
-    say_what_stays(request.units, form, request.quiet)
-    warn_of_variants(spec, once, request.quiet)
-    return int(request.strict and any(one.kind == "refused" for each in found for one in each.slopes.values()))
+    note_si_format(request.units, form, request.quiet)
+    print_variant_warnings(spec, cached, request.quiet)
+    return int(request.strict and any(one.kind == "refused" for each in all_findings for one in each.slopes.values()))
 
 
-def spec_and_names(words: Sequence[str]) -> tuple[str, list[str]]:
-    """The spec's file, and what its measures may hang on. Raises UsageError."""
+def parse_words(words: Sequence[str]) -> tuple[str, list[str]]:
+    """Return the spec's file, and the names of the numbers. Raises UsageError."""
     if not words:
         hint = "heun sensitivity SPEC [NAME...] --measure WHAT"
         raise UsageError(Problem("bad-option", "sensitivity: no spec is named", hint=hint))
@@ -75,62 +75,73 @@ def spec_and_names(words: Sequence[str]) -> tuple[str, list[str]]:
     return words[0], list(dict.fromkeys(words[1:]))
 
 
-def recipe_of(request: SensitivityRequest, path: str) -> Recipe:
-    """What every variant is made of. Raises UsageError, SpecError."""
+def make_recipe(request: SensitivityRequest, path: str) -> Recipe:
+    """Make the recipe of all variants. Raises UsageError, SpecError."""
     if not request.measure:
         hint = "such as --measure 'max abs joints.main.force'"
         raise UsageError(Problem("bad-option", "sensitivity: nothing is measured", hint=hint))
-    options = Options(tolerance=tolerance(request.tolerance))
-    measures = tuple(measure.parse_all(request.measure))
-    return Recipe(path, text_in(path), measures, options, overrides(request.set), request.case)
+    options = Options(tolerance=require_tolerance(request.tolerance))
+    measures = tuple(measure.parse_measures(request.measure))
+    return Recipe(path, read_text(path), measures, options, parse_overrides(request.set), request.case)
 
 
-def asked_numbers(
-    names: Sequence[str], spreads: Sequence[NumberSpread], written: WrittenNumbers
+def select_numbers(
+    names: Sequence[str], spreads: Sequence[NumberSpread], spec_numbers: WrittenNumbers
 ) -> list[WrittenNumber]:
-    """The numbers that are named, and those with a spread; where there are none, all parameters."""
-    found = {name: written.named(name) for name in names} | {each.number.name: each.number for each in spreads}
-    numbers = [*found.values()] or list(written.all())
+    """Return the named numbers and those with a tolerance; if there are none, all parameters."""
+    by_name = {name: spec_numbers.find_number(name) for name in names} | {
+        each.number.name: each.number for each in spreads
+    }
+    numbers = [*by_name.values()] or list(spec_numbers.iter_parameters())
     if not numbers:
         message = "sensitivity: the spec has no parameters that are numbers"
         raise UsageError(Problem("bad-option", message, hint="name a dotted key, such as bodies.crank.mass"))
     return numbers
 
 
-def findings(
-    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[NumberSpread]
+def analyse_measure(
+    evaluator: CachedEvaluator,
+    measure_key: tuple[int, str],
+    numbers: Sequence[WrittenNumber],
+    spreads: Sequence[NumberSpread],
 ) -> MeasureFindings:
-    """What one measure, by its place and its unit, hangs on."""
-    ask = asking(once, which, {number.name: number for number in numbers})
-    slopes = {number.name: slope_of(ask, number) for number in numbers}
-    total = summed(ask, spreads, slopes) if spreads else None
-    return MeasureFindings(ask({}), slopes, total)
+    """Compute derivatives and tolerance effects of one measure.
+
+    measure_key: its index and its unit
+    """
+    evaluate = make_evaluation(evaluator, measure_key, {number.name: number for number in numbers})
+    slopes = {number.name: compute_slope(evaluate, number) for number in numbers}
+    total = combine_tolerances(evaluate, spreads, slopes) if spreads else None
+    return MeasureFindings(evaluate({}), slopes, total)
 
 
-def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> NoisyDerivative:
-    """The derivative by one number; one that is 0 is taken to matter over its unit."""
-    return derivative(lambda x: ask({number.name: x} if x else {}), number.value, abs(number.value) or 1.0)
+def compute_slope(evaluate: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> NoisyDerivative:
+    """Compute the derivative by one number; a number that is 0 is varied on the scale of its unit."""
+    return compute_derivative(lambda x: evaluate({number.name: x} if x else {}), number.value, abs(number.value) or 1.0)
 
 
-def asking(
-    once: AnswersOnce, which: tuple[int, str], numbers: Mapping[str, WrittenNumber]
+def make_evaluation(
+    evaluator: CachedEvaluator, measure_key: tuple[int, str], numbers: Mapping[str, WrittenNumber]
 ) -> Callable[[Mapping[str, float]], NoisyValue]:
-    """A measure, by its place and its unit (empty: it is counted), at distances of numbers from their values."""
+    """Make the function that evaluates a measure at distances of numbers from their values.
+
+    measure_key: its index and its unit; an empty unit means that it is a count
+    """
 
     def ask(distances: Mapping[str, float]) -> NoisyValue:
-        values = {name: numbers[name].text(numbers[name].value + x) for name, x in distances.items()}
-        answer = once.of(values)
+        values = {name: numbers[name].format_value(numbers[name].value + x) for name, x in distances.items()}
+        answer = evaluator.evaluate(values)
         if answer.code:
             return NoisyValue(None, why=(answer.code, answer.reason))
-        return noisy(answer.measures[which[0]], which[1])
+        return to_noisy_value(answer.measures[measure_key[0]], measure_key[1])
 
     return ask
 
 
-def noisy(found: Measured, unit: str) -> NoisyValue:
-    """A measure with its error, not below its rounding."""
-    if found.value is None:
-        return NoisyValue(None, why=(found.word, REASONS[found.word]))
+def to_noisy_value(measure_value: MeasureValue, unit: str) -> NoisyValue:
+    """Convert a measure to a value with an error no smaller than its rounding."""
+    if measure_value.value is None:
+        return NoisyValue(None, why=(measure_value.word, REASONS[measure_value.word]))
     if not unit:
         return NoisyValue(None, why=NO_ERROR)
-    return NoisyValue(found.value, max(found.error or 0.0, ROUNDING * abs(found.value)))
+    return NoisyValue(measure_value.value, max(measure_value.error or 0.0, ROUNDING * abs(measure_value.value)))

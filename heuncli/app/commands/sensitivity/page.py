@@ -1,4 +1,4 @@
-"""What measures hang on, as tables, JSON and CSV."""
+"""Render sensitivities and tolerance effects as tables, JSON and CSV."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any
 from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
 from heuncli.analyses.variants.written import WrittenNumber
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.export import dump
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.plurals import count
-from heuncli.output.tables.text_table import WIDTH, TextColumn, TextTable, labelled, plain
-from heuncli.study.quantities.digits import rough
-from heuncli.study.quantities.error_digits import with_digits
+from heuncli.output.tables.export import dump_json
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines, format_plain
+from heuncli.study.quantities.digits import format_error
+from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
 
@@ -31,12 +31,17 @@ CSV_COLUMNS = (
     "measure", "measure_unit", "kind", "name", "value", "unit", "derivative", "error", "relative", "relative_error",
     "spread", "contribution", "contribution_error", "code", "reason",
 )  # fmt: skip
-LINEAR = 0.05  # of the worst case: corners further off it are told
+LINEARITY_TOLERANCE = 0.05  # of the worst case; corners that differ by more get a note
 ALONE = "a number without a unit counts in SI"
 
 
 class MeasureFindings(NamedTuple):
-    """What one measure hangs on: its value, its derivatives by the names of numbers, and what spreads make of it."""
+    """The sensitivities of one measure.
+
+    base: its value
+    slopes: its derivatives by the names of the numbers
+    spread: the effect of the tolerances
+    """
 
     base: NoisyValue
     slopes: Mapping[str, NoisyDerivative]
@@ -44,7 +49,11 @@ class MeasureFindings(NamedTuple):
 
 
 class SensitivityPage(NamedTuple):
-    """What is told; heads: the words and the SI unit of each measure; runs: variants that were solved."""
+    """The content of the page.
+
+    heads: the words and the SI unit of each measure
+    runs: number of variants solved
+    """
 
     title: str
     numbers: tuple[WrittenNumber, ...]
@@ -54,9 +63,11 @@ class SensitivityPage(NamedTuple):
     units: Units
 
 
-def relative(number: WrittenNumber, found: MeasureFindings) -> tuple[float, float] | None:
-    """Per cent of the measure per per cent of the number, and its error; None where either is 0 or not known."""
-    slope, base = found.slopes[number.name], found.base
+def compute_elasticity(number: WrittenNumber, findings: MeasureFindings) -> tuple[float, float] | None:
+    """Return the change of the measure in per cent per per cent of the number, and its error; None if one is 0 or
+    unknown.
+    """
+    slope, base = findings.slopes[number.name], findings.base
     if slope.value is None or not base.value or not number.value:
         return None
     factor = number.value / base.value
@@ -64,58 +75,70 @@ def relative(number: WrittenNumber, found: MeasureFindings) -> tuple[float, floa
     return value, abs(factor) * slope.error + abs(value / base.value) * base.error
 
 
-def ordered(page: SensitivityPage, found: MeasureFindings) -> list[WrittenNumber]:
-    """The numbers, what the measure hangs on most of all first; then those of which that is not known."""
+def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[WrittenNumber]:
+    """Sort the numbers by their influence on the measure, the largest first, unknown ones last."""
 
     def weight(number: WrittenNumber) -> tuple[bool, float]:
-        told = relative(number, found)
+        told = compute_elasticity(number, findings)
         return told is None, -abs(told[0]) if told else 0.0
 
     return sorted(page.numbers, key=weight)
 
 
-def table(page: SensitivityPage) -> str:
-    """All measures, a table each, and one of its spreads."""
-    head = [("heun", f"{VERSION}  {page.title}"), ("sensitivity", f"{count(page.runs, 'variant')}; {ALONE}")]
+def render_table(page: SensitivityPage) -> str:
+    """Render a table per measure, and one of its tolerances."""
+    head = [("heun", f"{VERSION}  {page.title}"), ("sensitivity", f"{format_count(page.runs, 'variant')}; {ALONE}")]
     tables: list[TextTable] = []
-    for (text, unit), found in zip(page.heads, page.found, strict=True):
-        tables.append(_derivatives(page, text, unit, found))
-        if found.spread is not None:
-            tables.append(_spread(page, text, unit, found, found.spread))
-    return "\n".join([labelled(head), *("".join(plain(part, WIDTH) for part in fit(one, WIDTH)) for one in tables)])
-
-
-def _derivatives(page: SensitivityPage, text: str, unit: str, found: MeasureFindings) -> TextTable:
-    shown, size = page.units.of(unit)
-    base = found.base
-    value = (
-        f" = {_with_unit(with_digits(base.value * size, base.error * size), shown)}" if base.value is not None else ""
+    for (text, unit), findings in zip(page.heads, page.findings, strict=True):
+        tables.append(_make_derivative_table(page, text, unit, findings))
+        if findings.spread is not None:
+            tables.append(_make_spread_table(page, text, unit, findings, findings.spread))
+    return "\n".join(
+        [
+            format_labelled_lines(head),
+            *(
+                "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(one, DEFAULT_WIDTH))
+                for one in tables
+            ),
+        ]
     )
-    rows = tuple(row for number in ordered(page, found) for row in _rows(page, number, found, shown, size))
+
+
+def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings: MeasureFindings) -> TextTable:
+    display_unit, size = page.units.find(unit)
+    base = findings.base
+    value = (
+        f" = {_append_unit(format_with_error(base.value * size, base.error * size), display_unit)}"
+        if base.value is not None
+        else ""
+    )
+    rows = tuple(
+        row for number in sort_numbers(page, findings) for row in _make_rows(page, number, findings, display_unit, size)
+    )
     return TextTable(f"DERIVATIVES  of {text}{value}", COLUMNS, rows)
 
 
-def _rows(
-    page: SensitivityPage, number: WrittenNumber, found: MeasureFindings, unit: str, size: float
+def _make_rows(
+    page: SensitivityPage, number: WrittenNumber, findings: MeasureFindings, unit: str, size: float
 ) -> Iterator[tuple[str, ...]]:
-    """The row of a number; of one at which the measure bends a row for each side."""
-    slope, share = found.slopes[number.name], relative(number, found)
-    lead = (number.name, with_digits(number.value, 0.0), number.unit)
-    per = f"{unit if unit not in ('', '1') else '1'}/{_denominator(number.unit)}"
+    """Yield the row of a number; two rows, one for each side, if the measure has a kink there."""
+    slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
+    lead = (number.name, format_with_error(number.value, 0.0), number.unit)
+    per = f"{unit if unit not in ('', '1') else '1'}/{_format_denominator(number.unit)}"
     if slope.left is not None and slope.right is not None:
-        bends = f"on the right: it bends within {rough(slope.step)} of the value"
+        bends = f"on the right: it bends within {format_error(slope.step)} of the value"
         for (value, error), side in ((slope.left, "on the left"), (slope.right, bends)):
-            yield (*lead, with_digits(value * size, error * size), rough(error * size), per, "", side)
+            yield (*lead, format_with_error(value * size, error * size), format_error(error * size), per, "", side)
         return
     if slope.value is None:
         yield (*lead, "", "", "", "", f"{slope.why[1]} [{slope.why[0]}]")
         return
-    percent = with_digits(share[0], max(share[1], 1e-6 * abs(share[0]))) if share else ""
+    percent = format_with_error(share[0], max(share[1], 1e-6 * abs(share[0]))) if share else ""
     value, error = slope.value * size, slope.error * size
-    yield (*lead, with_digits(value, error), rough(error), per, percent, _note(slope))
+    yield (*lead, format_with_error(value, error), format_error(error), per, percent, _make_remark(slope))
 
 
-def _note(slope: NoisyDerivative) -> str:
+def _make_remark(slope: NoisyDerivative) -> str:
     if slope.kind == "nothing":
         return "nothing hangs on it"
     if slope.kind == "one-sided":
@@ -123,33 +146,35 @@ def _note(slope: NoisyDerivative) -> str:
     return "not told from 0" if abs(slope.value or 0.0) <= slope.error else ""
 
 
-def _denominator(unit: str) -> str:
+def _format_denominator(unit: str) -> str:
     return f"({unit})" if set("*/· ") & set(unit) else unit or "1"
 
 
-def _with_unit(text: str, unit: str) -> str:
+def _append_unit(text: str, unit: str) -> str:
     return f"{text} {unit}".rstrip() if unit != "1" else text
 
 
-def _spread(page: SensitivityPage, text: str, unit: str, found: MeasureFindings, total: SpreadSum) -> TextTable:
-    shown, size = page.units.of(unit)
+def _make_spread_table(
+    page: SensitivityPage, text: str, unit: str, findings: MeasureFindings, total: SpreadSum
+) -> TextTable:
+    display_unit, size = page.units.find(unit)
     largest = sorted(total.contributions, key=lambda one: -(one.size or 0.0))
-    rows = tuple(_contribution(one, size) for one in largest)
-    return TextTable(f"SPREAD  of {text}{f' [{shown}]' if shown not in ('', '1') else ''}", SPREAD_COLUMNS, rows,
-                     tuple(_sums(total, found.base, shown, size)))  # fmt: skip
+    rows = tuple(_make_contribution_row(one, size) for one in largest)
+    return TextTable(f"SPREAD  of {text}{f' [{display_unit}]' if display_unit not in ('', '1') else ''}", SPREAD_COLUMNS, rows,
+                     tuple(_describe_sums(total, findings.base, display_unit, size)))  # fmt: skip
 
 
-def _contribution(one: Contribution, size: float) -> tuple[str, ...]:
+def _make_contribution_row(one: Contribution, size: float) -> tuple[str, ...]:
     ends = tuple("" if end is None else f"{end * size:+.6g}" for end in (one.below, one.above))
     lead = (one.name, f"{one.spread:.6g}", one.unit)
     if one.size is None:
         return (*lead, "", "", *ends, "not known")
-    return (*lead, with_digits(one.size * size, one.error * size), rough(one.error * size), *ends,
+    return (*lead, format_with_error(one.size * size, one.error * size), format_error(one.error * size), *ends,
             "searched" if one.bent else "")  # fmt: skip
 
 
-def _searches(total: SpreadSum, size: float) -> Iterator[str]:
-    """What was found within spreads that are not linear, and what cannot be solved of them."""
+def _describe_nonlinear(total: SpreadSum, size: float) -> Iterator[str]:
+    """Describe the extremes found within tolerances that are not linear, and which part of them cannot be solved."""
     for one in total.contributions:
         if one.bent and one.least is not None and one.greatest is not None:
             linear = (
@@ -159,14 +184,14 @@ def _searches(total: SpreadSum, size: float) -> Iterator[str]:
                 f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")"
                 for x, change in (one.least, one.greatest)
             )
-            yield f"{one.name} is not linear over its spread: {ends}, by {count(one.variants, 'variant')}; {linear}"
+            yield f"{one.name} is not linear over its spread: {ends}, by {format_count(one.variants, 'variant')}; {linear}"
         if one.why[0]:
             yield f"{one.name}: a part of its spread cannot be solved: {one.why[1]} [{one.why[0]}]"
 
 
-def _sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterator[str]:
-    """Worst case, root of squares, and what the variants at the corners say of it."""
-    yield from _searches(total, size)
+def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterator[str]:
+    """Yield worst case, root of the sum of squares, and how the variants at the corners compare."""
+    yield from _describe_nonlinear(total, size)
     if total.worst is None or total.square is None:
         yield "worst case: not known, since a contribution is not"
         return
@@ -174,9 +199,9 @@ def _sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterato
     shown_by = ", shown by a variant of several numbers" if total.by_variant else ""
     found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
     words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
-    for word, (value, error), how in words:
-        text = _with_unit(with_digits(value * size, error * size), unit)
-        yield f"{word}: ± {text} (error {rough(error * size)}){how}"
+    for word, (value, error), remark in words:
+        text = _append_unit(format_with_error(value * size, error * size), unit)
+        yield f"{word}: ± {text} (error {format_error(error * size)}){remark}"
     low, high = total.corners
     if base.value is None or low.value is None or high.value is None:
         why = next((end.why for end in total.corners if end.value is None), ("", ""))
@@ -185,27 +210,27 @@ def _sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterato
     changes = low.value - base.value, high.value - base.value
     where = "where each does most" if any(one.bent for one in total.contributions) else "at their ends"
     text = f"the variants with all numbers {where}: {changes[0] * size:+.6g} and {changes[1] * size:+.6g}"
-    off = max(abs(abs(change) - total.worst[0]) for change in changes)
-    if off > LINEAR * total.worst[0] + total.worst[1] + low.error + high.error:
+    deviation = max(abs(abs(change) - total.worst[0]) for change in changes)
+    if deviation > LINEARITY_TOLERANCE * total.worst[0] + total.worst[1] + low.error + high.error:
         text += ": the spreads are too large for the sum"
     yield text
 
 
 def to_json(page: SensitivityPage) -> str:
-    """All of it; measures in SI, derivatives per unit as it is written and per SI unit."""
+    """Return all as JSON; measures in SI, derivatives per unit as written and per SI unit."""
     measures = [
         {
-            "measure": text, "unit": unit, "value": found.base.value, "error": found.base.error,
-            "derivatives": [_block(number, found) for number in ordered(page, found)],
-            **({"spread": _spread_block(found.spread)} if found.spread is not None else {}),
+            "measure": text, "unit": unit, "value": findings.base.value, "error": findings.base.error,
+            "derivatives": [_make_block(number, findings) for number in sort_numbers(page, findings)],
+            **({"spread": _make_spread_block(findings.spread)} if findings.spread is not None else {}),
         }
-        for (text, unit), found in zip(page.heads, page.found, strict=True)
+        for (text, unit), findings in zip(page.heads, page.findings, strict=True)
     ]  # fmt: skip
-    return dump({"heun": 1, "title": page.title, "runs": page.runs, "measures": measures})
+    return dump_json({"heun": 1, "title": page.title, "runs": page.runs, "measures": measures})
 
 
-def _block(number: WrittenNumber, found: MeasureFindings) -> dict[str, Any]:
-    slope, share = found.slopes[number.name], relative(number, found)
+def _make_block(number: WrittenNumber, findings: MeasureFindings) -> dict[str, Any]:
+    slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
     known = slope.value is not None
     block: dict[str, Any] = {
         "name": number.name, "value": number.value, "unit": number.unit, "si": number.value * number.size,
@@ -217,10 +242,12 @@ def _block(number: WrittenNumber, found: MeasureFindings) -> dict[str, Any]:
     }  # fmt: skip
     if slope.why[0]:
         block |= {"code": slope.why[0], "reason": slope.why[1]}
-    return block | {side: list(told) for side in ("left", "right") if (told := getattr(slope, side)) is not None}
+    return block | {
+        side: list(side_values) for side in ("left", "right") if (side_values := getattr(slope, side)) is not None
+    }
 
 
-def _spread_block(total: SpreadSum) -> dict[str, Any]:
+def _make_spread_block(total: SpreadSum) -> dict[str, Any]:
     low, high = total.corners
     return {
         "worst": total.worst[0] if total.worst else None, "worst_error": total.worst[1] if total.worst else None,
@@ -239,22 +266,28 @@ def _spread_block(total: SpreadSum) -> dict[str, Any]:
 
 
 def to_csv(page: SensitivityPage) -> str:
-    """A line a measure and number, and a line each for the sums of spreads."""
+    """Return one CSV line per measure and number, and one per sum of tolerances."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(CSV_COLUMNS)
-    for (words, unit), found in zip(page.heads, page.found, strict=True):
-        shares = {one.name: one for one in found.spread.contributions} if found.spread else {}
-        for number in ordered(page, found):
-            slope, share, one = found.slopes[number.name], relative(number, found), shares.get(number.name)
+    for (words, unit), findings in zip(page.heads, page.findings, strict=True):
+        shares = {one.name: one for one in findings.spread.contributions} if findings.spread else {}
+        for number in sort_numbers(page, findings):
+            slope, share, one = (
+                findings.slopes[number.name],
+                compute_elasticity(number, findings),
+                shares.get(number.name),
+            )
             spread = (one.spread, one.size, one.error) if one is not None else ("", "", "")
             error = slope.error if slope.value is not None else ""
             lead = (words, unit, slope.kind or "derivative", number.name, number.value, number.unit, slope.value, error)
             writer.writerow([*lead, *(share or ("", "")), *spread, *slope.why])
-        sums = (("worst", found.spread.worst), ("root_sum_square", found.spread.square)) if found.spread else ()
-        for word, told in sums:
-            writer.writerow([words, unit, word, *[""] * 8, *(told or ("", "")), "", ""])
+        sums = (
+            (("worst", findings.spread.worst), ("root_sum_square", findings.spread.square)) if findings.spread else ()
+        )
+        for word, total in sums:
+            writer.writerow([words, unit, word, *[""] * 8, *(total or ("", "")), "", ""])
     return text.getvalue()
 
 
-FORMS: dict[str, Callable[[SensitivityPage], str]] = {"table": table, "json": to_json, "csv": to_csv}
+FORMS: dict[str, Callable[[SensitivityPage], str]] = {"table": render_table, "json": to_json, "csv": to_csv}

@@ -1,4 +1,4 @@
-"""What `heun sensitivity` is asked for: its options and arguments."""
+"""Options and arguments of `heun sensitivity`."""
 
 from typing import Annotated
 

@@ -1,26 +1,26 @@
-"""The moving bodies of a solved scene as a file for programs that draw in space: up to its horizon, close enough."""
+"""Write the moving bodies of a solved scene as glTF, for 3D programs, up to the horizon."""
 
 from __future__ import annotations
 
 import math
 
 from heuncli.base import tolerances
-from heuncli.output.figures.courses import instants
-from heuncli.output.machine_geometry.gltf import binary
-from heuncli.output.machine_geometry.poses import poses_of, up_of
-from heuncli.output.web_page.geometry import looks_of
+from heuncli.output.figures.courses import choose_instants
+from heuncli.output.machine_geometry.gltf import encode_gltf
+from heuncli.output.machine_geometry.poses import compute_poses, find_up_direction
+from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.study.ask.study import Study
-from heuncli.study.search.instants import turned_between
+from heuncli.study.search.instants import find_largest_turns
 
-TOLD = "--glb: between two of its instants a body turns up to {:.0f}°; what is shown between them is not the motion"
+WARNING = "--glb: between two of its instants a body turns up to {:.0f}°; what is shown between them is not the motion"
 
 
-def moving_glb(study: Study) -> bytes:
-    """The file of a study whose motion was solved; the study's warnings tell where its instants are too few."""
-    times = instants(study)
-    if not study.of_one_instant and len(times) > 1:
-        turned = float(turned_between(study.setup, study.history, times).max(initial=0.0))
+def make_glb(study: Study) -> bytes:
+    """Make the glTF file of a solved motion; adds a warning to the study if its instants are too far apart."""
+    times = choose_instants(study)
+    if not study.has_one_instant and len(times) > 1:
+        turned = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
         if turned > tolerances.TORN:
-            study.later_warnings[TOLD.format(math.degrees(turned))] = None
-    poses = poses_of(study, times)
-    return binary(looks_of(study.spec, study.setup.scene), poses, up_of(study.spec, poses))
+            study.later_warnings[WARNING.format(math.degrees(turned))] = None
+    poses = compute_poses(study, times)
+    return encode_gltf(make_page_machine(study.spec, study.setup.scene), poses, find_up_direction(study.spec, poses))

@@ -1,4 +1,4 @@
-"""What `heun show` is asked for: its options and arguments."""
+"""Options and arguments of `heun show`."""
 
 from typing import Annotated
 

@@ -1,7 +1,7 @@
-"""What is looked at before the first variant runs: names and units of all that is varied, all problems at once.
+"""Check names and units of all axes before the first variant runs, and report all problems at once.
 
-What hangs on the size of a value (a negative mass, a loop that does not close) is no matter of this: such a variant has
-the reason in its row.
+Problems that depend on the size of a value (a negative mass, a loop that does not close) are not checked here: such a
+variant gets the reason in its row.
 """
 
 from __future__ import annotations
@@ -9,87 +9,98 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 
-from heuncli.analyses.variants.asking import CASE, OF_WORDS, Asker, varies_cases
-from heuncli.app.commands.sweep.given import GivenAxis
+from heuncli.analyses.variants.asking import CASE, SPELLING_CODES, VariantEvaluator, varies_cases
+from heuncli.app.commands.sweep.given import AxisArgument
 from heuncli.base.errors import Problem, SpecError
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.scene.file_format.overrides import path_of
+from heuncli.scene.file_format.overrides import parse_path
 
-# What is wrong with a value whatever its size; beside these all codes that begin with unknown-.
-OF_NAMES = frozenset({
+# Codes of problems that do not depend on a value's size, besides those that begin with unknown-.
+NAME_CODES = frozenset({
     "no-such-key", "dimension", "wrong-dimension", "wrong-kind", "expression-syntax", "expression-limit",
     "function-arguments", "parameter-circle", "not-in-time", "not-yaml", "bad-character", "too-deep", "empty",
 })  # fmt: skip
 ONCE = "one axis a parameter"
 
 
-def problems_of(given: Sequence[GivenAxis], asker: Asker, set_: Collection[str]) -> list[Problem]:
-    """What is wrong with the names and units of what is varied; set_: what is set in all variants."""
-    found = list(_twice(given, asker, set_))
-    for one in given if not found else ():
-        if one.name == CASE and varies_cases(asker.spec):
-            found += _cases(one, asker)
-        elif one.name == CASE and CASE not in asker.spec.parameters:
+def find_problems(
+    axes: Sequence[AxisArgument], evaluator: VariantEvaluator, overrides: Collection[str]
+) -> list[Problem]:
+    """Return the problems of the axes' names and units.
+
+    overrides: names that --set sets in all variants
+    """
+    problems = list(_find_duplicates(axes, evaluator, overrides))
+    for one in axes if not problems else ():
+        if one.name == CASE and varies_cases(evaluator.spec):
+            problems += _check_cases(one, evaluator)
+        elif one.name == CASE and CASE not in evaluator.spec.parameters:
             problem = Problem(
                 "no-such-key", "the spec has no load cases", hint="cases: {NAME: {set: {PARAMETER: VALUE}}}"
             )
-            found.append(one.told(problem))
+            problems.append(one.locate_problem(problem))
         else:
-            found += _values(one, asker)
-    return list(dict.fromkeys(found))
+            problems += _check_values(one, evaluator)
+    return list(dict.fromkeys(problems))
 
 
-def _twice(given: Sequence[GivenAxis], asker: Asker, set_: Collection[str]) -> Iterator[Problem]:
-    """What is varied by two words, or varied and set."""
-    data = {"parameters": dict.fromkeys(asker.spec.parameters)}
-    paths = [path_of(one.name, data) for one in given]
-    fixed = [path_of(name, data) for name in set_]
-    for k, one in enumerate(given):
+def _find_duplicates(
+    axes: Sequence[AxisArgument], evaluator: VariantEvaluator, overrides: Collection[str]
+) -> Iterator[Problem]:
+    """Yield parameters that two words vary, or that are both varied and set."""
+    data = {"parameters": dict.fromkeys(evaluator.spec.parameters)}
+    paths = [parse_path(one.name, data) for one in axes]
+    fixed = [parse_path(name, data) for name in overrides]
+    for k, one in enumerate(axes):
         if paths[k] in paths[:k]:
-            yield one.told(Problem("bad-option", f"{one.name} is varied twice", hint=ONCE))
+            yield one.locate_problem(Problem("bad-option", f"{one.name} is varied twice", hint=ONCE))
         elif paths[k] in fixed:
             message = f"{one.name} is varied, and set by --set"
-            yield one.told(Problem("bad-option", message, hint="leave one of them out"))
+            yield one.locate_problem(Problem("bad-option", message, hint="leave one of them out"))
 
 
-def _cases(one: GivenAxis, asker: Asker) -> Iterator[Problem]:
-    """The load cases that are none."""
-    known = asker.spec.cases
-    for text, k in one.samples().items():
+def _check_cases(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Problem]:
+    """Yield load cases that do not exist."""
+    known = evaluator.spec.cases
+    for text, k in one.list_samples().items():
         if text not in known and (text != ALL_CASES or len(one.texts) > 1 or one.column is not None):
-            hint = did_you_mean(text, known, "cases")
-            yield one.told(Problem("unknown-case", f"there is no load case '{text}'", hint=hint), k)
+            hint = suggest(text, known, "cases")
+            yield one.locate_problem(Problem("unknown-case", f"there is no load case '{text}'", hint=hint), k)
 
 
-def _values(one: GivenAxis, asker: Asker) -> Iterator[Problem]:
-    """What is wrong with an axis whatever the size of its values: of each kind the first place at which it is."""
-    for text, k in one.samples().items():
+def _check_values(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Problem]:
+    """Yield the problems of an axis that do not depend on the size of its values, at the first location of each
+    kind.
+    """
+    for text, k in one.list_samples().items():
         try:
-            asker.load({one.name: text})
+            evaluator.load({one.name: text})
         except SpecError as error:
-            found = [each for each in error.problems if each.code in OF_NAMES or each.code.startswith("unknown-")]
-            more = f"; in all at {len(found)} places" if len(found) > 1 else ""
-            for problem in found[:1]:
-                told = problem._replace(message=problem.message + more)
-                yield one.told(told, None if problem.code == "no-such-key" else k)
+            relevant = [each for each in error.problems if each.code in NAME_CODES or each.code.startswith("unknown-")]
+            count_text = f"; in all at {len(relevant)} places" if len(relevant) > 1 else ""
+            for problem in relevant[:1]:
+                extended = problem._replace(message=problem.message + count_text)
+                yield one.locate_problem(extended, None if problem.code == "no-such-key" else k)
 
 
-def warnings_of(given: Sequence[GivenAxis], asker: Asker) -> list[str]:
-    """What should be known of the axes before their variants are solved, a sentence each."""
-    found = []
-    for one in given:
-        for text, k in one.samples().items():
+def find_warnings(axes: Sequence[AxisArgument], evaluator: VariantEvaluator) -> list[str]:
+    """Return warnings about the axes, one sentence each, before their variants are solved."""
+    warnings = []
+    for one in axes:
+        for text, k in one.list_samples().items():
             with suppress(SpecError):
-                spec = asker.load({one.name: text})
-                told = [one.told(problem, k) for problem in spec.warnings if problem.code in OF_WORDS]
-                found += [str(problem._replace(hint=_with_unit(one, problem))) for problem in told]
-    idle = asker.idle([one.name for one in given])
-    found += [f"{one.word}: nothing hangs on {one.name}" for one in given if one.name in idle]
-    return list(dict.fromkeys(found))
+                spec = evaluator.load({one.name: text})
+                located = [
+                    one.locate_problem(problem, k) for problem in spec.warnings if problem.code in SPELLING_CODES
+                ]
+                warnings += [str(problem._replace(hint=_make_unit_hint(one, problem))) for problem in located]
+    unused = evaluator.find_unused_parameters([one.name for one in axes])
+    warnings += [f"{one.word}: nothing hangs on {one.name}" for one in axes if one.name in unused]
+    return list(dict.fromkeys(warnings))
 
 
-def _with_unit(one: GivenAxis, problem: Problem) -> str:
+def _make_unit_hint(one: AxisArgument, problem: Problem) -> str:
     unit = problem.message.rpartition(" in ")[2]
     return (
         f"in the head of the column: {one.name} [{unit}]"

@@ -1,68 +1,84 @@
-"""What is varied as it was given: words of the command line and columns of a table, every value with its place."""
+"""The axes of a sweep as they were given, by words of the command line or columns of a table, each value with its
+location.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.analyses.variants.axes import Drawn, ParameterAxis, axis_of, figure_of, text_of
+from heuncli.analyses.variants.axes import (
+    ParameterAxis,
+    RandomVariable,
+    format_quantity,
+    parse_axis_values,
+    parse_figure,
+)
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 
-MOST_SAMPLES = 1000  # of an axis: each is read twice before the first variant runs
+MAX_SAMPLES = 1000  # of an axis; each is read twice before the first variant runs
 
 
-class GivenColumn(NamedTuple):
-    """A column of a table of variants: its file, where its head stands, and each of its cells (line, column from 1)."""
+class AxisColumn(NamedTuple):
+    """A column of a table of variants: its file, and the location of its head and of each cell (line, column from
+    1).
+    """
 
     file: str
     head: tuple[int, int]
     cells: Sequence[tuple[int, int]]
 
 
-class GivenAxis(NamedTuple):
-    """An axis, and the word of the command line or the column that asks for it."""
+class AxisArgument(NamedTuple):
+    """An axis, and the word of the command line or the column that defines it."""
 
-    axis: ParameterAxis | Drawn
+    axis: ParameterAxis | RandomVariable
     word: str
-    column: GivenColumn | None = None
+    column: AxisColumn | None = None
 
     @property
     def name(self) -> str:
-        """What is varied."""
+        """Name of the parameter."""
         return self.axis.name
 
     @property
     def texts(self) -> Sequence[str]:
-        """Its values; of what is drawn one that is like them."""
+        """Its values; for a random variable one typical value."""
         axis = self.axis
-        return (text_of(axis.a, axis.unit),) if isinstance(axis, Drawn) else axis.texts
+        return (format_quantity(axis.a, axis.unit),) if isinstance(axis, RandomVariable) else axis.texts
 
-    def samples(self) -> dict[str, int]:
-        """By text, and with its place among the values, one of each kind: a number of each unit, and all else."""
-        seen: set[str] = set()
-        found: dict[str, int] = {}
+    def list_samples(self) -> dict[str, int]:
+        """Return one value of each kind (numbers of each unit, and all other texts), with its index among the
+        values.
+        """
+        known_kinds: set[str] = set()
+        samples: dict[str, int] = {}
         for k, text in enumerate(self.texts):
-            figure = figure_of(text)
+            figure = parse_figure(text)
             kind = f"number {figure.unit}" if figure is not None else text
-            if kind not in seen:
-                seen.add(kind)
-                found[text] = k
-                if len(found) >= MOST_SAMPLES:
+            if kind not in known_kinds:
+                known_kinds.add(kind)
+                samples[text] = k
+                if len(samples) >= MAX_SAMPLES:
                     break
-        return found
+        return samples
 
-    def told(self, problem: Problem, k: int | None = None) -> Problem:
-        """A problem of its k-th value, or of its name, at its place."""
+    def locate_problem(self, problem: Problem, k: int | None = None) -> Problem:
+        """Return a problem of the k-th value, or of the name, with its location."""
         if self.column is None:
-            place, where = None, f"{self.word}: "
+            place, prefix = None, f"{self.word}: "
         else:
             line, column = self.column.head if k is None else self.column.cells[k]
-            place, where = SourceLocation(self.column.file, line, column, self.name), ""
-        at = problem.location
-        entered = f"at {at}: {at.path}: " if at is not None and not at.file.startswith("--set ") else ""
-        return Problem(problem.code, f"{where}{entered}{problem.message}", place, problem.hint)
+            place, prefix = SourceLocation(self.column.file, line, column, self.name), ""
+        inner_location = problem.location
+        inner_text = (
+            f"at {inner_location}: {inner_location.path}: "
+            if inner_location is not None and not inner_location.file.startswith("--set ")
+            else ""
+        )
+        return Problem(problem.code, f"{prefix}{inner_text}{problem.message}", place, problem.hint)
 
 
-def of_word(word: str) -> GivenAxis:
-    """What one word of the command line asks for. Raises AxisError."""
-    return GivenAxis(axis_of(word), word)
+def parse_axis(word: str) -> AxisArgument:
+    """Parse one word of the command line. Raises AxisError."""
+    return AxisArgument(parse_axis_values(word), word)

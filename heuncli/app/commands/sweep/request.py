@@ -1,4 +1,4 @@
-"""What `heun sweep` is asked for: its options and arguments."""
+"""Options and arguments of `heun sweep`."""
 
 from typing import Annotated
 

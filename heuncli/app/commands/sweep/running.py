@@ -1,4 +1,4 @@
-"""A sweep under way: what is missing goes to the workers, every answer into the store; at the end all of it is told.
+"""Run a sweep: send missing variants to the workers, store every result, and write all of them at the end.
 
 Impure: writes the store and the results, listens to signals.
 """
@@ -11,32 +11,32 @@ from collections.abc import Generator, Iterator
 from contextlib import closing
 
 from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.sweep_store.store.heads import texts_of_head
+from heuncli.analyses.sweep_store.store.heads import write_head
 from heuncli.analyses.sweep_store.store.store import Store, StoredRows
-from heuncli.analyses.variants.asking import Answer, Asker
+from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG
-from heuncli.app.cli.output import say
-from heuncli.app.cli.progress import Tell, progress
-from heuncli.app.cli.units import say_what_stays
+from heuncli.app.cli.output import print_stderr
+from heuncli.app.cli.progress import ReportProgress, show_progress
+from heuncli.app.cli.units import note_si_format
 from heuncli.app.commands.sweep.request import SweepRequest
-from heuncli.app.commands.sweep.telling.noticed import Noticed, noticed_in, say_noticed
-from heuncli.app.commands.sweep.telling.told import Telling, tell
-from heuncli.app.commands.sweep.workers import answers_of
+from heuncli.app.commands.sweep.telling.noticed import SweepWarnings, collect_warnings, print_warnings_summary
+from heuncli.app.commands.sweep.telling.told import SweepOutput, write_sweep
+from heuncli.app.commands.sweep.workers import solve_variants
 from heuncli.base.errors import OutputError, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.signals import Stopping
+from heuncli.base.signals import GracefulStop
 from heuncli.study.ask.measure import NotOneNumber
 
-PAUSE = 0.1  # seconds from one line of progress to the next
-NO_NUMBER = ("bad-option", "unknown-path")  # codes of a measure that is no number of the scene
+REPORT_INTERVAL = 0.1  # seconds between progress reports
+NO_NUMBER = ("bad-option", "unknown-path")  # codes of a measure that is not a number of the scene
 
 
-class Sweep(NamedTuple):
-    """A sweep that is to be done: of what, by whom, where its rows go, and which part of it."""
+class SweepTask(NamedTuple):
+    """A sweep to run: its evaluator, head, keys and store, and the part (shard) of it."""
 
-    asker: Asker
+    asker: VariantEvaluator
     head: SweepHead
     keys: VariantKeys
     store: Store
@@ -44,148 +44,162 @@ class Sweep(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many variants the part has."""
+        """Number of variants of the part."""
         k, n = self.shard
         return len(range(k - 1, self.head.plan.size, n))
 
-    def identity(self) -> bytes:
-        """By which the same sweep is known again: of the same spec, plan, measures and options."""
-        texts, draws = texts_of_head(self.head)
-        return bytes(hashlib.sha256(b"\0".join((self.keys.of_spec(), texts.encode(), draws or b""))).digest())
+    def compute_identity(self) -> bytes:
+        """Return the digest that identifies the same sweep: of spec, plan, measures and options."""
+        texts, draws = write_head(self.head)
+        return bytes(hashlib.sha256(b"\0".join((self.keys.make_spec_key(), texts.encode(), draws or b""))).digest())
 
 
-class Under(NamedTuple):
-    """A variant that is under way: its key and its values."""
+class PendingVariant(NamedTuple):
+    """A variant that is being solved: its key and its values."""
 
     key: bytes
     given: tuple[str, ...]
 
 
-def run(sweep: Sweep, request: SweepRequest, how: Telling) -> int:
-    """Solve what is missing and tell all of it; returns the exit code."""
-    number = sweep.store.sweep(sweep.head, sweep.identity())
-    with Stopping() as stopping:
-        done = _done(sweep, number, request, stopping)
-    rows = sweep.store.rows(number, sweep.head.plan.names, sweep.shard)
+def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> int:
+    """Solve the missing variants and write all results; returns the exit code."""
+    number = sweep.store.find_or_add_sweep(sweep.head, sweep.compute_identity())
+    with GracefulStop() as stopping:
+        done_count = _solve_missing(sweep, number, request, stopping)
+    rows = sweep.store.find_rows(number, sweep.head.plan.names, sweep.shard)
     if stopping.number:
-        if request.store is None and done:
-            tell(sweep.head, rows, how)
-        goes_on = "the same command goes on with the rest" if request.store is not None else "--store FILE keeps them"
-        say(f"{stopping.word}: {done} of {sweep.size} variants are done; {goes_on}")
+        if request.store is None and done_count:
+            write_sweep(sweep.head, rows, output)
+        advice = "the same command goes on with the rest" if request.store is not None else "--store FILE keeps them"
+        print_stderr(f"{stopping.reason}: {done_count} of {sweep.size} variants are done; {advice}")
         return 128 + stopping.number
-    noticed = noticed_in(sweep.head, rows)
-    if len(noticed.codes) == 1 and noticed.failed == sweep.size:
-        _require_one(sweep, rows)
-    tell(sweep.head, rows, how)
-    say_what_stays(request.units, how.form, request.quiet)
-    say_noticed(noticed, request.quiet)
-    return exit_code(noticed, request.strict)
+    warnings = collect_warnings(sweep.head, rows)
+    if len(warnings.codes) == 1 and warnings.failure_count == sweep.size:
+        _raise_common_error(sweep, rows)
+    write_sweep(sweep.head, rows, output)
+    note_si_format(request.units, output.form, request.quiet)
+    print_warnings_summary(warnings, request.quiet)
+    return choose_exit_code(warnings, request.strict)
 
 
-def exit_code(noticed: Noticed, strict: bool) -> int:
-    """That of a sweep that was told."""
-    return BUG if "bug" in noticed.codes else 1 if strict and noticed.failed else 0
+def choose_exit_code(warnings: SweepWarnings, strict: bool) -> int:
+    """Return the exit code of a finished sweep."""
+    return BUG if "bug" in warnings.codes else 1 if strict and warnings.failure_count else 0
 
 
-def _done(sweep: Sweep, number: int, request: SweepRequest, stopping: Stopping) -> int:
-    """Answer what is missing, and keep it; returns how many variants of the part are done."""
-    under_way: dict[int, Under] = {}
-    count = Count(sweep.size)
+def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stopping: GracefulStop) -> int:
+    """Solve and store the missing variants; returns how many variants of the part are done."""
+    pending: dict[int, PendingVariant] = {}
+    count = SweepProgress(sweep.size)
     plan, store = sweep.head.plan, sweep.store
 
     def missing() -> Iterator[int]:
-        for variant in plan.numbers(sweep.shard):
-            values = plan.values(variant)
-            under = Under(sweep.keys.of(values), tuple(values.values()))
-            if store.has(under.key):
-                store.take_up(number, variant, *under)
-                count.there += 1
+        for variant in plan.iter_numbers(sweep.shard):
+            values = plan.find_values(variant)
+            variant_values = PendingVariant(sweep.keys.make_key(values), tuple(values.values()))
+            if store.has_result(variant_values.key):
+                store.link_variant(number, variant, *variant_values)
+                count.stored += 1
             else:
-                under_way[variant] = under
+                pending[variant] = variant_values
                 yield variant
 
-    answers = _answers(sweep, missing(), request, stopping.descriptor)
-    with progress(request.quiet) as tell, closing(answers):
+    results = _solve_variants(sweep, missing(), request, stopping.descriptor)
+    with show_progress(request.quiet) as report, closing(results):
         try:
-            for variant, answer in answers:
-                if not count.solved and answer.code in NO_NUMBER:
-                    _require_numbers(sweep.asker, plan.values(variant))
-                store.keep(number, variant, *under_way.pop(variant), answer)
-                count.take(answer)
-                count.tell(tell)
+            for variant, result in results:
+                if not count.successes and result.code in NO_NUMBER:
+                    _require_numbers(sweep.evaluator, plan.find_values(variant))
+                store.add_result(number, variant, *pending.pop(variant), result)
+                count.add(result)
+                count.report(report)
         except OutputError as error:
-            told = f"; {count.done} of {count.of} variants are done" + (" and kept" if request.store else "")
-            error.tell(*(problem._replace(message=problem.message + told) for problem in error.problems))
+            done_text = f"; {count.done_count} of {count.total} variants are done" + (
+                " and kept" if request.store else ""
+            )
+            error.replace_problems(
+                *(problem._replace(message=problem.message + done_text) for problem in error.problems)
+            )
             raise
-    return count.done
+    return count.done_count
 
 
-def _answers(
-    sweep: Sweep, numbers: Iterator[int], request: SweepRequest, stopped: int
-) -> Generator[tuple[int, Answer], None, None]:
-    """The variants answered, by processes of this machine or by a cluster."""
+def _solve_variants(
+    sweep: SweepTask, numbers: Iterator[int], request: SweepRequest, stop_descriptor: int
+) -> Generator[tuple[int, VariantResult], None, None]:
+    """Solve the variants, in processes of this machine or on a cluster."""
     plan = sweep.head.plan
     if request.dask is None:
-        yield from answers_of(sweep.asker, plan, numbers, jobs.how_many(request.jobs, sweep.size), stopped)
+        yield from solve_variants(
+            sweep.evaluator, plan, numbers, jobs.choose_job_count(request.jobs, sweep.size), stop_descriptor
+        )
         return
-    from heuncli.app.commands.sweep.cluster import flow  # what is heavy, and not everybody has
+    from heuncli.app.commands.sweep.cluster import flow  # imports an optional, large package
 
     def told(line: str) -> None:
         if not request.quiet:
-            say(f"heun: {line}")
+            print_stderr(f"heun: {line}")
 
-    yield from flow.answers_of(sweep.asker.recipe, plan, numbers, request.dask, sweep.size, told, stopped)
+    yield from flow.solve_variants(
+        sweep.evaluator.recipe, plan, numbers, request.dask, sweep.size, told, stop_descriptor
+    )
 
 
-class Count:
-    """How far a sweep is."""
+class SweepProgress:
+    """The progress of a sweep."""
 
-    def __init__(self, of: int) -> None:
-        self.of, self.there, self.answered, self.solved = of, 0, 0, 0
-        self.begun = self.told = time.monotonic()
+    def __init__(self, total: int) -> None:
+        self.total, self.stored, self.solved_now, self.successes = total, 0, 0, 0
+        self.start_time = self.report_time = time.monotonic()
 
     @property
-    def done(self) -> int:
-        """How many variants are there."""
-        return self.there + self.answered
+    def done_count(self) -> int:
+        """Number of variants that are done."""
+        return self.stored + self.solved_now
 
-    def take(self, answer: Answer) -> None:
-        """Another one is answered."""
-        self.answered += 1
-        self.solved += not answer.code
+    def add(self, result: VariantResult) -> None:
+        """Count another result."""
+        self.solved_now += 1
+        self.successes += not result.code
 
-    def tell(self, tell: Tell) -> None:
-        """How many of how many, how fast, and how long it will take."""
+    def report(self, report_progress: ReportProgress) -> None:
+        """Report how many variants are done, how fast, and how long the rest will take."""
         now = time.monotonic()
-        if now < self.told + PAUSE:
+        if now < self.report_time + REPORT_INTERVAL:
             return
-        self.told = now
-        rate = self.answered / max(now - self.begun, 1e-9)
-        left = (self.of - self.done) / rate
-        tell(self.done, self.of, f"{self.done} of {self.of} variants, {rate:.3g} a second, {in_words(left)} to go")
+        self.report_time = now
+        rate = self.solved_now / max(now - self.start_time, 1e-9)
+        remaining = (self.total - self.done_count) / rate
+        report_progress(
+            self.done_count,
+            self.total,
+            f"{self.done_count} of {self.total} variants, {rate:.3g} a second, {format_duration(remaining)} to go",
+        )
 
 
-def in_words(seconds: float) -> str:
-    """A time that is left."""
+def format_duration(seconds: float) -> str:
+    """Format a remaining time."""
     minutes, s = divmod(int(seconds + 0.5), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {s:02} s" if minutes else f"{s} s"
 
 
-def _require_numbers(asker: Asker, values: dict[str, str]) -> None:
-    """Raise what is wrong with a measure of a scene that can be solved."""
+def _require_numbers(evaluator: VariantEvaluator, values: dict[str, str]) -> None:
+    """Raise the error of a measure that is not a number, if the scene can be solved."""
     try:
-        asker.measured(values)
+        evaluator.measure(values)
     except NotOneNumber as error:
-        error.tell(*(problem._replace(message=f"--measure: {problem.message}") for problem in error.problems))
+        error.replace_problems(
+            *(problem._replace(message=f"--measure: {problem.message}") for problem in error.problems)
+        )
         raise
 
 
-def _require_one(sweep: Sweep, rows: StoredRows) -> None:
-    """Raise what is wrong with the spec in all variants, with its place and hint. Raises SpecError."""
+def _raise_common_error(sweep: SweepTask, rows: StoredRows) -> None:
+    """Raise the SpecError that all variants share, with its location and hint."""
     first = next(iter(rows))
     try:
-        sweep.asker.load(first.values)
+        sweep.evaluator.load(first.values)
     except SpecError as error:
         if error.problems[0].code == first.answer.code:
             raise

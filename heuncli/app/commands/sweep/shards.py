@@ -1,4 +1,4 @@
-"""`--shard K/N`: a part of a sweep, for schedulers of one's own."""
+"""The option `--shard K/N`: a part of a sweep, for external schedulers."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.base.errors import Problem
 
 
-def shard_of(word: str | None) -> tuple[int, int]:
-    """Which part of how many. Raises UsageError."""
+def parse_shard(word: str | None) -> tuple[int, int]:
+    """Return the number of the part, and of how many. Raises UsageError."""
     if word is None:
         return 1, 1
     k, slash, n = word.partition("/")

@@ -1,57 +1,57 @@
-"""`heun sweep --show FILE`: a sweep of a store told as it is there; nothing is solved. Impure: reads the store."""
+"""`heun sweep --show FILE`: write a sweep from a store; nothing is solved. Impure: reads the store."""
 
 from __future__ import annotations
 
 from contextlib import closing
 
-from heuncli.analyses.sweep_store.store.store import opened
-from heuncli.analyses.sweep_store.which import chosen, line_of, name_and_number
+from heuncli.analyses.sweep_store.store.store import open_store
+from heuncli.analyses.sweep_store.which import choose_sweep, format_sweep, split_number
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import same_file
-from heuncli.app.cli.output import say
-from heuncli.app.cli.units import say_what_stays
+from heuncli.app.cli.guard import is_same_file
+from heuncli.app.cli.output import print_stderr
+from heuncli.app.cli.units import note_si_format
 from heuncli.app.commands.sweep.request import SweepRequest
-from heuncli.app.commands.sweep.running import exit_code
-from heuncli.app.commands.sweep.shards import shard_of
-from heuncli.app.commands.sweep.telling.noticed import noticed_in, say_noticed
-from heuncli.app.commands.sweep.telling.told import Telling, tell
+from heuncli.app.commands.sweep.running import choose_exit_code
+from heuncli.app.commands.sweep.shards import parse_shard
+from heuncli.app.commands.sweep.telling.noticed import collect_warnings, print_warnings_summary
+from heuncli.app.commands.sweep.telling.told import SweepOutput, write_sweep
 from heuncli.base.errors import Problem
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 
-ALONE = (
+EXCLUDED_OPTIONS = (
     "words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance", "zip",
     "samples", "seed", "indices",
 )  # fmt: skip
 
 
-def show(request: SweepRequest, how: Telling) -> int:
-    """Tell a sweep of a store; returns the exit code. Raises UsageError, OutputError."""
+def show_stored(request: SweepRequest, output: SweepOutput) -> int:
+    """Write a sweep of a store; returns the exit code. Raises UsageError, OutputError."""
     assert request.show is not None
     _require_alone(request)
-    name, asked = name_and_number(request.show, "--show")
-    shard = shard_of(request.shard)
-    if request.output is not None and same_file(name, request.output):
+    name, sweep_number = split_number(request.show, "--show")
+    shard = parse_shard(request.shard)
+    if request.output is not None and is_same_file(name, request.output):
         raise UsageError(Problem("bad-option", "--show and -o name the same file", hint="name another file"))
-    store = opened(name)
+    store = open_store(name)
     with closing(store.connection):
-        sweeps = list(store.sweeps())
-        sweep = chosen(name, asked, sweeps, "--show")
-        if len(sweeps) > 1 and asked is None and not request.quiet:
+        sweeps = list(store.iter_sweeps())
+        sweep = choose_sweep(name, sweep_number, sweeps, "--show")
+        if len(sweeps) > 1 and sweep_number is None and not request.quiet:
             for one in sweeps:
-                say(f"heun: {shown(name)}:{one.number}  {line_of(one)}")
-        rows = store.rows(sweep.number, sweep.head.plan.names, shard)
-        tell(sweep.head, rows, how)
-        say_what_stays(request.units, how.form, request.quiet)
-        if sweep.done < sweep.head.plan.size and not request.quiet:
-            say(f"heun: {sweep.done} of {sweep.head.plan.size} variants are done")
-        noticed = noticed_in(sweep.head, rows)
-        say_noticed(noticed, request.quiet)
-        return exit_code(noticed, request.strict)
+                print_stderr(f"heun: {escape(name)}:{one.number}  {format_sweep(one)}")
+        rows = store.find_rows(sweep.number, sweep.head.plan.names, shard)
+        write_sweep(sweep.head, rows, output)
+        note_si_format(request.units, output.form, request.quiet)
+        if sweep.variant_count < sweep.head.plan.size and not request.quiet:
+            print_stderr(f"heun: {sweep.variant_count} of {sweep.head.plan.size} variants are done")
+        sweep_warnings = collect_warnings(sweep.head, rows)
+        print_warnings_summary(sweep_warnings, request.quiet)
+        return choose_exit_code(sweep_warnings, request.strict)
 
 
 def _require_alone(request: SweepRequest) -> None:
-    """Raise UsageError where more is asked for than to tell what is there."""
-    for name in ALONE:
+    """Raise UsageError for options that would solve something."""
+    for name in EXCLUDED_OPTIONS:
         if getattr(request, name):
             word = " ".join(request.words) if name == "words" else f"--{name.removesuffix('_each').replace('_', '-')}"
             hint = "--show solves nothing: leave it out, or name the store with --store"

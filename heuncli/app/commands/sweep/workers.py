@@ -1,10 +1,10 @@
-"""The variants of a plan answered by processes of this machine, each forked from this one with the scene set up.
+"""Solve the variants of a plan in processes of this machine, each forked from this one with the scene set up.
 
-    answers_of(asker, plan, numbers, jobs)  ->  (number, Answer), in the order in which they come
+    solve_variants(evaluator, plan, numbers, jobs)  ->  (number, VariantResult), in the order of completion
 
-Whatever else answers variants (a cluster) has this form: numbers are drawn from it as there is room for them, and every
-number that was drawn is answered once. A process that dies takes a batch with it: its variants are tried once more, one
-by one, and the one that ends a second process has that for its answer. Impure: processes, the clock.
+The cluster has the same form: it takes numbers as it has capacity for them, and yields each taken number once. If a
+process dies its batch is lost: the variants of the batch are tried once more, one by one, and the one that ends a
+second process gets that as its result. Impure: processes, the clock.
 """
 
 from __future__ import annotations
@@ -15,86 +15,89 @@ from functools import partial
 from itertools import islice
 
 from heuncli.analyses.sweep_store.rows import WORKER_DIED
-from heuncli.analyses.variants.asking import Answer, Asker, failed
+from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult, make_failed_result
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli import alarm, jobs
-from heuncli.app.cli.entry import contained
+from heuncli.app.cli.entry import run_contained
 from heuncli.base.errors import HeunError
 from heuncli.base.named_tuples import NamedTuple
 
-BATCH = 0.2  # seconds that a batch takes: long beside the way to a process and back, short beside what a kill loses
-GROWTH = 8  # times the batch before, at most: of the first variants some wait for what is only made once
-MOST = 2000  # variants of a batch
+BATCH_SECONDS = 0.2  # seconds of a batch: long compared with the transfer, short enough to lose
+GROWTH = 8  # largest growth from batch to batch: the first variants include one-off work
+MAX_BATCH = 2000  # largest number of variants of a batch
 
 
-class Answered(NamedTuple):
-    """The answers of a batch, and what they took [s]."""
+class BatchResults(NamedTuple):
+    """The results of a batch, and the time it took [s]."""
 
-    answers: tuple[Answer, ...]
+    answers: tuple[VariantResult, ...]
     seconds: float
 
 
-def answers_of(
-    asker: Asker, plan: Plan, numbers: Iterator[int], jobs_: int, stopped: int | None = None
-) -> Iterator[tuple[int, Answer]]:
-    """Each number with its answer, as they come; stopped: a descriptor, and what can be read there ends it."""
+def solve_variants(
+    evaluator: VariantEvaluator, plan: Plan, numbers: Iterator[int], jobs_: int, stop_descriptor: int | None = None
+) -> Iterator[tuple[int, VariantResult]]:
+    """Yield each number with its result, in the order of completion.
+
+    stop_descriptor: a file descriptor; the work ends once anything can be read from it
+    """
     batches = Batches(numbers)
-    work = partial(answered, asker, plan)
-    if not jobs.forks():
+    work = partial(solve_batch, evaluator, plan)
+    if not jobs.can_fork():
         while (batch := batches.next()) is not None:
-            found = work(batch)
-            batches.took(batch, found.seconds)
-            yield from zip(batch, found.answers, strict=True)
+            batch_results = work(batch)
+            batches.record_time(batch, batch_results.seconds)
+            yield from zip(batch, batch_results.results, strict=True)
         return
-    for batch, found_ in jobs.as_done(work, batches.next, jobs_, stopped):
-        if isinstance(found_, jobs.Died):
-            yield from ((number, died(found_)) for number in batches.again.lost(batch, found_))
+    for batch, outcome in jobs.run_as_completed(work, batches.next, jobs_, stop_descriptor):
+        if isinstance(outcome, jobs.ProcessDeath):
+            yield from ((number, make_death_result(outcome)) for number in batches.retries.add_lost(batch, outcome))
         else:
-            batches.took(batch, found_.seconds)
-            yield from zip(batch, found_.answers, strict=True)
+            batches.record_time(batch, outcome.seconds)
+            yield from zip(batch, outcome.results, strict=True)
 
 
-def answered(asker: Asker, plan: Plan, numbers: Sequence[int]) -> Answered:
-    """The answers of some variants, whatever becomes of each."""
-    begun = time.monotonic()
-    answers = tuple(answer_of(asker, plan.values(number)) for number in numbers)
-    return Answered(answers, time.monotonic() - begun)
+def solve_batch(evaluator: VariantEvaluator, plan: Plan, numbers: Sequence[int]) -> BatchResults:
+    """Solve some variants; a failure of one does not stop the others."""
+    start = time.monotonic()
+    results = tuple(answer_of(evaluator, plan.find_values(number)) for number in numbers)
+    return BatchResults(results, time.monotonic() - start)
 
 
-def answer_of(asker: Asker, values: Mapping[str, str]) -> Answer:
-    """What a variant answers: also where the time is up, the memory ends, or heun itself is at fault."""
-    limit = asker.recipe.options.time_limit
-    words = [asker.recipe.path, *(f"{name}={text}" for name, text in values.items())]
+def answer_of(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+    """Solve a variant; time limits, lack of memory and bugs of heun become its result."""
+    limit = evaluator.recipe.options.time_limit
+    words = [evaluator.recipe.path, *(f"{name}={text}" for name, text in values.items())]
     try:
-        return contained(lambda: alarm.limited(lambda: asker.answer(values), limit), ("sweep", *words))
+        return run_contained(lambda: alarm.run_with_limit(lambda: evaluator.answer(values), limit), ("sweep", *words))
     except HeunError as error:
-        return failed(error)
+        return make_failed_result(error)
 
 
-def died(how: jobs.Died) -> Answer:
-    """The answer of a variant that ended two processes, or one at the hard end of its time limit."""
-    if how.is_time_up:
-        return Answer(code="time-limit", reason="the time limit was reached, and the work did not stop")
-    return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how.how}, twice")
+def make_death_result(death: jobs.Died) -> VariantResult:
+    """Make the result of a variant that ended two processes, or one at the hard end of its time limit."""
+    if death.is_time_up:
+        return VariantResult(code="time-limit", reason="the time limit was reached, and the work did not stop")
+    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it was {death.description}, twice")
 
 
 class Batches:
-    """Numbers of variants, some at a time: as many as take a process about so long as a batch should."""
+    """Batches of variant numbers, each as large as a process solves in about BATCH_SECONDS."""
 
     def __init__(self, numbers: Iterator[int]) -> None:
         self.numbers = numbers
         self.size = 1
-        self.again = jobs.SecondTries()  # of batches whose process died
+        self.retries = jobs.RetryQueue()  # variants of batches whose process died
 
     def next(self) -> tuple[int, ...] | None:
-        """The next batch; None where there is none for now."""
-        alone = self.again.next()
-        if alone is not None:
-            return (alone,)
+        """Return the next batch, or None if there is none now."""
+        retry = self.retries.pop_next()
+        if retry is not None:
+            return (retry,)
         return tuple(islice(self.numbers, self.size)) or None
 
-    def took(self, batch: Sequence[int], seconds: float) -> None:
-        """A batch is answered: the next ones are as large as its pace makes fit."""
-        self.again.answered(batch)
-        fitting = BATCH * len(batch) / max(seconds, 1e-6)
-        self.size = int(min(max(fitting, 1.0), GROWTH * len(batch), MOST))
+    def record_time(self, batch: Sequence[int], seconds: float) -> None:
+        """Record the time of a solved batch, and adapt the size of the next ones."""
+        self.retries.forget(batch)
+        fitting = BATCH_SECONDS * len(batch) / max(seconds, 1e-6)
+        self.size = int(min(max(fitting, 1.0), GROWTH * len(batch), MAX_BATCH))

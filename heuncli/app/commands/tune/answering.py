@@ -1,4 +1,4 @@
-"""Variants answered in this process or several, as the search takes them. Impure: processes, the clock."""
+"""Solve variants for the search of `heun tune`, in this process or in several. Impure: processes, the clock."""
 
 from __future__ import annotations
 
@@ -6,80 +6,86 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.results import Reading, TrialOutcome
-from heuncli.analyses.tune.trials import TIME_LIMIT
-from heuncli.analyses.variants.asking import Answer, Asker, failed
+from heuncli.analyses.tune.results import MeasureReading, TrialOutcome
+from heuncli.analyses.tune.trials import TIME_LIMIT_CODE
+from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult, make_failed_result
 from heuncli.app.cli import alarm, jobs
-from heuncli.app.cli.entry import UsageError, contained
+from heuncli.app.cli.entry import UsageError, run_contained
 from heuncli.base.errors import HeunError, Problem
 from heuncli.study.ask.measure import NotOneNumber
 
 NO_NUMBER = "bad-option"  # the code of a measure that is not one number
-ALMOST = 1e-9  # s: what is left of a time limit that is reached
-WORTH = 0.02  # s: processes for shorter variants take longer to make than they save
+MIN_REMAINING = 1e-9  # s; less than this left means that the limit is reached
+MIN_SECONDS = 0.02  # s; for shorter variants several processes do not pay
 WORKER_DIED = "worker-died"
 
 
-class Answering:
-    """Answers some variants at once, in their order."""
+class TrialSolver:
+    """Solves several variants at once, and returns the outcomes in their order."""
 
-    def __init__(self, asker: Asker, at_once: int | None) -> None:
-        """at_once: how many processes; None: as many as there are processors, where a variant is worth it."""
-        self.asker, self.at_once = asker, at_once
-        self.seconds = 0.0  # that the scene as it is took
+    def __init__(self, evaluator: VariantEvaluator, jobs: int | None) -> None:
+        """jobs: number of processes; None: one per processor, if a variant takes long enough"""
+        self.evaluator, self.jobs = evaluator, jobs
+        self.seconds = 0.0  # solving time of the scene as it is
 
-    def own(self) -> TrialOutcome:
-        """That of the scene as it is. Raises UsageError where a measure is not one number of it."""
-        begun = time.perf_counter()
+    def solve_base(self) -> TrialOutcome:
+        """Solve the scene as it is. Raises UsageError if a measure is not a single number in it."""
+        start = time.perf_counter()
         try:
-            return outcome_of(self.asker.measured({}))
+            return to_outcome(self.evaluator.measure({}))
         except NotOneNumber as error:
             (problem,) = error.problems
             raise UsageError(problem) from None
         except HeunError as error:
-            return outcome_of(failed(error))
+            return to_outcome(make_failed_result(error))
         finally:
-            self.seconds = time.perf_counter() - begun
+            self.seconds = time.perf_counter() - start
 
-    def __call__(self, several: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
-        """The outcomes of variants, in the form of --set. Raises UsageError where a measure is not one number."""
-        short = self.at_once is None and self.seconds < WORTH
-        at_once = 1 if short or len(several) == 1 else jobs.how_many(self.at_once, len(several))
-        work: Callable[[Mapping[str, str]], Answer] = partial(answer_apart if at_once > 1 else answer, self.asker)
-        for found in jobs.each(work, several, at_once, died):
-            if found.code == NO_NUMBER:
-                raise UsageError(Problem(found.code, found.reason, hint="such as 'max foundation.force'"))
-            yield outcome_of(found)
+    def __call__(self, variants: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
+        """Yield the outcomes of variants, given in the form of --set. Raises UsageError if a measure is not a single
+        number.
+        """
+        is_short = self.jobs is None and self.seconds < MIN_SECONDS
+        job_count = 1 if is_short or len(variants) == 1 else jobs.choose_job_count(self.jobs, len(variants))
+        work: Callable[[Mapping[str, str]], VariantResult] = partial(
+            solve_in_worker if job_count > 1 else solve_variant, self.evaluator
+        )
+        for result in jobs.run_in_order(work, variants, job_count, make_death_result):
+            if result.code == NO_NUMBER:
+                raise UsageError(Problem(result.code, result.reason, hint="such as 'max foundation.force'"))
+            yield to_outcome(result)
 
 
-def answer(asker: Asker, values: Mapping[str, str]) -> Answer:
-    """The answer of a variant, in this process, whose time limit interrupts whatever is going on."""
-    left = alarm.remaining()
-    if left is not None and left <= ALMOST:
-        return Answer(code=TIME_LIMIT)
+def solve_variant(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+    """Solve a variant in this process, where the time limit interrupts whatever is going on."""
+    remaining = alarm.remaining_time()
+    if remaining is not None and remaining <= MIN_REMAINING:
+        return VariantResult(code=TIME_LIMIT_CODE)
     try:
-        return alarm.interruptible(partial(asker.answer, values))
-    except alarm.TimeUp:  # the search calls this through SciPy, which no exception passes unharmed
-        return Answer(code=TIME_LIMIT)
+        return alarm.run_interruptible(partial(evaluator.answer, values))
+    except alarm.TimeUp:  # SciPy calls this, and lets no exception pass unchanged
+        return VariantResult(code=TIME_LIMIT_CODE)
 
 
-def answer_apart(asker: Asker, values: Mapping[str, str]) -> Answer:
-    """The answer of a variant, in a process of its own, which has no alarm but what it sets itself."""
-    work = partial(alarm.limited, lambda: asker.answer(values), alarm.remaining())
+def solve_in_worker(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+    """Solve a variant in a process of its own, which has no time limit but the one set here."""
+    work = partial(alarm.run_with_limit, lambda: evaluator.answer(values), alarm.remaining_time())
     try:
-        return contained(work, ("tune", asker.recipe.path, *(f"{name}={text}" for name, text in values.items())))
+        return run_contained(
+            work, ("tune", evaluator.recipe.path, *(f"{name}={text}" for name, text in values.items()))
+        )
     except HeunError as error:
-        return failed(error)
+        return make_failed_result(error)
 
 
-def died(values: Mapping[str, str], how: jobs.Died) -> Answer:
-    """What stands for a variant whose process died."""
-    if how.is_time_up:
-        return Answer(code=TIME_LIMIT)
-    return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how.how}, twice")
+def make_death_result(values: Mapping[str, str], death: jobs.Died) -> VariantResult:
+    """Make the result of a variant whose process died."""
+    if death.is_time_up:
+        return VariantResult(code=TIME_LIMIT_CODE)
+    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it was {death.description}, twice")
 
 
-def outcome_of(found: Answer) -> TrialOutcome:
-    """An answer as the search takes it."""
-    readings = tuple(Reading(one.value, one.error, one.at, one.word) for one in found.measures)
-    return TrialOutcome(readings, found.code, found.reason, found.warnings)
+def to_outcome(result: VariantResult) -> TrialOutcome:
+    """Convert the result of a variant to the outcome that the search takes."""
+    readings = tuple(MeasureReading(one.value, one.error, one.time, one.word) for one in result.measures)
+    return TrialOutcome(readings, result.code, result.reason, result.warnings)

@@ -1,4 +1,4 @@
-"""What is to be tuned, from the words of the command line: each checked against the scene before anything is solved."""
+"""Parse what is to be tuned from the command line, and check it against the scene before anything is solved."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from functools import partial
 from itertools import chain
 
-from heuncli.analyses.tune.results import Constraint, Goal, TunedVariable, TuneTask
-from heuncli.analyses.variants.asking import Asker
-from heuncli.analyses.variants.axes import INTERVAL_HINT, AxisError, Interval, interval_of
-from heuncli.analyses.variants.conditions import MeasureCondition, condition_of, in_si
+from heuncli.analyses.tune.results import DesignVariable, TuneConstraint, TuneGoal, TuneTask
+from heuncli.analyses.variants.asking import VariantEvaluator
+from heuncli.analyses.variants.axes import INTERVAL_HINT, AxisError, Interval, parse_interval
+from heuncli.analyses.variants.conditions import MeasureCondition, find_si_value, parse_condition
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.solving import spec_among
+from heuncli.app.cli.solving import split_spec_and_assignments
 from heuncli.app.commands.tune.request import TuneRequest
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
@@ -20,16 +20,16 @@ from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
-from heuncli.study.quantities.stated import unit_of
+from heuncli.study.quantities.stated import find_unit
 
 FORM = "expected MEASURE < VALUE"
 HINT = "such as 'max abs sections.web.M2 < 40 N*m'"
-EACH = 200  # evaluations by default: for each variable, and once more
-MOST_EVALUATIONS = 1_000_000
+EVALUATIONS_PER_VARIABLE = 200  # default evaluations: for each variable, and once in addition
+MAX_EVALUATIONS = 1_000_000
 
 
-class AskedTuning(NamedTuple):
-    """What is asked for, as far as the words alone tell."""
+class TuningOptions(NamedTuple):
+    """The options of a tuning, as far as the command line alone gives them."""
 
     path: str
     intervals: tuple[Interval, ...]
@@ -39,27 +39,27 @@ class AskedTuning(NamedTuple):
 
     @property
     def measures(self) -> tuple[MeasureRequest, ...]:
-        """Those of goal and constraints. Raises UsageError."""
-        return tuple(measure.parse_all([self.goal, *(one.measure for one in self.conditions)]))
+        """The measures of the goal and of the constraints. Raises UsageError."""
+        return tuple(measure.parse_measures([self.goal, *(one.measure for one in self.conditions)]))
 
 
-def asked_by(request: TuneRequest) -> AskedTuning:
-    """What the words say. Raises UsageError, AxisError."""
-    path, intervals = spec_and_intervals(request.words)
+def parse_options(request: TuneRequest) -> TuningOptions:
+    """Parse the options of a request. Raises UsageError, AxisError."""
+    path, intervals = parse_words(request.words)
     goals = [(text, greatest) for text, greatest in ((request.minimise, False), (request.maximise, True)) if text]
     if len(goals) != 1:
         message = "both --minimise and --maximise are given" if goals else "what is to be tuned is not said"
         hint = "--minimise WHAT or --maximise WHAT, such as --minimise 'max foundation.force'"
         raise UsageError(Problem("bad-option", f"tune: {message}", hint=hint))
     ((goal, greatest),) = goals
-    conditions = tuple(_constraint(text) for text in request.subject_to)
-    return AskedTuning(path, tuple(intervals), goal, greatest, conditions)
+    conditions = tuple(_parse_constraint(text) for text in request.subject_to)
+    return TuningOptions(path, tuple(intervals), goal, greatest, conditions)
 
 
-def spec_and_intervals(words: Sequence[str]) -> tuple[str, list[Interval]]:
-    """The spec's file, and what is varied. Raises UsageError, AxisError."""
-    path, given = spec_among(words, "tune", "heun tune SPEC NAME=LOW:HIGH --minimise WHAT")
-    intervals = [interval_of(word) for word in given]
+def parse_words(words: Sequence[str]) -> tuple[str, list[Interval]]:
+    """Split the arguments into the spec's file and the intervals of the variables. Raises UsageError, AxisError."""
+    path, assignments = split_spec_and_assignments(words, "tune", "heun tune SPEC NAME=LOW:HIGH --minimise WHAT")
+    intervals = [parse_interval(word) for word in assignments]
     names = [interval.name for interval in intervals]
     if not names:
         raise UsageError(Problem("bad-option", "tune: nothing is varied", hint=INTERVAL_HINT))
@@ -69,69 +69,69 @@ def spec_and_intervals(words: Sequence[str]) -> tuple[str, list[Interval]]:
     return path, intervals
 
 
-def _constraint(text: str) -> MeasureCondition:
-    condition = condition_of(text, FORM, HINT)
+def _parse_constraint(text: str) -> MeasureCondition:
+    condition = parse_condition(text, FORM, HINT)
     if condition.sign == "=":
         raise AxisError(text, "a constraint has < or >: no two numbers are equal to the last bit", HINT)
     return condition
 
 
-def task_of(request: TuneRequest, asked: AskedTuning, asker: Asker) -> TuneTask:
-    """The task, checked against the scene. Raises UsageError, AxisError, SpecError."""
-    spec, measures = asker.spec, asker.recipe.measures
+def make_task(request: TuneRequest, options: TuningOptions, evaluator: VariantEvaluator) -> TuneTask:
+    """Make the task of the search, checked against the scene. Raises UsageError, AxisError, SpecError."""
+    spec, measures = evaluator.spec, evaluator.recipe.measures
     goal, *others = measures
-    fitting = [partial(asker.scenes, interval) for interval in asked.intervals]
-    found = measure.known(measures, spec, fitting, "tune")
-    scenes = [spec, *chain.from_iterable(found)]
+    scene_makers = [partial(evaluator.load_samples, interval) for interval in options.intervals]
+    scene_lists = measure.check_with_others(measures, spec, scene_makers, "tune")
+    scenes = [spec, *chain.from_iterable(scene_lists)]
     constraints = []
-    for condition, one in zip(asked.conditions, others, strict=True):
-        unit = unit_of(one.path, spec)
+    for condition, one in zip(options.conditions, others, strict=True):
+        unit = find_unit(one.path, spec)
         sign = condition.sign
         assert sign != "="
-        constraints.append(Constraint(condition.measure, sign, in_si(condition, unit, scenes, HINT), unit))
+        constraints.append(TuneConstraint(condition.measure, sign, find_si_value(condition, unit, scenes, HINT), unit))
     return TuneTask(
-        variables=tuple(variable_of(interval, spec) for interval in asked.intervals),
-        goal=Goal(asked.goal, unit_of(goal.path, spec), asked.greatest),
+        variables=tuple(make_variable(interval, spec) for interval in options.intervals),
+        goal=TuneGoal(options.goal, find_unit(goal.path, spec), options.greatest),
         constraints=tuple(constraints),
-        most=most(request, len(asked.intervals)),
-        precision=precision(request),
-        seed=seed(request),
+        max_variants=parse_max_evaluations(request, len(options.intervals)),
+        precision=parse_precision(request),
+        seed=parse_seed(request),
     )
 
 
-def variable_of(interval: Interval, spec: Spec) -> TunedVariable:
-    """A variable with its value in the spec, if it is a parameter."""
-    own = spec.parameters.get(interval.name)
-    if own is not None and interval.unit:
-        own = own / parse_unit(interval.unit)[0]
-    return TunedVariable(interval.name, interval.low, interval.high, interval.unit, own)
+def make_variable(interval: Interval, spec: Spec) -> DesignVariable:
+    """Make a design variable, with its value in the spec if it is a parameter."""
+    base_value = spec.parameters.get(interval.name)
+    if base_value is not None and interval.unit:
+        base_value = base_value / parse_unit(interval.unit)[0]
+    return DesignVariable(interval.name, interval.low, interval.high, interval.unit, base_value)
 
 
-def most(request: TuneRequest, variables: int) -> int:
-    """How many variants may be solved. Raises UsageError."""
-    asked = request.evaluations
-    if asked is None:
-        return EACH * (variables + 1)
-    if not 1 <= asked <= MOST_EVALUATIONS:
-        message = f"--evaluations {asked}: expected 1 to {MOST_EVALUATIONS:,}"
+def parse_max_evaluations(request: TuneRequest, variables: int) -> int:
+    """Return how many variants may be solved. Raises UsageError."""
+    requested = request.evaluations
+    if requested is None:
+        return EVALUATIONS_PER_VARIABLE * (variables + 1)
+    if not 1 <= requested <= MAX_EVALUATIONS:
+        message = f"--evaluations {requested}: expected 1 to {MAX_EVALUATIONS:,}"
         raise UsageError(Problem("bad-option", message, hint="such as --evaluations 400"))
-    return asked
+    return requested
 
 
-def precision(request: TuneRequest) -> float:
-    """The share below which no gain is looked for. Raises UsageError."""
-    asked = request.precision
-    if asked is None:
+def parse_precision(request: TuneRequest) -> float:
+    """Return the relative gain below which the search stops. Raises UsageError."""
+    requested = request.precision
+    if requested is None:
         return TuneTask.precision
-    if not (math.isfinite(asked) and 0.0 < asked <= 0.1):
-        message = f"--precision {asked:g}: expected more than 0, and 0.1 at most"
+    if not (math.isfinite(requested) and 0.0 < requested <= 0.1):
+        message = f"--precision {requested:g}: expected more than 0, and 0.1 at most"
         raise UsageError(Problem("bad-option", message, hint="such as --precision 1e-6"))
-    return asked
+    return requested
 
 
-def seed(request: TuneRequest) -> int:
-    """What draws are made by. Raises UsageError."""
-    asked = request.seed or 0
-    if asked < 0:
-        raise UsageError(Problem("bad-option", f"--seed {asked}: expected 0 or more", hint="such as --seed 1"))
-    return asked
+def parse_seed(request: TuneRequest) -> int:
+    """Return the seed of the random draws. Raises UsageError."""
+    requested = request.seed or 0
+    if requested < 0:
+        raise UsageError(Problem("bad-option", f"--seed {requested}: expected 0 or more", hint="such as --seed 1"))
+    return requested

@@ -1,4 +1,4 @@
-"""`heun tune`: the values of parameters for which a measure is best."""
+"""`heun tune`: find the values of parameters for which a measure is best."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from collections import Counter
 from heuncli.analyses.tune.results import TuneResults
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
-from heuncli.analyses.variants.asking import Asker, Recipe
+from heuncli.analyses.variants.asking import Recipe, VariantEvaluator
 from heuncli.app.cli import alarm
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file, same_file
+from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, save
-from heuncli.app.cli.progress import progress
-from heuncli.app.cli.solving import overrides, tolerance, warn
-from heuncli.app.cli.target import format_of, require_room
-from heuncli.app.cli.units import say_what_stays, units
+from heuncli.app.cli.progress import show_progress
+from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
+from heuncli.app.cli.target import choose_format, require_writable
+from heuncli.app.cli.units import note_si_format, parse_units
 from heuncli.app.commands.tune import page
-from heuncli.app.commands.tune.answering import Answering
-from heuncli.app.commands.tune.asked import AskedTuning, asked_by, task_of
+from heuncli.app.commands.tune.answering import TrialSolver
+from heuncli.app.commands.tune.asked import TuningOptions, make_task, parse_options
 from heuncli.app.commands.tune.history import to_csv
 from heuncli.app.commands.tune.request import FORMATS, TuneRequest
-from heuncli.app.commands.tune.told import TunedScene, block, line_to_paste
+from heuncli.app.commands.tune.told import TunedScene, format_command, to_block
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.files import STDOUT
-from heuncli.output.tables.export import dump
+from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.source import text_in
+from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 
 LIMIT_REACHED, NOT_GOOD = 4, 1
@@ -34,60 +34,67 @@ LIMIT_REACHED, NOT_GOOD = 4, 1
 
 def main(request: TuneRequest) -> int:
     """Run the command; returns the exit code."""
-    asked = asked_by(request)
-    require_other_file(request.output, [asked.path])
-    form = format_of(request.format, request.output, FORMATS)
-    shown_in = units(request.units)
-    require_sense(request, asked)
-    asker = Asker(recipe_of(request, asked))
-    require_other_file(request.output, [asked.path])
+    options = parse_options(request)
+    require_other_file(request.output, [options.path])
+    form = choose_format(request.format, request.output, FORMATS)
+    units_shown = parse_units(request.units)
+    require_consistent_options(request, options)
+    evaluator = VariantEvaluator(make_recipe(request, options))
+    require_other_file(request.output, [options.path])
     if request.history is not None:
-        require_other_file(request.history, [asked.path], "--history")
-    tuning = searched(request, asked, asker)
-    found = tuning.results()
-    require_answer(found)
-    spec = asker.spec
-    scene = TunedScene(spec.title, spec.path, spec.sha256, line_to_paste(asked, asker.recipe, found))
+        require_other_file(request.history, [options.path], "--history")
+    tuning = run_search(request, options, evaluator)
+    results = tuning.to_results()
+    require_result(results)
+    spec = evaluator.spec
+    scene = TunedScene(spec.title, spec.path, spec.sha256, format_command(options, evaluator.recipe, results))
     if request.history is not None:
-        save(to_csv(found).encode(), request.history)
-    text = dump(block(found, scene)) if form == "json" else page.write(found, scene, shown_in, request.output)
+        save(to_csv(results).encode(), request.history)
+    text = (
+        dump_json(to_block(results, scene))
+        if form == "json"
+        else page.render_page(results, scene, units_shown, request.output)
+    )
     emit(text, request.output, late=True)
-    say_what_stays(request.units, form, request.quiet)
-    return leave(request, found, spec)
+    note_si_format(request.units, form, request.quiet)
+    return finish(request, results, spec)
 
 
-def require_sense(request: TuneRequest, asked: AskedTuning) -> None:
-    """Raise UsageError where options do not go together, or numbers mean nothing."""
+def require_consistent_options(request: TuneRequest, options: TuningOptions) -> None:
+    """Raise UsageError if options contradict each other, or a number is invalid."""
     if request.jobs is not None and request.jobs < 1:
         raise UsageError(Problem("bad-option", f"--jobs {request.jobs}: expected 1 or more", hint="such as --jobs 2"))
     if request.history is None:
         return
-    require_room(request.history, "--history")
-    if same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.history):
+    require_writable(request.history, "--history")
+    if is_same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.history):
         message = f"--history {request.history}: that is where the result goes"
         raise UsageError(Problem("bad-option", message, hint="name another file"))
 
 
-def recipe_of(request: TuneRequest, asked: AskedTuning) -> Recipe:
-    """What every variant is made of. Raises UsageError, SpecError."""
-    options = Options(tolerance=tolerance(request.tolerance), reduce=not request.no_reduce)
-    measures = asked.measures
-    return Recipe(asked.path, text_in(asked.path), measures, options, overrides(request.set), request.case)
+def make_recipe(request: TuneRequest, tuning: TuningOptions) -> Recipe:
+    """Make the recipe of all variants. Raises UsageError, SpecError."""
+    options = Options(tolerance=require_tolerance(request.tolerance), reduce=not request.no_reduce)
+    measures = tuning.measures
+    return Recipe(tuning.path, read_text(tuning.path), measures, options, parse_overrides(request.set), request.case)
 
 
-def searched(request: TuneRequest, asked: AskedTuning, asker: Asker) -> Tuning:
-    """The search as far as it came. Raises UsageError, AxisError, SpecError; LimitError where nothing was solved."""
-    task = task_of(request, asked, asker)
-    answering = Answering(asker, request.jobs)
-    with progress(request.quiet) as tell:
-        own = answering.own()
-        trials = Trials(task, answering, tell)
-        tuning = Tuning(trials, own)
+def run_search(request: TuneRequest, options: TuningOptions, evaluator: VariantEvaluator) -> Tuning:
+    """Run the search until it ends or the time limit is reached.
+
+    Raises UsageError, AxisError, SpecError; LimitError if no variant was solved in time.
+    """
+    task = make_task(request, options, evaluator)
+    solver = TrialSolver(evaluator, request.jobs)
+    with show_progress(request.quiet) as report:
+        base_outcome = solver.solve_base()
+        trials = Trials(task, solver, report)
+        tuning = Tuning(trials, base_outcome)
         try:
             tuning.run()
         except alarm.TimeUp:
             trials.time_is_up = True
-        if trials.time_is_up:  # what was found is told, however long that takes
+        if trials.time_is_up:  # the result is written even after the time limit
             alarm.disarm(late=True)
     if trials.time_is_up and trials.best() is None:
         message = "the time limit was reached before any variant was solved"
@@ -95,20 +102,22 @@ def searched(request: TuneRequest, asked: AskedTuning, asker: Asker) -> Tuning:
     return tuning
 
 
-def require_answer(found: TuneResults) -> None:
-    """Raise SolveError where no variant could be solved."""
-    if found.best is None:
-        code, times = Counter(trial.failure[0] for trial in found.history).most_common(1)[0]
-        reason = next(trial.failure[1] for trial in found.history if trial.failure[0] == code)
-        message = f"none of {len(found.history)} variants could be solved; {times} of them as this one: {reason}"
+def require_result(results: TuneResults) -> None:
+    """Raise SolveError if no variant could be solved."""
+    if results.best is None:
+        code, times = Counter(trial.failure[0] for trial in results.history).most_common(1)[0]
+        reason = next(trial.failure[1] for trial in results.history if trial.failure[0] == code)
+        message = f"none of {len(results.history)} variants could be solved; {times} of them as this one: {reason}"
         raise SolveError(Problem(code, message, hint="heun run --set with one of them tells more; or other bounds"))
 
 
-def leave(request: TuneRequest, found: TuneResults, spec: Spec) -> int:
-    """Tell the warnings of the best variant; returns the exit code."""
-    assert found.best is not None
+def finish(request: TuneRequest, results: TuneResults, spec: Spec) -> int:
+    """Print the warnings of the best variant; returns the exit code."""
+    assert results.best is not None
     read = {problem.message for problem in spec.warnings}
-    warn(spec, None, request.quiet, later=[text for text in found.best.outcome.warnings if text not in read])
-    if found.ending == "time":
+    print_warnings(
+        spec, None, request.quiet, later=[text for text in results.best.outcome.warnings if text not in read]
+    )
+    if results.ending == "time":
         return LIMIT_REACHED
-    return NOT_GOOD if request.strict and found.ending != "converged" else 0
+    return NOT_GOOD if request.strict and results.ending != "converged" else 0

@@ -1,16 +1,23 @@
-"""A tuning as tables: what became of it, the variables, the measures, and the line that can be pasted."""
+"""Render a tuning as tables: how it ended, the variables, the measures, and the command line to paste."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.analyses.tune.results import Leeway, Move, Reading, TuneResults
+from heuncli.analyses.tune.results import MeasureReading, ToleranceMove, ToleranceRange, TuneResults
 from heuncli.app.cli import terminal
 from heuncli.app.commands.tune.told import TunedScene
-from heuncli.base.foreign_text import shown
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, Align, TextColumn, TextTable, labelled, plain
-from heuncli.study.quantities.digits import rough, style
+from heuncli.base.foreign_text import escape
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import (
+    DEFAULT_WIDTH,
+    Align,
+    TextColumn,
+    TextTable,
+    format_labelled_lines,
+    format_plain,
+)
+from heuncli.study.quantities.digits import choose_style, format_error
 from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
 
@@ -24,146 +31,160 @@ BOUND_OF = {"less": "<", "more": ">"}
 LEFT: Align = "left"
 
 
-def write(found: TuneResults, scene: TunedScene, units: Units, output: str | None) -> str:
-    """The page as text: for the terminal at hand where it goes to one."""
-    tables = [variables(found), measures(found, units)]
-    if found.freedoms:
-        tables.insert(1, moves(found, units))
-    if output is None and terminal.present():
-        parts = terminal.write(tables)
+def render_page(results: TuneResults, scene: TunedScene, units: Units, output: str | None) -> str:
+    """Render the page as text, for the terminal if it goes to one."""
+    tables = [make_variables_table(results), make_measures_table(results, units)]
+    if results.tolerance_ranges:
+        tables.insert(1, make_moves_table(results, units))
+    if output is None and terminal.is_terminal():
+        parts = terminal.render_tables(tables)
     else:
-        parts = [plain(part, WIDTH) for table in tables for part in fit(table, WIDTH)]
+        parts = [format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)]
     body = "\n".join(parts)
-    return f"{labelled(list(heading(found, scene, units)))}\n{body}\n{PASTED}\n{shown(scene.line)}\n"
+    return f"{format_labelled_lines(list(format_heading(results, scene, units)))}\n{body}\n{PASTED}\n{escape(scene.line)}\n"
 
 
-def heading(found: TuneResults, scene: TunedScene, units: Units) -> Iterator[tuple[str, str]]:
-    """Label and text of the lines above the tables."""
-    task = found.task
+def format_heading(results: TuneResults, scene: TunedScene, units: Units) -> Iterator[tuple[str, str]]:
+    """Yield label and text of the lines above the tables."""
+    task = results.task
     names = ", ".join(one.name for one in task.variables)
-    kind = "greatest" if task.goal.greatest else "least"
+    kind = "greatest" if task.goal.is_maximised else "least"
     yield "heun", f"{VERSION}  {scene.title}"
     yield "tune", f"{kind} {task.goal.measure}, by {names}"
-    yield "", outcome(found, units)
-    if not found.feasible:
-        yield "", nearest(found, units)
-    if found.own_is_better:
+    yield "", describe_ending(results, units)
+    if not results.is_feasible:
+        yield "", describe_nearest_unmet(results, units)
+    if results.is_spec_better:
         yield "", "as it is, outside of the bounds, it is better"
-    yield "", f"{len(found.history)} variants{unsolved(found)}"
+    yield "", f"{len(results.history)} variants{format_failures(results)}"
 
 
-def unsolved(found: TuneResults) -> str:
-    """How many variants could not be solved, and why, behind their number."""
-    count = sum(found.failures.values())
-    codes = ", ".join(f"{code} {count}" for code, count in sorted(found.failures.items()))
+def format_failures(results: TuneResults) -> str:
+    """Format how many variants could not be solved, and why; empty if all were."""
+    count = sum(results.failures.values())
+    codes = ", ".join(f"{code} {count}" for code, count in sorted(results.failures.items()))
     return f", of which {count} could not be solved: {codes}" if count else ""
 
 
-def outcome(found: TuneResults, units: Units) -> str:
-    """How the search ended."""
-    if found.ending == "converged":
-        assert found.gain is not None
-        unit, size = units.of(found.task.goal.unit)
-        most = f"{rough(size * max(found.gain, found.floor))} {unit}".rstrip()
-        return f"converged: two restarts gained no more than {most}"
-    if found.ending == "infeasible":
+def describe_ending(results: TuneResults, units: Units) -> str:
+    """Describe how the search ended."""
+    if results.ending == "converged":
+        assert results.gain is not None
+        unit, size = units.find(results.task.goal.unit)
+        gain_text = f"{format_error(size * max(results.gain, results.floor))} {unit}".rstrip()
+        return f"converged: two restarts gained no more than {gain_text}"
+    if results.ending == "infeasible":
         return "nothing was found that keeps all limits: this passes them least"
-    why = "the time limit is reached" if found.ending == "time" else f"all {found.task.most} evaluations are used up"
-    what = "this is the best so far" if found.feasible else "nothing that keeps all limits was found so far"
-    more = f"; --evaluations {2 * found.task.most} looks on" if found.ending == "evaluations" else ""
-    return f"not converged: {why}; {what}{more}"
+    why = (
+        "the time limit is reached"
+        if results.ending == "time"
+        else f"all {results.task.max_variants} evaluations are used up"
+    )
+    result_text = "this is the best so far" if results.is_feasible else "nothing that keeps all limits was found so far"
+    advice = f"; --evaluations {2 * results.task.max_variants} looks on" if results.ending == "evaluations" else ""
+    return f"not converged: {why}; {result_text}{advice}"
 
 
-def nearest(found: TuneResults, units: Units) -> str:
-    """Which of the constraints that are not met is nearest to it."""
-    which = found.nearest_unmet
-    assert which is not None and found.best is not None
-    one = found.task.constraints[which]
-    unit, size = units.of(one.unit)
-    over, limit = size * one.excess(found.best.kept_to[which]), size * one.limit
-    return f"nearest to being met: {one.measure} {one.sign} {limit:.6g} {unit}, passed by {over:.3g} {unit}".rstrip()
+def describe_nearest_unmet(results: TuneResults, units: Units) -> str:
+    """Describe the constraint that is nearest to being met, among those that are not."""
+    index = results.nearest_violated
+    assert index is not None and results.best is not None
+    one = results.task.constraints[index]
+    unit, size = units.find(one.unit)
+    excess, limit = size * one.compute_excess(results.best.constraint_values[index]), size * one.limit
+    return f"nearest to being met: {one.measure} {one.sign} {limit:.6g} {unit}, passed by {excess:.3g} {unit}".rstrip()
 
 
-def variables(found: TuneResults) -> TextTable:
-    """A line a variable."""
-    assert found.best is not None
+def make_variables_table(results: TuneResults) -> TextTable:
+    """Make the table of the variables, one row each."""
+    assert results.best is not None
     columns = (
         TextColumn("variable", LEFT), TextColumn("as it is"), TextColumn("best"), TextColumn("from"), TextColumn("to"),
         TextColumn("at", LEFT),
     )  # fmt: skip
     rows = []
-    for which, one in enumerate(found.task.variables):
+    for index, one in enumerate(results.task.variables):
         label = f"{one.name} [{one.unit}]" if one.unit else one.name
-        own = "" if one.own is None else f"{one.own:.6g}"
-        value = f"{one.value(found.best.place[which]):.6g}"
-        rows.append((label, own, value, f"{one.low:.6g}", f"{one.high:.6g}", AT_BOUND[found.at_bound(which)]))
+        base_text = "" if one.spec_value is None else f"{one.spec_value:.6g}"
+        value = f"{one.to_value(results.best.place[index]):.6g}"
+        rows.append((label, base_text, value, f"{one.low:.6g}", f"{one.high:.6g}", AT_BOUND[results.find_bound(index)]))
     return TextTable(VARIABLES, columns, tuple(rows))
 
 
-def moves(found: TuneResults, units: Units) -> TextTable:
-    """How flat the best is, a line a variable."""
-    unit, size = units.of(found.task.goal.unit)
-    floor = f"{rough(size * found.floor)} {unit}".rstrip()
+def make_moves_table(results: TuneResults, units: Units) -> TextTable:
+    """Make the table of how far each variable may move alone before the goal is worse."""
+    unit, size = units.find(results.task.goal.unit)
+    floor = f"{format_error(size * results.floor)} {unit}".rstrip()
     columns = (
         TextColumn("variable", LEFT), TextColumn(f"by {floor}: down", LEFT), TextColumn("up", LEFT),
         TextColumn("by 1 %: down", LEFT), TextColumn("up", LEFT),
     )  # fmt: skip
     rows = []
-    for one, freedom in zip(found.task.variables, found.freedoms, strict=True):
+    for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=True):
         label = f"{one.name} [{one.unit}]" if one.unit else one.name
-        rows.append((label, *_cells(freedom)))
+        rows.append((label, *_format_moves(range_)))
     return TextTable(MOVES, columns, tuple(rows))
 
 
-def _cells(freedom: Leeway) -> Iterator[str]:
-    return (_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
+def _format_moves(freedom: ToleranceRange) -> Iterator[str]:
+    return (_format_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
 
 
-def _move(one: Move | None) -> str:
-    """A way, to two digits, and what ends it."""
+def _format_move(one: ToleranceMove | None) -> str:
+    """Format a move to two digits, with what ends it."""
     if one is None:
         return "-"
-    by = f"{one.by:.2g}".replace("e-0", "e-")
-    return f"{BOUND_OF.get(one.until, '')}{by}{UNTIL.get(one.until, f' ({one.until})')}"
+    distance = f"{one.distance:.2g}".replace("e-0", "e-")
+    return f"{BOUND_OF.get(one.limit, '')}{distance}{UNTIL.get(one.limit, f' ({one.limit})')}"
 
 
-def measures(found: TuneResults, units: Units) -> TextTable:
-    """The goal and the constraints, a line each."""
+def make_measures_table(results: TuneResults, units: Units) -> TextTable:
+    """Make the table of the goal and the constraints, one row each."""
     columns = (
         TextColumn("measure", LEFT), TextColumn("as it is"), TextColumn("best"), TextColumn("error"),
         TextColumn("at t [s]"), TextColumn("limit", LEFT), TextColumn("left"), TextColumn("", LEFT),
     )  # fmt: skip
-    assert found.best is not None
-    task = found.task
-    lines = [_measure(found, 0, task.goal.measure, task.goal.unit, units, ("", "", ""))]
-    for which, one in enumerate(task.constraints):
-        size = units.of(one.unit)[1]
-        excess = one.excess(found.best.kept_to[which])
-        word = "not met" if not one.met(found.best.kept_to[which]) else "active" if found.active[which] else ""
-        error = found.best.outcome.readings[which + 1].error or 0.0
-        left = style(size * max(abs(excess), abs(one.limit)), size * error).write(-size * excess + 0.0)
+    assert results.best is not None
+    task = results.task
+    lines = [_make_measure_row(results, 0, task.goal.measure, task.goal.unit, units, ("", "", ""))]
+    for index, one in enumerate(task.constraints):
+        size = units.find(one.unit)[1]
+        excess = one.compute_excess(results.best.constraint_values[index])
+        word = (
+            "not met"
+            if not one.is_met(results.best.constraint_values[index])
+            else "active"
+            if results.active_constraints[index]
+            else ""
+        )
+        error = results.best.outcome.readings[index + 1].error or 0.0
+        margin = choose_style(size * max(abs(excess), abs(one.limit)), size * error).write(-size * excess + 0.0)
         limit = f"{one.sign} {size * one.limit:.6g}"
-        lines.append(_measure(found, which + 1, one.measure, one.unit, units, (limit, left, word)))
-    note = () if found.own.readings else (f"as it is: {found.own.reason} [{found.own.code}]",)
+        lines.append(_make_measure_row(results, index + 1, one.measure, one.unit, units, (limit, margin, word)))
+    note = (
+        ()
+        if results.spec_outcome.readings
+        else (f"as it is: {results.spec_outcome.reason} [{results.spec_outcome.code}]",)
+    )
     return TextTable(MEASURES, columns, tuple(lines), note)
 
 
-def _measure(
-    found: TuneResults, which: int, text: str, own_unit: str, units: Units, kept: tuple[str, str, str]
+def _make_measure_row(
+    results: TuneResults, index: int, text: str, own_unit: str, units: Units, limit_cells: tuple[str, str, str]
 ) -> tuple[str, ...]:
-    """A measure's cells: digits as far as its error lets them be."""
-    assert found.best is not None
-    unit, size = units.of(own_unit)
+    """Make the cells of a measure, with as many digits as its error allows."""
+    assert results.best is not None
+    unit, size = units.find(own_unit)
     label = f"{text} [{unit}]" if unit and unit != "1" else text
-    own = found.own.readings[which] if found.own.readings else Reading(None)
-    best = found.best.outcome.readings[which]
-    error = rough(size * best.error) if best.error is not None else ""
-    at = "" if best.at is None else f"{best.at:.6g}"
-    return (label, _value(own, size), _value(best, size), error, at, *kept)
+    base = results.spec_outcome.readings[index] if results.spec_outcome.readings else MeasureReading(None)
+    best = results.best.outcome.readings[index]
+    error = format_error(size * best.error) if best.error is not None else ""
+    instant = "" if best.instant is None else f"{best.instant:.6g}"
+    return (label, _format_value(base, size), _format_value(best, size), error, instant, *limit_cells)
 
 
-def _value(one: Reading, size: float) -> str:
-    """A number with its certain digits; the word where it is not known."""
+def _format_value(one: MeasureReading, size: float) -> str:
+    """Format a number with its certain digits, or the word that replaces an unknown one."""
     if one.value is None:
-        return one.word
-    return style(size * abs(one.value), size * (one.error or 0.0)).write(size * one.value)
+        return one.reason
+    return choose_style(size * abs(one.value), size * (one.error or 0.0)).write(size * one.value)

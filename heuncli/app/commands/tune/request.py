@@ -1,4 +1,4 @@
-"""What `heun tune` is asked for: its options and arguments."""
+"""Options and arguments of `heun tune`."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""A tuning as plain data for JSON, and as the command line that solves the best variant by itself."""
+"""A tuning as plain data for JSON, and as the command line that solves the best variant."""
 
 from __future__ import annotations
 
@@ -6,16 +6,24 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.analyses.tune.results import Leeway, Move, Reading, Trial, TrialOutcome, TuneResults, texts_at
+from heuncli.analyses.tune.results import (
+    MeasureReading,
+    ToleranceMove,
+    ToleranceRange,
+    Trial,
+    TrialOutcome,
+    TuneResults,
+    make_texts,
+)
 from heuncli.analyses.variants.asking import Recipe
-from heuncli.app.commands.tune.asked import AskedTuning
-from heuncli.app.commands.tune.history import best_by
+from heuncli.app.commands.tune.asked import TuningOptions
+from heuncli.app.commands.tune.history import iter_best
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.version import VERSION
 
 
 class TunedScene(NamedTuple):
-    """What is tuned: the spec, and the line by which `heun run` gives the best variant's numbers."""
+    """The tuned spec, and the command line that gives the best variant's numbers with `heun run`."""
 
     title: str
     path: str
@@ -23,96 +31,102 @@ class TunedScene(NamedTuple):
     line: str
 
 
-def line_to_paste(asked: AskedTuning, recipe: Recipe, found: TuneResults) -> str:
-    """The command whose measures are those of the best variant, to the bit."""
+def format_command(options: TuningOptions, recipe: Recipe, results: TuneResults) -> str:
+    """Format the command line that gives the measures of the best variant, to the bit."""
     words = ["heun", "run", recipe.path]
     if recipe.case is not None:
         words += ["--case", recipe.case]
-    for name, text in {**recipe.overrides, **found.texts}.items():
+    for name, text in {**recipe.overrides, **results.best_texts}.items():
         words += ["--set", f"{name}={text}"]
     if recipe.options.tolerance is not None:
         words += ["--tolerance", repr(recipe.options.tolerance)]
     if not recipe.options.reduce:
         words += ["--no-reduce"]
-    for text in (asked.goal, *(one.measure for one in asked.conditions)):
+    for text in (options.goal, *(one.measure for one in options.conditions)):
         words += ["--measure", text]
     return shlex.join(words)
 
 
-def block(found: TuneResults, scene: TunedScene) -> dict[str, Any]:
-    """All of it."""
-    task, best = found.task, found.best
+def to_block(results: TuneResults, scene: TunedScene) -> dict[str, Any]:
+    """Return the whole result as the JSON has it."""
+    task, best = results.task, results.best
     assert best is not None
     goal = task.goal
     return {
         "title": scene.title,
         "spec": {"path": scene.path, "sha256": scene.sha256},
         "version": VERSION,
-        "ended": found.ending,
-        "converged": found.ending == "converged",
-        "feasible": found.feasible,
+        "ended": results.ending,
+        "converged": results.ending == "converged",
+        "feasible": results.is_feasible,
         "goal": {
-            "measure": goal.measure, "unit": goal.unit, "kind": "maximise" if goal.greatest else "minimise",
-            "before": reading(found.own, 0), "best": reading(best.outcome, 0), "gain": found.gain, "floor": found.floor,
+            "measure": goal.measure, "unit": goal.unit, "kind": "maximise" if goal.is_maximised else "minimise",
+            "before": make_reading_block(results.spec_outcome, 0), "best": make_reading_block(best.outcome, 0), "gain": results.gain, "floor": results.floor,
         },
-        "variables": [variable(found, which) for which in range(len(task.variables))],
-        "constraints": [constraint(found, which) for which in range(len(task.constraints))],
-        "set": found.texts,
+        "variables": [make_variable_block(results, index) for index in range(len(task.variables))],
+        "constraints": [make_constraint_block(results, index) for index in range(len(task.constraints))],
+        "set": results.best_texts,
         "command": scene.line,
-        "evaluations": len(found.history),
-        "allowed": task.most,
+        "evaluations": len(results.history),
+        "allowed": task.max_variants,
         "seed": task.seed,
-        "unsolved": dict(found.failures),
-        "history": [trial_of(found, trial, best) for trial, best in zip(found.history, best_by(found), strict=True)],
+        "unsolved": dict(results.failures),
+        "history": [make_trial_block(results, trial, best) for trial, best in zip(results.history, iter_best(results), strict=True)],
     }  # fmt: skip
 
 
-def variable(found: TuneResults, which: int) -> dict[str, Any]:
-    """One variable; its moves: how far down and up until the goal is worse by the floor, by a hundredth."""
-    one = found.task.variables[which]
-    assert found.best is not None
-    told: dict[str, Any] = {
-        "name": one.name, "unit": one.unit, "low": one.low, "high": one.high, "before": one.own,
-        "value": one.value(found.best.place[which]), "active": found.at_bound(which) or None,
+def make_variable_block(results: TuneResults, index: int) -> dict[str, Any]:
+    """Return one variable as the JSON has it.
+
+    Its moves say how far it may go down and up until the goal is worse by the floor, and by a hundredth.
+    """
+    variable = results.task.variables[index]
+    assert results.best is not None
+    block: dict[str, Any] = {
+        "name": variable.name, "unit": variable.unit, "low": variable.low, "high": variable.high, "before": variable.spec_value,
+        "value": variable.to_value(results.best.place[index]), "active": results.find_bound(index) or None,
     }  # fmt: skip
-    freedom = found.freedoms[which] if found.freedoms else Leeway()
-    told["moves"] = {"floor": [*map(move, freedom.of_floor)], "hundredth": [*map(move, freedom.of_hundredth)]}
-    return told
+    range_ = results.tolerance_ranges[index] if results.tolerance_ranges else ToleranceRange()
+    block["moves"] = {
+        "floor": [*map(make_move_block, range_.of_floor)],
+        "hundredth": [*map(make_move_block, range_.of_hundredth)],
+    }
+    return block
 
 
-def move(one: Move | None) -> dict[str, Any] | None:
-    """How far, and until what."""
-    return None if one is None else {"by": one.by, "until": one.until}
+def make_move_block(one: ToleranceMove | None) -> dict[str, Any] | None:
+    """Return a move as the JSON has it: how far, and what ends it."""
+    return None if one is None else {"by": one.distance, "until": one.limit}
 
 
-def constraint(found: TuneResults, which: int) -> dict[str, Any]:
-    """One constraint; left: to its limit, negative where that is passed."""
-    one = found.task.constraints[which]
-    assert found.best is not None
-    best = reading(found.best.outcome, which + 1)
-    value = found.best.kept_to[which]
+def make_constraint_block(results: TuneResults, index: int) -> dict[str, Any]:
+    """Return one constraint as the JSON has it; `left` is the margin to its limit, negative beyond it."""
+    one = results.task.constraints[index]
+    assert results.best is not None
+    best = make_reading_block(results.best.outcome, index + 1)
+    value = results.best.constraint_values[index]
     return {
         "measure": one.measure, "sign": one.sign, "limit": one.limit, "unit": one.unit,
-        "before": reading(found.own, which + 1), "best": best, "left": -one.excess(value), "met": one.met(value),
-        "active": found.active[which],
+        "before": make_reading_block(results.spec_outcome, index + 1), "best": best, "left": -one.compute_excess(value), "met": one.is_met(value),
+        "active": results.active_constraints[index],
     }  # fmt: skip
 
 
-def reading(outcome: TrialOutcome, which: int) -> dict[str, Any] | None:
-    """A measure; None where the variant could not be solved."""
+def make_reading_block(outcome: TrialOutcome, index: int) -> dict[str, Any] | None:
+    """Return the value of a measure, or code and reason if the variant could not be solved."""
     if not outcome.readings:
         return {"code": outcome.code, "reason": outcome.reason}
-    one: Reading = outcome.readings[which]
-    told: dict[str, Any] = {"value": one.value, "error": one.error, "at": one.at}
-    return told | ({"word": one.word} if one.word else {})
+    one: MeasureReading = outcome.readings[index]
+    block: dict[str, Any] = {"value": one.value, "error": one.error, "at": one.instant}
+    return block | ({"word": one.reason} if one.reason else {})
 
 
-def trial_of(found: TuneResults, trial: Trial, best: float | None) -> dict[str, Any]:
-    """A variant that was tried, and the best so far."""
-    values: Mapping[str, str] = texts_at(found.task.variables, trial.place)
-    told: dict[str, Any] = {"number": trial.number, "phase": trial.phase, "set": values}
-    if trial.solved:
-        told |= {"goal": trial.goal, "constraints": list(trial.kept_to)}
+def make_trial_block(results: TuneResults, trial: Trial, best: float | None) -> dict[str, Any]:
+    """Return a tried variant as the JSON has it, and the best goal so far."""
+    values: Mapping[str, str] = make_texts(results.task.variables, trial.place)
+    block: dict[str, Any] = {"number": trial.number, "phase": trial.phase, "set": values}
+    if trial.is_solved:
+        block |= {"goal": trial.goal, "constraints": list(trial.constraint_values)}
     else:
-        told |= {"goal": None, "code": trial.failure[0]}
-    return told | {"best": best}
+        block |= {"goal": None, "code": trial.failure[0]}
+    return block | {"best": best}

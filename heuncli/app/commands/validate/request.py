@@ -1,4 +1,4 @@
-"""What `heun validate` is asked for: its options and arguments."""
+"""Options and arguments of `heun validate`."""
 
 from typing import Annotated
 

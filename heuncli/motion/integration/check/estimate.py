@@ -1,26 +1,29 @@
-"""Error estimate of a motion by further runs.
+"""Estimate the error of a motion by further runs.
 
-The estimate is 2 |A - B|: A is the run that is told, B a check run at 1/30 of A's local tolerance from a start moved by
-rounding, both seen at the same instants (motion/integration/check/instants.py). Tried on free, open and closed chains,
-|A - B| is 0.9 to 1.1 of the true error; a coarser check run would give 3 to 100 times it.
+The estimate is 2 |A - B|. A is the run whose results are reported. B is a check run at 1/30 of A's local tolerance from
+a start moved by rounding. Both are compared at the same instants (motion/integration/check/instants.py). In tests on
+free, open and closed chains, |A - B| is 0.9 to 1.1 times the true error; a coarser check run would give 3 to 100 times
+it.
 
-A method of given step has no tolerance: B goes in quarters of the step, |A - B| is then 1 - 4^-p of A's error, three
-quarters at order 1, and A is not made again, for its step was asked for. Where a step is too long for what decays in
-it, Gauss's methods keep that alive at any step: there B goes by Radau's (`Method.check`).
+A method of fixed step has no tolerance: B runs with a quarter of the step, so |A - B| is 1 - 4^-p of A's error, three
+quarters at order 1. A is not repeated, because its step was requested. Where a step is too long for a decaying motion,
+Gauss's methods keep it alive at any step: there B runs with Radau's method (`Method.check`).
 
-At small tolerances the error of A may be no larger than what the moved start has grown to in B, and cancel it. There a
-further run M goes from the moved start as A goes from its own: |A - M| is what rounding grows to, and the largest
-distance of any two counts, of the motion: what all make of rounding may lie to one side of the truth.
+At small tolerances A's error may be no larger than what the moved start has grown to in B, and cancel it. Then a
+further run M starts from the moved start and runs as A does: |A - M| is what rounding grows to. The largest distance of
+any two runs counts, because rounding may put all of them on one side of the truth.
 
-This is the top of the package. From here down, each room imports those below it:
-    check/      runs of one motion (runs.py), seen at the same instants (instants.py, distance.py); what else is looked
-                for in a finished run: changes of conditions, singular poses, points that meet, drives that contradict
+This module is the top of the package. Each package imports those below it:
+
+    check/      runs of one motion (runs.py), compared at the same instants (instants.py, distance.py); what else is
+                searched in a finished run: changes of conditions, singular poses, points that meet, conflicting drives
     run/        one run from its start to its end; runner.py says in which order to read it
-    diagnosis/  why no motion or no acceleration exists, in sentences; mostly loaded on the way to an error
-    contacts/   blows, and which contacts close, are struck and let go
+    diagnosis/  sentences on why no motion or no acceleration exists; mostly loaded on the way to an error
+    contacts/   impulses, and which contacts close, are struck and released
     methods/    Runge-Kutta methods as tables of coefficients
-trajectory.py is the record that a run leaves, evaluator.py the answer at a state, which all of them ask for;
-integrated_scene.py is what is integrated in a scene's place, segments.py the stretches of time without discontinuities.
+
+trajectory.py is the result of a run, evaluator.py evaluates states for all of them; integrated_scene.py is the scene
+that is integrated in place of the given one, segments.py the intervals of time without discontinuities.
 """
 
 from __future__ import annotations
@@ -34,245 +37,273 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.check.distance import angle_error, bounded_motion_error
-from heuncli.motion.integration.check.instants import OwnStates, instants_of, interleaved, passed_between
+from heuncli.motion.integration.check.instants import JoinedStates, choose_instants, find_ends_between, interleave
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.check.shared_blows import between_strikes
-from heuncli.motion.integration.contacts.blows import Jump
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.check.shared_blows import is_between_impulses
+from heuncli.motion.integration.contacts.blows import ImpulseEvent
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import limits_of
+from heuncli.motion.integration.segments import find_one_sided_limits
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.results.results import Array, Estimate, Mask
+from heuncli.results.results import Array, ErrorEstimate, Mask
 
 if TYPE_CHECKING:  # loaded where there are conditions
-    from heuncli.motion.integration.check.changes import Changes
+    from heuncli.motion.integration.check.changes import ConditionChanges
 
 RERUNS = 2
-CHUNK = 2_000_000  # numbers compared at a time ...
-LESS, MANY = 4, 1000  # ... or so much less where more than a part is compared, but of so many instants each
-StatesThere: TypeAlias = Array | OwnStates  # of a run at the instants compared
+MAX_NUMBERS = 2_000_000  # numbers compared at a time ...
+MAX_REDUCTION, MIN_BATCH = (
+    4,
+    1000,
+)  # ... or up to so much less where there are several parts, but at least so many instants each
+ComparedStates: TypeAlias = Array | JoinedStates  # of a run at the instants compared
 
 
 class LoadDifferences(Protocol):
-    """What collects the differences of loads and energy between the two runs (study/solve/load_errors.py)."""
+    """Collects the differences of loads and energy between runs (study/solve/load_errors.py)."""
 
-    def add(self, several: Recovered, asked: Mask, before: Mask) -> None:
-        """More instants, which are asked and which before the horizon; at each the answers of A, then of the others."""
+    def add(self, evaluation: Evaluation, is_requested: Mask, before_horizon: Mask) -> None:
+        """Add instants: which of them are requested, which lie before the horizon; the results hold A, then the other
+        runs.
+        """
 
-    def estimate(self) -> Estimate:
-        """The estimated error of each kind, relative to its own largest."""
+    def estimate(self) -> ErrorEstimate:
+        """Return the estimated error of each kind, relative to its own largest value."""
 
     def errors(self) -> Mapping[tuple[str, str], float]:
-        """The estimated errors by kind and unit, at instants before the horizon."""
+        """Return the estimated errors by kind and unit, at instants before the horizon."""
 
     def kinetic(self) -> float:
-        """The largest kinetic energy over the run [J]."""
+        """Return the largest kinetic energy over the run [J]."""
 
     @property
     def by_cause(self) -> bool:
-        """Whether loads are told by their causes."""
+        """Whether loads are reported by their causes."""
 
 
 @record
 class CheckedRun:
-    """A run that was checked.
+    """A run whose error was estimated.
 
-    answers: accelerations and loads, at some of its instants; motion: largest estimated error of any point over the
-    whole run, relative to the size; loads: those of the other kinds; errors: all by kind and unit, before the horizon;
-    horizon: where the motion's passes CLAIMED; kinetic: the largest kinetic energy [J]; beside: the blows of the check
-    runs.
+    evaluate: returns accelerations and loads at a slice of its instants
+    motion: largest estimated error of any point over the whole run, relative to the size
+    loads: errors of the other kinds
+    errors: all errors by kind and unit, before the horizon
+    horizon: instant at which the motion's error exceeds CLAIMED [s], or None
+    kinetic: largest kinetic energy [J]
+    check_impulses: the impulses of each check run
     """
 
     run: Trajectory
-    answers: Callable[[slice], Recovered]
+    answers: Callable[[slice], Evaluation]
     motion: float
-    loads: Estimate
+    loads: ErrorEstimate
     errors: Mapping[tuple[str, str], float]
     horizon: float | None
     kinetic: float
-    beside: tuple[tuple[Jump, ...], ...]
+    beside: tuple[tuple[ImpulseEvent, ...], ...]
     check_seconds: float
-    lost_seconds: float  # of runs that missed the tolerance
-    changes: tuple[Changes, ...] = ()  # of the conditions
-    begun_anew: str | None = None  # why by another method than the one that was chosen
+    lost_seconds: float  # time of runs that missed the tolerance
+    changes: tuple[ConditionChanges, ...] = ()  # of the conditions
+    begun_anew: str | None = None  # why another method than the chosen one was used
 
 
 @record
-class Compared:
-    """Runs seen at the same instants: A, and beside it B and, where it was made, M.
+class RunComparison:
+    """Runs at the same instants: A, and with it B and, where it was made, M.
 
-    times (n,) [s]; states (n, n_state): of each run; asked (n,): which of them are told; error (n,): of A's motion
-    there; horizon: where that passes CLAIMED [s], None: nowhere; seconds: that the other runs and the comparison took.
-    several: the answers, at each instant those of all runs, where they are few enough to be kept.
+    times (n,): instants [s]
+    states: states (n, n_state) of each run
+    is_requested (n,): which of the instants are reported
+    error (n,): error of A's motion at each instant
+    horizon: where the error exceeds CLAIMED [s]; None if nowhere
+    seconds: time that the other runs and the comparison took
+    evaluation: results of all runs at each instant, if they are few enough to be stored
     """
 
     runs: tuple[Trajectory, ...]
     times: Array
-    states: tuple[StatesThere, ...]
+    states: tuple[ComparedStates, ...]
     asked: Mask
     error: Array
     horizon: float | None
     seconds: float
-    several: Recovered | None
+    several: Evaluation | None
 
     @property
     def motion(self) -> float:
         """The largest error."""
         return float(self.error.max(initial=0.0))
 
-    def better(self, than: Compared) -> bool:
-        """Whether A is claimed for longer than another run, or else to a smaller error."""
-        mine, its = (np.inf if x.horizon is None else x.horizon for x in (self, than))
-        return bool(mine > its or (mine == its and self.motion < than.motion))
+    def is_better(self, other: RunComparison) -> bool:
+        """Return whether A is valid for longer than another run or, for the same time, has a smaller error."""
+        own_horizon, other_horizon = (np.inf if x.horizon is None else x.horizon for x in (self, other))
+        return bool(own_horizon > other_horizon or (own_horizon == other_horizon and self.motion < other.motion))
 
 
-def checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> CheckedRun:
-    """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else the best run."""
-    a = runs.first(tolerance)
-    best, lost = None, 0.0
+def make_checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> CheckedRun:
+    """Integrate until the motion's estimated error is below `tolerance`, with at most two reruns; else return the best
+    run.
+    """
+    a = runs.run_first(tolerance)
+    best, discarded_seconds = None, 0.0
     for attempt in range(RERUNS + 1):
-        found = compared(runs, a)
-        best, worse = (best, found) if best is not None and not found.better(best) else (found, best)
-        lost += worse.runs[0].seconds + worse.seconds if worse is not None else 0.0
-        miss = found.motion / tolerance
-        no_finer = a.local <= tolerances.LEAST_TOLERANCE or found.runs[1].local > a.local
-        if miss <= 1.0 or attempt == RERUNS or no_finer or a.method.determined or a.method.fixed:
+        comparison = compare_runs(runs, a)
+        best, discarded = (
+            (best, comparison) if best is not None and not comparison.is_better(best) else (comparison, best)
+        )
+        discarded_seconds += discarded.runs[0].seconds + discarded.seconds if discarded is not None else 0.0
+        error_ratio = comparison.motion / tolerance
+        no_finer = a.local <= tolerances.LEAST_TOLERANCE or comparison.runs[1].local > a.local
+        if error_ratio <= 1.0 or attempt == RERUNS or no_finer or a.method.is_determined or a.method.has_fixed_step:
             break
-        finer = runs.finer(a, 2.0 * miss)
+        finer = runs.run_finer(a, 2.0 * error_ratio)
         if finer is None:
             break
         a = finer
     assert best is not None
-    begun = time.perf_counter()
+    clock_start = time.perf_counter()
     a = best.runs[0]
-    kept = ~between_strikes(best.runs, best.times)
-    at, asked = best.times[kept], best.asked[kept]
-    for part, several in answers_of(runs, best, slice(None) if kept.all() else kept, loads.by_cause):
-        with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
-            loads.add(several, asked[part], at[part] < (np.inf if best.horizon is None else best.horizon))
-    answers = told_of(runs, best, loads.by_cause)
-    seconds = best.seconds + time.perf_counter() - begun
-    told = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
-    beside = tuple(run.blows for run in best.runs[1:])
-    return CheckedRun(a, answers, *told, beside, seconds, lost, changes_of_conditions(runs, best))
+    is_used = ~is_between_impulses(best.runs, best.times)
+    used_times, is_requested = best.times[is_used], best.is_requested[is_used]
+    for part, several in iter_evaluations(runs, best, slice(None) if is_used.all() else is_used, loads.by_cause):
+        with np.errstate(over="ignore", invalid="ignore"):  # fixed steps that diverge: unbounded errors
+            loads.add(
+                several, is_requested[part], used_times[part] < (np.inf if best.horizon is None else best.horizon)
+            )
+    evaluate = make_evaluate(runs, best, loads.by_cause)
+    seconds = best.seconds + time.perf_counter() - clock_start
+    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
+    check_impulses = tuple(run.impulse_events for run in best.runs[1:])
+    return CheckedRun(
+        a, evaluate, *error_results, check_impulses, seconds, discarded_seconds, find_condition_changes(runs, best)
+    )
 
 
-def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:
-    """When the conditions change, and what latches hold, up to the horizon."""
-    layout, before = runs.runner.layout, np.inf if best.horizon is None else best.horizon
-    found: tuple[Changes, ...] = ()
+def find_condition_changes(runs: Runs, best: RunComparison) -> tuple[ConditionChanges, ...]:
+    """Find when the conditions change, and when latches hold, up to the horizon."""
+    layout, before_time = runs.runner.layout, np.inf if best.horizon is None else best.horizon
+    found: tuple[ConditionChanges, ...] = ()
     if layout.mechanism.conditions:
-        from heuncli.motion.integration.check.changes import changes_of  # few scenes have them
+        from heuncli.motion.integration.check.changes import find_changes  # few scenes have them
 
-        found = changes_of(runs.runner, best.runs, before)
+        found = find_changes(runs.runner, best.runs, before_time)
     if layout.latches:
-        from heuncli.motion.integration.check.latch_changes import latch_changes
+        from heuncli.motion.integration.check.latch_changes import find_latch_changes
 
-        found += latch_changes(layout, best.runs, before)
+        found += find_latch_changes(layout, best.runs, before_time)
     return found
 
 
-def answers_of(runs: Runs, best: Compared, kept: Mask | slice, causes: bool) -> Iterator[tuple[slice, Recovered]]:
-    """The answers at those of the instants that are kept, as `recovered_together` gives them; none is found twice."""
-    if best.several is None or causes:
-        yield from recovered_together(
-            runs, best.runs[0], best.times[kept], [x[kept] for x in best.states], causes=causes
+def iter_evaluations(
+    runs: Runs, best: RunComparison, is_used: Mask | slice, causes: bool
+) -> Iterator[tuple[slice, Evaluation]]:
+    """Yield the results at the selected instants, as `evaluate_together` gives them; none is evaluated twice."""
+    if best.evaluation is None or causes:
+        yield from evaluate_together(
+            runs, best.runs[0], best.times[is_used], [x[is_used] for x in best.states], causes=causes
         )
     else:
-        several = best.several
-        yield slice(None), several if isinstance(kept, slice) else several.at(np.repeat(kept, len(best.runs)))
+        several = best.evaluation
+        yield slice(None), several if isinstance(is_used, slice) else several.select(np.repeat(is_used, len(best.runs)))
 
 
-def told_of(runs: Runs, best: Compared, causes: bool) -> Callable[[slice], Recovered]:
-    """The answers at some of A's asked instants.
+def make_evaluate(runs: Runs, best: RunComparison, causes: bool) -> Callable[[slice], Evaluation]:
+    """Make the function that returns the results at some of A's requested instants.
 
-    Where all of them were compared at once they are among those; else they are found when they are asked for, for they
-    may be more than memory holds.
+    If all of them were evaluated at once for the comparison, it selects among those. Else it evaluates on demand,
+    because memory may not hold them all.
     """
     a, runner, jumps = best.runs[0], runs.runner, runs.jumps
-    if best.several is None or causes or np.count_nonzero(best.asked) != len(a.times):
-        return lambda part: recovered_at(runner, a, a.times[part], a.states[part], jumps, causes=causes)
-    return best.several.at(len(best.runs) * np.flatnonzero(best.asked)).at
+    if best.evaluation is None or causes or np.count_nonzero(best.is_requested) != len(a.times):
+        return lambda part: evaluate_run(runner, a, a.times[part], a.states[part], jumps, causes=causes)
+    return best.evaluation.select(len(best.runs) * np.flatnonzero(best.is_requested)).select
 
 
-def compared(runs: Runs, a: Trajectory) -> Compared:
-    """A with its check run, and the run beside it."""
-    begun = time.perf_counter()
-    at = instants_of(runs.runner, a)
-    to = with_last_blow(runs, a, at.times)
-    m = runs.from_moved_start(a, to)
-    others = [*runs.check(a, to), *([] if m is None else [m])]
-    n = len(at.times)
-    if any(run.stopped for run in (a, *others)):
-        # the runs end at instants of their own; the last of A is judged by the one before it
-        n = min(int(np.sum(at.times[: len(x.times)] == x.times[: len(at.times)])) for x in others)
-    times = at.times[:n]
-    states: tuple[StatesThere, ...] = (at.states.first(n), *(x.states[:n] for x in others))
-    error, several = errors(runs, a, times, states)
-    late = np.flatnonzero(error > tolerances.CLAIMED)
+def compare_runs(runs: Runs, a: Trajectory) -> RunComparison:
+    """Compare A with its check run and, where it is made, the run from the moved start."""
+    clock_start = time.perf_counter()
+    instants = choose_instants(runs.runner, a)
+    check_times = extend_past_last_impulse(runs, a, instants.times)
+    moved_run = runs.run_from_moved_start(a, check_times)
+    others = [*runs.run_checks(a, check_times), *([] if moved_run is None else [moved_run])]
+    n = len(instants.times)
+    if any(run.pushing_rope for run in (a, *others)):
+        # the runs end at different instants; the last of A is judged by the previous one
+        n = min(int(np.sum(instants.times[: len(x.times)] == x.times[: len(instants.times)])) for x in others)
+    times = instants.times[:n]
+    states: tuple[ComparedStates, ...] = (instants.states.take_first(n), *(x.states[:n] for x in others))
+    error, several = estimate_errors(runs, a, times, states)
+    above_limit = np.flatnonzero(error > tolerances.CLAIMED)
     horizon = None
-    if len(late):
-        horizon = float(times[late[0]])
-        ends, between = passed_between(runs.runner, (a, *others), float(times[max(late[0] - 1, 0)]), horizon)
-        sooner = ends[errors(runs, a, ends, between)[0] > tolerances.CLAIMED]
-        horizon = float(sooner[0]) if len(sooner) else horizon
-    seconds = time.perf_counter() - begun
-    return Compared((a, *others), times, states, at.asked[:n], error, horizon, seconds, several)
+    if len(above_limit):
+        horizon = float(times[above_limit[0]])
+        ends, states_between = find_ends_between(
+            runs.runner, (a, *others), float(times[max(above_limit[0] - 1, 0)]), horizon
+        )
+        earlier = ends[estimate_errors(runs, a, ends, states_between)[0] > tolerances.CLAIMED]
+        horizon = float(earlier[0]) if len(earlier) else horizon
+    seconds = time.perf_counter() - clock_start
+    return RunComparison((a, *others), times, states, instants.is_requested[:n], error, horizon, seconds, several)
 
 
-def with_last_blow(runs: Runs, a: Trajectory, times: Array) -> Array:
-    """The instants for the runs beside A: a moment more where a blow ends A, which others meet sooner or later."""
-    if not (a.ended and a.blows and a.blows[-1].time >= a.times[-1]):
+def extend_past_last_impulse(runs: Runs, a: Trajectory, times: Array) -> Array:
+    """Return the instants for the check runs: one more where an impulse ends A, because they reach it earlier or
+    later.
+    """
+    if not (a.ended_by_condition and a.impulse_events and a.impulse_events[-1].time >= a.times[-1]):
         return times
-    return np.append(times, a.reached + tolerances.CLAIMED * (float(runs.times[-1]) - a.reached))
+    return np.append(times, a.end_time + tolerances.CLAIMED * (float(runs.times[-1]) - a.end_time))
 
 
-def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[StatesThere]) -> tuple[Array, Recovered | None]:
-    """Estimated errors of the motion at the instants, (n,), and the answers there, where one part holds them all.
+def estimate_errors(
+    runs: Runs, a: Trajectory, times: Array, states: Sequence[ComparedStates]
+) -> tuple[Array, Evaluation | None]:
+    """Estimate the errors of the motion at the instants, (n,), and return the results there if one part holds them all.
 
-    states: of A and of the other runs.
+    states: of A and of the other runs
     """
     layout = runs.runner.layout
-    places, angles, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
+    point_errors, angle_errors, largest = np.zeros(len(times)), np.zeros(len(times)), 1.0
     several = None
-    for part, several in recovered_together(runs, a, times, states):
+    for part, several in evaluate_together(runs, a, times, states):
         with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
-            places[part] = bounded_motion_error(runs.marks, several, len(states), layout.size)
-            angles[part], turned = angle_error(layout, several, len(states))
-        largest = max(largest, turned)
+            point_errors[part] = bounded_motion_error(runs.motion_points, several, len(states), layout.size)
+            angle_errors[part], largest_angle = angle_error(layout, several, len(states))
+        largest = max(largest, largest_angle)
     whole = several if several is not None and len(several.times) == len(states) * len(times) else None
-    return np.maximum(places, angles / largest), whole
+    return np.maximum(point_errors, angle_errors / largest), whole
 
 
-def recovered_together(
-    runs: Runs, a: Trajectory, times: Array, states: Sequence[StatesThere], *, causes: bool = False
-) -> Iterator[tuple[slice, Recovered]]:
-    """The answers at the instants, at each those of all runs, in parts that fit the memory.
+def evaluate_together(
+    runs: Runs, a: Trajectory, times: Array, states: Sequence[ComparedStates], *, causes: bool = False
+) -> Iterator[tuple[slice, Evaluation]]:
+    """Yield the results of all runs at each instant, in parts that fit into memory.
 
-    All hold A's branches: of an event that the runs meet at instants a little apart, either would else show its own
-    side of a jump, and the estimate the jump.
+    All runs hold A's branches. Else, where runs reach an event at slightly different instants, each would show its own
+    side of a jump, and the estimate would contain the jump.
     """
     layout = runs.runner.layout
-    numbers = (30 + 12 * (len(layout.mechanism.loads) + 3) * causes) * len(layout.place)
-    many = max(1, CHUNK // (numbers * len(states) + 1))
-    if many < len(times):
-        many = max(many // LESS, min(many, MANY))
-    for i in range(0, len(times), many):
-        part = slice(i, i + many)
-        both = interleaved(times[part], [x[part] for x in states])
-        yield part, recovered_at(runs.runner, a, *both, runs.jumps, causes=causes)
+    numbers_per_state = (30 + 12 * (len(layout.mechanism.loads) + 3) * causes) * len(layout.place)
+    batch_size = max(1, MAX_NUMBERS // (numbers_per_state * len(states) + 1))
+    if batch_size < len(times):
+        batch_size = max(batch_size // MAX_REDUCTION, min(batch_size, MIN_BATCH))
+    for i in range(0, len(times), batch_size):
+        part = slice(i, i + batch_size)
+        interleaved_states = interleave(times[part], [x[part] for x in states])
+        yield part, evaluate_run(runs.runner, a, *interleaved_states, runs.jumps, causes=causes)
 
 
-def recovered_at(
+def evaluate_run(
     runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float], *, causes: bool = False
-) -> Recovered:
-    """Accelerations and loads of states like those of a run; at a discontinuity the right limits."""
+) -> Evaluation:
+    """Evaluate accelerations and loads of states like those of a run; at a discontinuity, the right limits."""
     later = times
     if len(jumps):
-        before, after = limits_of(jumps)
+        before, after = find_one_sided_limits(jumps)
         next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
         later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times)
-    branches = run.branches_at(times) if run.branches.size else None
-    holding = run.holding_at(times) if runner.layout.contacts else None
-    found = runner.recovered(later, states, branches=branches, causes=causes, holding=holding)
-    return found if later is times else replace(found, times=times)
+    branches = run.find_branches(times) if run.branches.size else None
+    holding = run.find_holding(times) if runner.layout.contacts else None
+    evaluation = runner.evaluate(later, states, branches=branches, causes=causes, holding=holding)
+    return evaluation if later is times else replace(evaluation, times=times)

@@ -1,4 +1,4 @@
-"""A run that events cut at nearly every step, tried by a method of fewer stages."""
+"""Try a method of fewer stages for a run that events interrupt at nearly every step."""
 
 from __future__ import annotations
 
@@ -6,28 +6,32 @@ from contextlib import suppress
 
 from heuncli.base.errors import LimitError, SolveError
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.motion.integration.run.errors import Eventful
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.run.errors import EventfulRun
 from heuncli.motion.integration.run.event_frequency import FEW_STAGES
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
 
-TOLD = (
+MESSAGE = (
     "events: {cut} of the first {steps} steps end at one: up to t = {t:.3g} s {name} takes {few} evaluations, where "
     "{method} takes {many}"
 )
 
 
-def try_fewer_stages(runs: Runs, left: Eventful) -> bool:
-    """Whether the runs go by a method of few stages from now on, and why; not where the one they had takes no more."""
-    method, before = method_of(FEW_STAGES), [t for t in runs.jumps if t < left.reached]
+def try_fewer_stages(runs: Runs, eventful: EventfulRun) -> bool:
+    """Switch the runs to a method of few stages if it takes fewer evaluations, and record why; return whether it
+    did.
+    """
+    method, jumps = load_method_by_name(FEW_STAGES), [t for t in runs.jumps if t < eventful.end_time]
     with suppress(SolveError, LimitError):
-        most = left.evaluations // (len(method.nodes) - 1)
-        request = MotionTask([left.reached], left.local, method, before, deadline=runs.deadline, most_steps=most)
-        trial = runs.runner.trajectory(request, StoppingRules())
-        if trial.evaluations < left.evaluations:
-            left.told = TOLD.format(
-                cut=left.cut, steps=left.steps, t=left.reached, name=method.name, few=trial.evaluations,
-                method=runs.method.name, many=left.evaluations,
+        most = eventful.evaluations // (len(method.nodes) - 1)
+        request = MotionTask(
+            [eventful.end_time], eventful.local, method, jumps, deadline=runs.deadline, most_steps=most
+        )
+        trial = runs.runner.run(request, StoppingRules())
+        if trial.evaluations < eventful.evaluations:
+            eventful.reason = MESSAGE.format(
+                cut=eventful.cut, steps=eventful.steps, t=eventful.end_time, name=method.name, few=trial.evaluations,
+                method=runs.method.name, many=eventful.evaluations,
             )  # fmt: skip
             runs.method = method
             return True

@@ -1,7 +1,8 @@
-"""Why a run in given steps ended before its time: a step too long, or what no method can pass. Only for an error.
+"""Explain why a run in fixed steps ended early: the step is too long, or no method can pass. Imported only for an
+error.
 
-A method that finds its own steps is asked: where it passes the instant, the step was too long. What the step would have
-to be, the fastest rate of the linearised motion at the start tells where that is too fast for it.
+A method with automatic steps is tried: if it passes the instant, the step was too long. The fastest rate of the
+linearised motion at the start tells how long the step may be, where that rate is too fast for it.
 """
 
 from __future__ import annotations
@@ -15,53 +16,60 @@ from heuncli.motion.integration.methods.method import Method
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.response import tangent
 
-BORNE = 2.0  # h |lambda| that explicit methods of given step bear: 2 of Euler's and Heun's, 2.5 of Heun3, 2.8 of RK4
-BLAMED = {
+STABILITY_LIMIT = (
+    2.0  # stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
+)
+STEP_MESSAGES = {
     "not-a-number": "a motion in steps of {step:g} s has no finite acceleration beyond this instant",
     "closure-lost": "steps of {step:g} s cannot hold the closed chains together beyond this instant",
     "stages-unsolved": "the equations of a step of {step:g} s are not solved: Newton's iteration does not contract",
 }
 
 
-def of_given_steps(
-    error: SolveError, runner: Runner, method: Method, step: float, in_own_steps: Callable[[], HeunError | None]
+def explain_fixed_step_error(
+    error: SolveError,
+    runner: Runner,
+    method: Method,
+    step: float,
+    run_with_automatic_steps: Callable[[], HeunError | None],
 ) -> SolveError:
-    """The error to be told in place of that of a run in given steps [s], which ended at `error.reached`.
+    """Return the error to report in place of that of a run in fixed steps [s], which ended at `error.reached`.
 
-    in_own_steps: how the motion fails in steps that a method finds, None where it comes to its end; asked at need.
+    run_with_automatic_steps: returns how the motion fails with automatic steps, None if it reaches its end; called only
+    if needed
     """
     problem, t = error.problems[0], error.reached
-    if problem.code not in BLAMED or t is None:
+    if problem.code not in STEP_MESSAGES or t is None:
         return error
-    other = in_own_steps()
+    other = run_with_automatic_steps()
     end = other.reached if isinstance(other, SolveError) and other.reached is not None else None
     if isinstance(other, SolveError) and (end is None or end <= t + step):
-        return other  # what no step would pass, and it tells where and why
-    message = f"at t = {t:.9g} s: {BLAMED[problem.code].format(step=step)}"
-    hint = f"{shorter(runner, method, step)}, or --method auto, which finds its own"
+        return other  # no step would pass, and this error says where and why
+    message = f"at t = {t:.9g} s: {STEP_MESSAGES[problem.code].format(step=step)}"
+    hint = f"{suggest_step(runner, method, step)}, or --method auto, which finds its own"
     if other is None:
         hint += " and comes to the end"
     elif end is not None:
         hint += f"; but that ends {other.problems[0].message}"
         hint += f": {other.problems[0].hint}" if other.problems[0].hint else ""
-    found = SolveError(Problem(problem.code, message, hint=hint, about="analysis.step"))
-    found.reached = t
-    return found
+    explained = SolveError(Problem(problem.code, message, hint=hint, entry_path="analysis.step"))
+    explained.reached = t
+    return explained
 
 
-def shorter(runner: Runner, method: Method, step: float) -> str:
-    """What steps to try in place of a step [s], in words."""
+def suggest_step(runner: Runner, method: Method, step: float) -> str:
+    """Say which steps to try in place of a step [s]."""
     rate = 0.0 if method.implicit else fastest_rate(runner)
-    if rate * step > BORNE:
-        return f"the fastest rate at the start is {rate:.2g} 1/s: steps of {BORNE / rate:.1g} s and less"
+    if rate * step > STABILITY_LIMIT:
+        return f"the fastest rate at the start is {rate:.2g} 1/s: steps of {STABILITY_LIMIT / rate:.1g} s and less"
     return f"a shorter step than {step:g} s"
 
 
 def fastest_rate(runner: Runner) -> float:
-    """The largest magnitude among the eigenvalues of the linearised motion at the start [1/s]; 0 where it has none."""
-    moving = runner.moving
-    start = moving.restrict(0.0, runner.layout.y0)
-    linearised = tangent(moving.workspace, 0.0, start)
+    """Return the largest eigenvalue magnitude of the linearised motion at the start [1/s]; 0 if it has none."""
+    integrated_scene = runner.integrated_scene
+    start = integrated_scene.restrict(0.0, runner.layout.y0)
+    linearised = tangent(integrated_scene.workspace, 0.0, start)
     if not np.isfinite(linearised).all():
         return 0.0
     return float(np.abs(np.linalg.eigvals(linearised)).max(initial=0.0))

@@ -1,8 +1,9 @@
-"""Blows: at an instant velocities jump, and impulses run through all joints.
+"""Solve impulses: at an instant velocities jump, and impulses run through all joints.
 
     M (V+ - V-) = H + J' Lambda,   J (V+ - V-) = -(jumps of the prescribed rates)           (45)-(48), (50)
-H are given impulses; what is driven jumps by as much as its prescribed rate does, and by nothing else. One column of
-the one linear map a cause: each given impulse, the drives together. Positions stay.
+
+H are given impulses. What is driven jumps by as much as its prescribed rate does, and by nothing else. There is one
+column of this linear map for each cause: each given impulse, and the drives together. Positions stay.
 """
 
 from __future__ import annotations
@@ -16,30 +17,31 @@ from heuncli.base.records import record, replace
 from heuncli.motion.integration.contacts.shared_impulses import (
     SharedImpulse,
     find_shared_impulses,
-    held_contacts,
-    loaded,
+    list_bilateral_contacts,
+    select_loaded,
 )
-from heuncli.motion.integration.evaluator import Evaluator, Recovered
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.integration.segments import just_before
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.response import Blows as Answered
-from heuncli.multibody.response import Columns, blows
+from heuncli.multibody.response import Columns, solve_impulses
+from heuncli.multibody.response import ImpulseColumns as Answered
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
-from heuncli.scene.expressions.discontinuities import MOST_EQUAL, jumps
+from heuncli.scene.expressions.discontinuities import MAX_TIED_DOUBLES, find_jumps
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.shapes.rotations import cross_rows
 
-DRIVES = "drives"  # the cause beside the given impulses
+DRIVES = "drives"  # the cause besides the given impulses
 
 
 @record
-class GivenBlow:
-    """What is given to happen at one instant: impulses, and drives whose rates jump.
+class GivenImpulse:
+    """What happens at one instant by prescription: impulses, and drives whose rates jump.
 
-    before, after: the last instant before it and the first behind; blows: places in mechanism.blows; drives: of joints,
-    from which rate to which.
+    before_time, after_time: the last instant before it and the first after it [s]
+    blows: indices in mechanism.blows
+    drives: for each driven joint, the rates before and after
     """
 
     before: float
@@ -49,31 +51,39 @@ class GivenBlow:
 
     @property
     def written_time(self) -> float:
-        """Of the instants that rounding does not tell apart the one that is written most briefly: a user means that."""
-        count = int(np.diff(np.array([self.before, self.after]).view(np.int64))[0]) if self.before >= 0.0 else 0
-        if not 1 < count <= 2 * MOST_EQUAL:
-            return self.after
-        instants = np.arange(count) + np.array(math.nextafter(self.before, math.inf)).view(np.int64)
+        """Of the instants that rounding does not separate, the one with the shortest decimal form, which a user
+        means.
+        """
+        double_count = (
+            int(np.diff(np.array([self.before_time, self.after_time]).view(np.int64))[0])
+            if self.before_time >= 0.0
+            else 0
+        )
+        if not 1 < double_count <= 2 * MAX_TIED_DOUBLES:
+            return self.after_time
+        instants = np.arange(double_count) + np.array(math.nextafter(self.before_time, math.inf)).view(np.int64)
         return float(min(instants.view(np.float64).tolist(), key=lambda t: len(repr(t))))
 
-    def is_due(self, t: float) -> bool:
-        """Whether a run that goes on from an instant t [s] has it behind itself."""
-        return self.before < t or self.after <= t
+    def is_past(self, t: float) -> bool:
+        """Return whether a run that continues from an instant t [s] has it behind itself."""
+        return self.before_time < t or self.after_time <= t
 
-    def with_other(self, other: GivenBlow) -> GivenBlow:
-        """Both together; `other` begins with it, or later."""
+    def merge(self, other: GivenImpulse) -> GivenImpulse:
+        """Merge with another one, which begins at the same time or later."""
         drives = {**self.drives, **other.drives}
-        return GivenBlow(self.before, max(self.after, other.after), (*self.blows, *other.blows), drives)
+        return GivenImpulse(
+            self.before_time, max(self.after_time, other.after_time), (*self.blows, *other.blows), drives
+        )
 
-    def names(self, mechanism: Mechanism) -> tuple[str, ...]:
-        """The names of what acts."""
+    def list_names(self, mechanism: Mechanism) -> tuple[str, ...]:
+        """Return the names of what acts."""
         laws = {law.owner: law.name for law in mechanism.laws}
-        return (*(mechanism.blows[i].name for i in self.blows), *(laws[k] for k in self.drives))
+        return (*(mechanism.impulses[i].name for i in self.blows), *(laws[k] for k in self.drives))
 
 
 @record
-class Impulse:
-    """A given impulse on a body: force [N s], moment [N m s] about the world position `at`; (3,), world axes."""
+class BodyImpulse:
+    """A given impulse on a body: force [N s], moment [N m s] about the world position `position`; (3,), world axes."""
 
     blow: int
     force: Array
@@ -82,20 +92,25 @@ class Impulse:
 
 
 @record
-class Jump:
-    """A blow that happened.
+class ImpulseEvent:
+    """An impulse that happened.
 
-    recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
-    names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
-    all impulses [J]; holding (contacts,): which are closed behind it; shared: contacts of which a model says how they
-    share it; told: its instant as it is told, where rounding leaves several.
+    evaluation: results at the state before it, with the columns of jumps (1, n_c) as `causes`
+    causes: names of these columns
+    impulses: the given impulses
+    after_state: the state after it, projected onto the closures
+    kinetic: energy before and after [J]
+    work: work of all impulses [J]
+    holding (contacts,): contacts closed after it
+    shared_impulses: contacts for which a model says how they share it
+    display_time: its instant as reported, where rounding leaves several
     """
 
     time: float
     names: tuple[str, ...]
-    recovered: Recovered
+    recovered: Evaluation
     causes: tuple[str, ...]
-    impulses: tuple[Impulse, ...]
+    impulses: tuple[BodyImpulse, ...]
     after: Array
     kinetic: tuple[float, float]
     work: float
@@ -104,95 +119,117 @@ class Jump:
     told: float | None = None
 
     @property
-    def told_time(self) -> float:
-        """The instant as it is told."""
-        return self.time if self.told is None else self.told
+    def reported_time(self) -> float:
+        """The instant as it is reported [s]."""
+        return self.time if self.display_time is None else self.display_time
 
 
-def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
-    """Where within (0, last] the rate of a drive jumps: the instants before and behind, and the rates there."""
-    return jumps(value, last, order=1) if value.time_dependent else []
+def find_rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
+    """Return where within (0, last] the rate of a drive jumps: the instants before and after, and the rates there."""
+    return find_jumps(value, last, order=1) if value.time_dependent else []
 
 
-def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
-    """The blows that are given at instants within [0, last], ascending; those of one instant together.
+def schedule_impulses(mechanism: Mechanism, last: float) -> list[GivenImpulse]:
+    """Return the impulses given at instants within [0, last], ascending; those of one instant are merged.
 
-    One instant is also what rounding does not tell apart: where one begins before the other has ended.
+    Instants that rounding does not separate count as one: where one begins before the other has ended.
     """
     given = [
-        GivenBlow(before, after, (), {law.owner: (first, then)})
+        GivenImpulse(before, after, (), {law.owner: (first, then)})
         for law in mechanism.laws
-        for before, after, first, then in rate_jumps(law.value, last)
+        for before, after, first, then in find_rate_jumps(law.value, last)
     ]
-    for i, blow in enumerate(mechanism.blows):
-        if blow.when is None:  # else it is struck where that becomes true (run/triggers.py)
+    for i, blow in enumerate(mechanism.impulses):
+        if blow.when is None:  # else it acts where its condition becomes true (run/triggers.py)
             before = just_before(blow.time) if blow.time > 0.0 else 0.0
-            given.append(GivenBlow(before, blow.time, (i,), {}))
-    found: list[GivenBlow] = []
-    for one in sorted(given, key=lambda one: one.before):
-        if (found and one.before < found[-1].after) or (found and one.after == found[-1].after):
-            found[-1] = found[-1].with_other(one)
+            given.append(GivenImpulse(before, blow.time, (i,), {}))
+    merged: list[GivenImpulse] = []
+    for one in sorted(given, key=lambda one: one.before_time):
+        if (merged and one.before_time < merged[-1].after_time) or (merged and one.after_time == merged[-1].after_time):
+            merged[-1] = merged[-1].merge(one)
         else:
-            found.append(one)
-    return found
+            merged.append(one)
+    return merged
 
 
 @record
 class RightSides:
-    """What is given at a state: right sides of the equations of the blow, a column each impulse and one for all drives.
+    """Right sides of the equations of an impulse at a state: a column for each given impulse and one for all drives.
 
-    still: the kernel's answers at that state; impulses: in world axes; loads: columns (n_b, 6), moment about the joint
-    point and force; jumps: columns (n_f + n_rows,) of what the prescribed rates jump by; causes: names of the columns.
+    still: results at that state
+    impulses: in world axes
+    loads: columns (n_b, 6), moment about the joint point and force
+    jumps: columns (n_f + n_rows,), jumps of the prescribed rates
+    causes: names of the columns
     """
 
-    still: Recovered
-    impulses: tuple[Impulse, ...]
+    still: Evaluation
+    impulses: tuple[BodyImpulse, ...]
     loads: list[Array]
     jumps: list[Array]
     causes: tuple[str, ...]
 
 
-def right_sides(evaluator: Evaluator, given: GivenBlow, state: Array, holding: Array) -> RightSides:
-    """What is given at a state (n,) just before it acts; holding: all contacts are open, and columns of their own, but
-    for latches that hold.
+def make_right_sides(evaluator: Evaluator, given_impulse: GivenImpulse, state: Array, holding: Array) -> RightSides:
+    """Make the right sides at a state (n,) just before the impulse acts.
+
+    holding: all contacts are open, with columns of their own, except for latches that hold
     """
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
-    still = evaluator.recovered(np.array([given.before]), state[None, :], holding=holding)
-    impulses = tuple(impulse(layout, still.bodies[0], i) for i in given.blows)
+    still = evaluator.evaluate(np.array([given_impulse.before_time]), state[None, :], holding=holding)
+    impulses = tuple(make_body_impulse(layout, still.bodies[0], i) for i in given_impulse.blows)
     n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
-    loads, jumps = [column(layout, still.bodies[0], one) for one in impulses], [np.zeros(n_u)] * len(impulses)
-    if given.drives:
+    loads, jumps = [impulse_column(layout, still.bodies[0], one) for one in impulses], [np.zeros(n_u)] * len(impulses)
+    if given_impulse.drives:
         loads.append(np.zeros((n_b, 6)))
-        jumps.append(prescribed(layout, given))
-    causes = tuple(mechanism.blows[i].name for i in given.blows) + ((DRIVES,) if given.drives else ())
+        jumps.append(prescribed_jumps(layout, given_impulse))
+    causes = tuple(mechanism.impulses[i].name for i in given_impulse.blows) + (
+        (DRIVES,) if given_impulse.drives else ()
+    )
     return RightSides(still, impulses, loads, jumps, causes)
 
 
-def strike(evaluator: Evaluator, given: GivenBlow, state: Array, time: float) -> Jump:
-    """The blow that is given at a state (n,) of a scene without contacts."""
-    sides = right_sides(evaluator, given, state, evaluator.layout.all_open)
-    found = blows(
-        evaluator.workspace, given.before, sides.still.states[0], np.array(sides.loads), np.array(sides.jumps)
+def solve_impulse(evaluator: Evaluator, given_impulse: GivenImpulse, state: Array, time: float) -> ImpulseEvent:
+    """Solve a given impulse at a state (n,) of a scene without contacts."""
+    sides = make_right_sides(evaluator, given_impulse, state, evaluator.layout.open_contacts)
+    solution = solve_impulses(
+        evaluator.workspace,
+        given_impulse.before_time,
+        sides.still.states[0],
+        np.array(sides.loads),
+        np.array(sides.jumps),
     )
-    after, work = state_behind(evaluator.layout, given, sides, found.columns)
-    own = loaded(held_contacts(evaluator.layout), found.columns.multipliers)
-    shared = find_shared_impulses(own, np.zeros((len(own), len(own)), dtype=bool), found.columns.multipliers)
-    blow = BlowResult(time, found, sides.causes, after, work, np.zeros(0), shared=tuple(shared))
-    return jump_of(evaluator, given, sides, blow)
+    after_state, work = state_after(evaluator.layout, given_impulse, sides, solution.columns)
+    loaded_contacts = select_loaded(list_bilateral_contacts(evaluator.layout), solution.columns.multipliers)
+    shared = find_shared_impulses(
+        loaded_contacts,
+        np.zeros((len(loaded_contacts), len(loaded_contacts)), dtype=bool),
+        solution.columns.multipliers,
+    )
+    impulse_result = ImpulseResult(
+        time, solution, sides.causes, after_state, work, np.zeros(0), shared_impulses=tuple(shared)
+    )
+    return make_impulse_event(evaluator, given_impulse, sides, impulse_result)
 
 
-def state_behind(layout: Layout, given: GivenBlow, sides: RightSides, columns: Columns) -> tuple[Array, float]:
-    """The state behind columns of jumps, and the work of what is given [J]."""
-    whole = columns.sum()
-    work = work_of_impulses(layout, sides.still.bodies[0], whole, sides.impulses) + work_of_drives(layout, given, whole)
-    return jumped(layout, sides.still.states[0], whole), work
+def state_after(
+    layout: Layout, given_impulse: GivenImpulse, sides: RightSides, columns: Columns
+) -> tuple[Array, float]:
+    """Return the state after columns of jumps, and the work of what is given [J]."""
+    total = columns.sum()
+    work = work_of_impulses(layout, sides.still.bodies[0], total, sides.impulses) + work_of_drives(
+        layout, given_impulse, total
+    )
+    return add_jump(layout, sides.still.states[0], total), work
 
 
 @record
-class BlowResult:
-    """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there.
+class ImpulseResult:
+    """The solution of an impulse: its columns by cause, the state after it, the work of all, the contacts closed after
+    it.
 
-    struck: the contacts that take part in it, also those that share what others bear; shared: see Jump.
+    struck_names: the contacts that take part in it, also those that share what others bear
+    shared_impulses: see ImpulseEvent
     """
 
     time: float
@@ -205,111 +242,120 @@ class BlowResult:
     shared: tuple[SharedImpulse, ...] = ()
 
 
-def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: BlowResult) -> Jump:
-    """The blow with its energies; blow: what the impulses came to."""
-    layout, found, after = evaluator.layout, blow.found, blow.after.copy()
+def make_impulse_event(
+    evaluator: Evaluator, given_impulse: GivenImpulse, sides: RightSides, result: ImpulseResult
+) -> ImpulseEvent:
+    """Make the event with its energies from the solution of the impulse."""
+    layout, solution, after_state = evaluator.layout, result.solution, result.after_state.copy()
     if layout.work_at >= 0:
-        after[layout.work_at] += blow.work
-    then = evaluator.recovered(np.array([given.after]), after[None, :], holding=blow.holding)
+        after_state[layout.work_at] += result.work
+    after_evaluation = evaluator.evaluate(
+        np.array([given_impulse.after_time]), after_state[None, :], holding=result.holding
+    )
     still = replace(
-        sides.still, causes=found.columns.at(None), residual=np.array([found.unmet.max()]),
-        idle=np.array([float(found.idle)]),
+        sides.still, causes=solution.columns.select(None), residual=np.array([solution.unmet.max()]),
+        massless_count=np.array([float(solution.massless_count)]),
     )  # fmt: skip
-    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
-    names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
-    return Jump(
-        blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding,
-        blow.shared, given.written_time if given.before < blow.time < given.after else None,
+    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, after_evaluation.bodies[0])
+    names = tuple(dict.fromkeys((*given_impulse.list_names(layout.mechanism), *result.struck_names)))
+    return ImpulseEvent(
+        result.time, names, still, result.causes, sides.impulses, after_evaluation.states[0], kinetic, result.work, result.holding,
+        result.shared_impulses, given_impulse.written_time if given_impulse.before_time < result.time < given_impulse.after_time else None,
     )  # fmt: skip
 
 
-def impulse(layout: Layout, bodies: Table, i: int) -> Impulse:
-    """A given impulse in world axes; bodies: where they are."""
-    blow = layout.mechanism.blows[i]
-    place = layout.place[blow.body]
+def make_body_impulse(layout: Layout, bodies: Table, number: int) -> BodyImpulse:
+    """Return a given impulse in world axes; bodies: their present results."""
+    given_blow = layout.mechanism.impulses[number]
+    place = layout.place[given_blow.body]
     R, r = bodies["R"][place], bodies["r"][place]
-    point = blow.point if blow.point is not None else layout.mechanism.bodies[blow.body].center
-    vector = R @ blow.vector if blow.in_body else blow.vector
+    point = given_blow.point if given_blow.point is not None else layout.mechanism.bodies[given_blow.body].center
+    vector = R @ given_blow.vector if given_blow.in_body else given_blow.vector
     none = np.zeros(3)
-    force, moment = (none, vector) if blow.kind == "couple" else (vector, none)
-    return Impulse(i, force, moment, r + R @ (point - layout.reference[place]))
+    force, moment = (none, vector) if given_blow.kind == "couple" else (vector, none)
+    return BodyImpulse(number, force, moment, r + R @ (point - layout.reference[place]))
 
 
-def column(layout: Layout, bodies: Table, given: Impulse) -> Array:
-    """An impulse as a column of loads, (n_b, 6): moment about the body's joint point, force."""
-    place = layout.place[layout.mechanism.blows[given.blow].body]
+def impulse_column(layout: Layout, bodies: Table, impulse: BodyImpulse) -> Array:
+    """Return an impulse as a column of loads, (n_b, 6): moment about the body's joint point, force."""
+    place = layout.place[layout.mechanism.impulses[impulse.blow].body]
     loads = np.zeros((len(bodies), 6))
-    loads[place, :3] = given.moment + cross_rows(given.at - bodies["r"][place], given.force)
-    loads[place, 3:] = given.force
+    loads[place, :3] = impulse.moment + cross_rows(impulse.position - bodies["r"][place], impulse.force)
+    loads[place, 3:] = impulse.force
     return loads
 
 
-def prescribed(layout: Layout, given: GivenBlow) -> Array:
-    """The jumps of the prescribed rates, of the freedoms and then of the closure rows."""
-    jumps = {k: then - first for k, (first, then) in given.drives.items()}
+def prescribed_jumps(layout: Layout, given_impulse: GivenImpulse) -> Array:
+    """Return the jumps of the prescribed rates, of the freedoms and then of the closure rows."""
+    jumps = {k: then - first for k, (first, then) in given_impulse.drives.items()}
     freedoms = [jumps.get(f.joint, 0.0) if f.q < 0 else 0.0 for f in layout.freedoms]
-    driven = layout.tables["closures"]["program"]["count"] > 0
-    return np.array(freedoms + [jumps.get(k, 0.0) if own else 0.0 for k, own in zip(layout.rows, driven, strict=True)])
+    is_driven = layout.tables["closures"]["program"]["count"] > 0
+    return np.array(
+        freedoms
+        + [jumps.get(k, 0.0) if has_drive else 0.0 for k, has_drive in zip(layout.rows, is_driven, strict=True)]
+    )
 
 
-def jumped(layout: Layout, state: Array, jump: Columns) -> Array:
-    """The state with its rates changed by a column of jumps (n_b, n_f); what is driven has none in the state."""
-    after = state.copy()
-    for body, answer in zip(layout.bodies, jump.bodies, strict=True):
+def add_jump(layout: Layout, state: Array, jump: Columns) -> Array:
+    """Return the state with its rates changed by a column of jumps (n_b, n_f); driven freedoms have no rate in the
+    state.
+    """
+    after_state = state.copy()
+    for body, change in zip(layout.bodies, jump.bodies, strict=True):
         if body["ball"]:
-            after[body["rate_at"] : body["rate_at"] + 3] += answer["alpha"]
-    for freedom, answer in zip(layout.freedoms, jump.freedoms, strict=True):
+            after_state[body["rate_at"] : body["rate_at"] + 3] += change["alpha"]
+    for freedom, change in zip(layout.freedoms, jump.freedoms, strict=True):
         if freedom.q >= 0:
-            after[freedom.u] += answer["udot"]
-    return after
+            after_state[freedom.u] += change["udot"]
+    return after_state
 
 
-def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tuple[Impulse, ...]) -> float:
-    """Work of given impulses: each by the mean of the velocities before and behind, where it acts [J]."""
+def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tuple[BodyImpulse, ...]) -> float:
+    """Return the work of given impulses [J]: each with the mean of the velocities before and after, where it acts."""
     work = 0.0
-    for given in impulses:
-        place = layout.place[layout.mechanism.blows[given.blow].body]
-        body, change = bodies[place], jump.bodies[place]
-        omega = body["omega"] + 0.5 * change["alpha"]
-        v = body["v"] + 0.5 * change["a"] + cross_rows(omega, given.at - body["r"])
-        work += float(given.force @ v + given.moment @ omega)
+    for impulse in impulses:
+        place = layout.place[layout.mechanism.impulses[impulse.blow].body]
+        body, velocity_jump = bodies[place], jump.bodies[place]
+        omega = body["omega"] + 0.5 * velocity_jump["alpha"]
+        v = body["v"] + 0.5 * velocity_jump["a"] + cross_rows(omega, impulse.position - body["r"])
+        work += float(impulse.force @ v + impulse.moment @ omega)
     return work
 
 
-def work_of_drives(layout: Layout, given: GivenBlow, jump: Columns) -> float:
-    """Work of the drives' impulses, by the mean of the prescribed rates before and behind [J].
+def work_of_drives(layout: Layout, given_impulse: GivenImpulse, jump: Columns) -> float:
+    """Return the work of the drives' impulses [J], with the mean of the prescribed rates before and after.
 
-    A drive whose rate stays works, too: its impulse times that rate.
+    A drive whose rate does not jump does work too: its impulse times that rate.
     """
     work = 0.0
     for law in layout.mechanism.laws:
         k = law.owner
-        steady = law.value.derivatives(given.after)[1]
-        rate = 0.5 * sum(given.drives.get(k, (steady, steady)))
+        steady_rate = law.value.derivatives(given_impulse.after_time)[1]
+        rate = 0.5 * sum(given_impulse.drives.get(k, (steady_rate, steady_rate)))
         if law.quantity == "length":
             work += rate * float(jump.multipliers[layout.rows.index(k)])
         else:
-            own = [n for n, freedom in enumerate(layout.freedoms) if freedom.joint == k and freedom.q < 0]
-            work += rate * float(jump.freedoms["drive"][own].sum())
+            driven_freedoms = [n for n, freedom in enumerate(layout.freedoms) if freedom.joint == k and freedom.q < 0]
+            work += rate * float(jump.freedoms["drive"][driven_freedoms].sum())
     return work
 
 
 def kinetic_energy(layout: Layout, bodies: Table) -> float:
-    """Of all bodies [J], tree order."""
+    """Return the kinetic energy of all bodies [J]; bodies in tree order."""
     energy = 0.0
-    for place, hang in enumerate(layout.spanning.hangs):
-        body, own = layout.mechanism.bodies[hang.body], bodies[place]
-        v = own["v"] + cross_rows(own["omega"], own["R"] @ (body.center - layout.reference[place]))
-        w = own["R"].T @ own["omega"]
+    for place, link in enumerate(layout.spanning.links):
+        body, body_row = layout.mechanism.bodies[link.body], bodies[place]
+        v = body_row["v"] + cross_rows(body_row["omega"], body_row["R"] @ (body.center - layout.reference[place]))
+        w = body_row["R"].T @ body_row["omega"]
         energy += 0.5 * (body.mass * float(v @ v) + float(w @ body.inertia @ w))
     return energy
 
 
-def met_freely(layout: Layout, impulses: Sequence[Impulse]) -> float:
-    """The energy [J] that given impulses would bring to their bodies' mass, if no joint held them."""
+def free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> float:
+    """Return the energy [J] that given impulses would give to their bodies' mass if no joint held them."""
     energy = 0.0
-    for given in impulses:
-        mass = layout.mechanism.bodies[layout.mechanism.blows[given.blow].body].mass
-        arm = given.moment / layout.size
-        energy += 0.5 * float(given.force @ given.force + arm @ arm) / mass
+    for impulse in impulses:
+        mass = layout.mechanism.bodies[layout.mechanism.impulses[impulse.blow].body].mass
+        arm = impulse.moment / layout.size
+        energy += 0.5 * float(impulse.force @ impulse.force + arm @ arm) / mass
     return energy

@@ -1,9 +1,10 @@
-"""Linear complementarity with a symmetric A that is not negative, by principal pivots.
+"""Solve linear complementarity problems with a symmetric positive semidefinite A by principal pivoting.
 
     w = q + A z,   z >= 0,   w >= 0,   z . w = 0
-One index after the other is driven until its w is zero or its z bears; on the way those done before keep their side, or
+
+One index after the other is driven until its w is zero or its z bears. Meanwhile those done before keep their side, or
 change it where they come to zero (Dantzig; Cottle, Pang, Stone, The Linear Complementarity Problem (1992), 4.2; Baraff
-1994). Every w is measured by what its own z does to it, so that contacts of any mass and unit are alike.
+1994). Every w is scaled by the effect of its own z, so that contacts of any mass and unit are treated alike.
 """
 
 from __future__ import annotations
@@ -19,75 +20,81 @@ from heuncli.results.results import Array, Mask
 
 
 @record
-class Pivots:
-    """z (n,); bears (n,): where it is positive; depends (n,): where w is zero, too, and a self-stress could load it."""
+class ComplementaritySolution:
+    """The solution z (n,).
+
+    bears (n,): where z is positive
+    depends (n,): where w is zero too, and a self-stress could load the contact
+    """
 
     z: Array
     bears: Mask
     depends: Mask
 
 
-def complementary(A: Array, q: Array, noise: Array) -> Pivots:
-    """The solution z; noise (n,): what rounding makes of w, which is zero within it. The diagonal of A is positive."""
+def solve_complementarity(A: Array, q: Array, noise: Array) -> ComplementaritySolution:
+    """Solve for z; noise (n,): rounding error of w, which is zero within it. The diagonal of A must be positive."""
     n = len(q)
     unit = 1.0 / np.sqrt(np.diag(A)) if n else np.zeros(0)
     A, q, noise = A * unit[:, None] * unit, q * unit, noise * unit
-    z, bears, done = np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
+    z, bears, is_done = np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
     for _ in range(20 * n + 20):
         w = np.where(bears, 0.0, q + A @ z)
-        waiting = np.flatnonzero(~done & (w < -noise))
-        if not len(waiting):
+        violated = np.flatnonzero(~is_done & (w < -noise))
+        if not len(violated):
             break
-        drive(A, q, z, bears, done, int(waiting[np.argmin(w[waiting])]))
+        drive_index(A, q, z, bears, is_done, int(violated[np.argmin(w[violated])]))
     else:
-        raise undecided("which of the contacts that touch bear is not decided")
+        raise undecided_error("which of the contacts that touch bear is not decided")
     w = q + A @ z
-    small = z <= noise  # A's diagonal is 1: what bears less than rounding bears nothing
-    z[small], bears = 0.0, bears & ~small
-    closed = ~bears & (np.abs(w) <= np.maximum(noise, tolerances.CONTACT_DEPENDS * np.abs(A) @ z))
-    return Pivots(z * unit, bears, closed & shared(A, bears | closed))
+    is_small = z <= noise  # A's diagonal is 1, so z below the rounding of w counts as zero
+    z[is_small], bears = 0.0, bears & ~is_small
+    is_closed = ~bears & (np.abs(w) <= np.maximum(noise, tolerances.CONTACT_DEPENDS * np.abs(A) @ z))
+    return ComplementaritySolution(z * unit, bears, is_closed & find_shared(A, bears | is_closed))
 
 
-def shared(A: Array, closed: Mask) -> Mask:
-    """Which of the contacts that are closed a self-stress of them all loads: how those share is not known."""
-    own, found = np.flatnonzero(closed), np.zeros(len(closed), dtype=bool)
-    if len(own) > 1:
-        values, vectors = np.linalg.eigh(A[np.ix_(own, own)])
+def find_shared(A: Array, is_closed: Mask) -> Mask:
+    """Return which of the closed contacts a self-stress of them loads, so that it is unknown how they share the
+    load.
+    """
+    indices, is_shared = np.flatnonzero(is_closed), np.zeros(len(is_closed), dtype=bool)
+    if len(indices) > 1:
+        values, vectors = np.linalg.eigh(A[np.ix_(indices, indices)])
         null = np.abs(vectors[:, values <= tolerances.CONTACT_DEPENDS]).max(axis=1, initial=0.0)
-        found[own] = null > math.sqrt(tolerances.CONTACT_DEPENDS)
-    return found
+        is_shared[indices] = null > math.sqrt(tolerances.CONTACT_DEPENDS)
+    return is_shared
 
 
-def drive(A: Array, q: Array, z: Array, bears: Mask, done: Mask, i: int) -> None:
-    """Let z_i grow until w_i is zero; those that are done keep z w = 0. In place."""
+def drive_index(A: Array, q: Array, z: Array, bears: Mask, is_done: Mask, i: int) -> None:
+    """Increase z_i until w_i is zero, in place; those that are done keep z w = 0."""
     for _ in range(20 * len(q) + 20):
-        own = np.flatnonzero(bears)
+        bearing = np.flatnonzero(bears)
         dz = np.zeros(len(q))
         dz[i] = 1.0
-        if len(own):
-            dz[own] = -np.linalg.solve(A[np.ix_(own, own)], A[own, i])
+        if len(bearing):
+            dz[bearing] = -np.linalg.solve(A[np.ix_(bearing, bearing)], A[bearing, i])
         w, dw = q + A @ z, A @ dz
         limits = [(-w[i] / dw[i], 1, i)] if dw[i] > tolerances.CONTACT_DEPENDS else []
-        limits += [(-z[j] / dz[j], 2, int(j)) for j in own if dz[j] < 0.0]
+        limits += [(-z[j] / dz[j], 2, int(j)) for j in bearing if dz[j] < 0.0]
         limits += [
             (max(w[j], 0.0) / -dw[j], 3, int(j))
-            for j in np.flatnonzero(done & ~bears)
+            for j in np.flatnonzero(is_done & ~bears)
             if j != i and dw[j] < -tolerances.CONTACT_DEPENDS
         ]
         if not limits:
-            raise undecided("no impulse or force of the contacts holds them apart")
-        step, what, j = min(limits)
+            raise undecided_error("no impulse or force of the contacts holds them apart")
+        step, event, j = min(limits)
         z += step * dz
-        if what == 1:
-            bears[i] = done[i] = True
+        if event == 1:
+            bears[i] = is_done[i] = True
             return
-        bears[j] = what == 3
-        if what == 2:
+        bears[j] = event == 3
+        if event == 2:
             z[j] = 0.0
-    raise undecided("which of the contacts that touch bear is not decided")
+    raise undecided_error("which of the contacts that touch bear is not decided")
 
 
-def undecided(message: str) -> SolveError:
-    """The error of contacts that find no balance."""
+def undecided_error(message: str) -> SolveError:
+    """Make the error of contacts that find no balance."""
     hint = "stops or ropes that hold the same: let one of them out, or a little more room to one"
     return SolveError(Problem("contacts-undecided", message, hint=hint))

@@ -1,6 +1,6 @@
-"""Events of contacts: what is struck at an instant of a run, by which impulses, and what is held from there on.
+"""Handle contact events: what is struck at an instant of a run, by which impulses, and what is held from then on.
 
-touching.py finds the contacts that touch, latches.py what catches and lets go, restitution.py the impulses, resting.py
+touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses, resting.py
 the contacts that stay closed.
 """
 
@@ -12,48 +12,65 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.contacts.blows import (
-    BlowResult,
-    GivenBlow,
-    Jump,
+    GivenImpulse,
+    ImpulseEvent,
+    ImpulseResult,
     RightSides,
-    jump_of,
-    met_freely,
-    right_sides,
-    state_behind,
+    free_impulse_energy,
+    make_impulse_event,
+    make_right_sides,
+    state_after,
 )
-from heuncli.motion.integration.contacts.latches import UNWATCHED, Bolts, Catch, Latches, with_catches, work_of_catches
-from heuncli.motion.integration.contacts.resting import rests, short_flights, undecided_by_friction
-from heuncli.motion.integration.contacts.restitution import Struck, feeling, strikes, undecided
-from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts, endless_impacts, independent
+from heuncli.motion.integration.contacts.latches import (
+    UNWATCHED,
+    LatchCatch,
+    LatchConditions,
+    Latches,
+    add_catches,
+    work_of_catches,
+)
+from heuncli.motion.integration.contacts.resting import find_resting, find_undecided_by_friction, is_short_flight
+from heuncli.motion.integration.contacts.restitution import (
+    ContactImpulses,
+    chattering_error,
+    find_coupled_groups,
+    solve_contact_impulses,
+)
+from heuncli.motion.integration.contacts.sequential_impacts import (
+    EndlessImpacts,
+    endless_impacts_error,
+    find_independent,
+)
 from heuncli.motion.integration.contacts.shared_impulses import (
     LoadedContact,
     SharedImpulse,
     find_shared_impulses,
-    held_contacts,
-    listed,
-    loaded,
+    join_names,
+    list_bilateral_contacts,
+    select_loaded,
 )
-from heuncli.motion.integration.contacts.touching import Touching, answerable, answers, touching
-from heuncli.motion.integration.evaluator import Evaluator, Recovered
-from heuncli.multibody.response import Blows as Answered
-from heuncli.multibody.response import Columns, blows
+from heuncli.motion.integration.contacts.touching import TouchingContacts, find_touching, moves_something, opening_rates
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
+from heuncli.multibody.response import Columns, solve_impulses
+from heuncli.multibody.response import ImpulseColumns as Answered
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
 
-AT_ONCE = 16  # events at one instant, and four a contact: more follow each other without end
+MAX_SIMULTANEOUS = 16  # events at one instant, plus four per contact; more count as endless
 
 
 @record
-class Pressed:
-    """The touching contacts, and what they answer.
+class ContactProblem:
+    """The touching contacts, and how their rates respond to impulses.
 
-    A (k, k): the rates of opening that unit impulses make (restitution.py); moves (k,): whether one that bears moves
-    anything; rates (k,): those of opening that given impulses and drives add.
+    A (k, k): rates of opening from unit impulses (restitution.py)
+    moves (k,): whether a bearing contact moves anything
+    rates (k,): rates of opening that given impulses and drives add
     """
 
-    touch: Touching
+    touch: TouchingContacts
     A: Array
     moves: Mask
     rates: Array
@@ -61,12 +78,13 @@ class Pressed:
 
 @record
 class ContactOutcome:
-    """The impulses, which contacts are held, which rest because they would never be seen to leave; the state behind.
+    """The impulses, the contacts held, those at rest because their rebound would never be seen, and the state after.
 
-    columns: of what is given, and of the touching contacts by their impulses; work: of all [J].
+    columns: of what is given, and of the touching contacts with their impulses
+    work: of all impulses [J]
     """
 
-    struck: Struck
+    struck: ContactImpulses
     holding: Array
     at_rest: Mask
     columns: Columns
@@ -74,20 +92,20 @@ class ContactOutcome:
     work: float
 
 
-def held_at(evaluator: Evaluator, t: float, state: Array) -> Array:
-    """The contacts that are closed at a state, behind the blow that it may be."""
+def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
+    """Return the contacts that are closed at a state, after the impulse that may happen there."""
     contacts = Contacts(evaluator, t)
-    contacts.meet(GivenBlow(t, t, (), {}), state, t, None)
+    contacts.handle_event(GivenImpulse(t, t, (), {}), state, t, None)
     return contacts.holding
 
 
-def require_energy(jump: Jump, terms: float) -> None:
-    """Raise SolveError where the energies before and behind a blow and the work of its impulses do not add up.
+def require_energy(jump: ImpulseEvent, energy_scale: float) -> None:
+    """Raise SolveError if the energies before and after an impulse and the work of its impulses do not add up.
 
-    terms: what the impulses would bring alone, which joints and others may take back.
+    energy_scale: energy that the impulses would bring alone, which joints and others may take back
     """
     before, after = jump.kinetic
-    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * terms)
+    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * energy_scale)
     if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
         message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
         raise SolveError(
@@ -95,28 +113,32 @@ def require_energy(jump: Jump, terms: float) -> None:
         )
 
 
-def require_smooth(layout: Layout, given: GivenBlow, closed: Mask) -> None:
-    """Raise SolveError for a rope that may go slack, and is taut where the rate of its length jumps."""
+def require_smooth(layout: Layout, given_impulse: GivenImpulse, is_closed: Mask) -> None:
+    """Raise SolveError for a rope that may go slack and is taut where the rate of its length jumps."""
     for k, contact in enumerate(layout.contacts):
-        if closed[k] and contact.is_rope and contact.joint in given.drives:
-            first, then = given.drives[contact.joint]
+        if is_closed[k] and contact.is_rope and contact.joint in given_impulse.drives:
+            first, then = given_impulse.drives[contact.joint]
             message = (
-                f"at t = {given.after:.9g} s the rate of the length of {contact.name} jumps from {first:.6g} to "
+                f"at t = {given_impulse.after_time:.9g} s the rate of the length of {contact.name} jumps from {first:.6g} to "
                 f"{then:.6g} m/s while it is taut: as it may go slack, how it leaves that jump is not solved"
             )
             hint = (
                 "lead the rate over in a short time, as max(t - 0.2, 0)**2; or leave out restitution: it holds through"
             )
-            raise SolveError(Problem("rope-jerked", message, None, hint, layout.mechanism.owner(contact.joint)))
+            raise SolveError(Problem("rope-jerked", message, None, hint, layout.mechanism.owner_path(contact.joint)))
 
 
-def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, catches: list[Catch], t: float) -> None:
-    """Raise SolveError for latches that catch what cannot come to rest: drives and joints prescribe its rate."""
-    may_stay = float(evaluator.may_stay(sides.still.gap)[0])
-    own = [catch for catch in catches if catch.rate != 0.0]
-    first = len(sides.loads) - len(own)
-    for k, catch in enumerate(own):
-        if not found.unmet[first + k] <= may_stay:
+def require_caught(
+    evaluator: Evaluator, sides: RightSides, solution: Answered, catches: list[LatchCatch], t: float
+) -> None:
+    """Raise SolveError for latches that catch a joint that cannot stop, because drives and joints prescribe its
+    rate.
+    """
+    allowed_residual = float(evaluator.allowed_residual(sides.still.gap)[0])
+    moving_catches = [catch for catch in catches if catch.rate != 0.0]
+    first = len(sides.loads) - len(moving_catches)
+    for k, catch in enumerate(moving_catches):
+        if not solution.unmet[first + k] <= allowed_residual:
             contact = evaluator.layout.contacts[catch.contact]
             joint = evaluator.layout.mechanism.joints[contact.joint].name
             message = (
@@ -127,267 +149,349 @@ def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, cat
 
 
 @record
-class Unrefined:
-    """Impulses as the contacts' problem gives them, and the columns of unit impulses.
+class UnrefinedImpulses:
+    """Impulses as the contact problem gives them, and the columns of unit impulses.
 
-    basis: the contacts that bear and are solved for by their rates; others: those of a sequence whose impulses stay,
-    for their rates follow from those of the basis.
+    basis: the bearing contacts that are solved for by their rates
+    others: those of a sequence whose impulses stay, because their rates follow from those of the basis
     """
 
-    touch: Touching
-    struck: Struck
+    touch: TouchingContacts
+    struck: ContactImpulses
     units: Columns
     basis: Indices
     others: Indices
 
 
 class Contacts:
-    """The contacts of one run: which are closed, and what is to be told of them. Changes with every instant met."""
+    """The contacts of one run: which are closed, and the notes on them. Changes with every event."""
 
     def __init__(self, evaluator: Evaluator, last: float) -> None:
         self.evaluator, self.last = evaluator, last
         self.layout = evaluator.layout
-        self.holding = self.layout.all_open
+        self.holding = self.layout.open_contacts
         self.latches = Latches(self.layout, last)
-        self.strikes: dict[str, int] = {}
+        self.strike_counts: dict[str, int] = {}
         self.notes: dict[str, None] = {}
-        self.since, self.at_once = -1.0, 0
+        self.last_event_time, self.simultaneous_count = -1.0, 0
 
-    def count(self, t: float) -> None:
-        """An event at an instant. Raises SolveError for too many at one."""
+    def count_event(self, t: float) -> None:
+        """Count an event at an instant. Raises SolveError for too many at one instant."""
         near = tolerances.KERNEL["least_step"] * self.last
-        self.at_once = self.at_once + 1 if t - self.since <= near else 0
-        self.since = t
-        if self.at_once > AT_ONCE + 4 * len(self.layout.contacts):
-            raise undecided(t, max(self.strikes, key=lambda name: self.strikes[name], default=""))
+        self.simultaneous_count = self.simultaneous_count + 1 if t - self.last_event_time <= near else 0
+        self.last_event_time = t
+        if self.simultaneous_count > MAX_SIMULTANEOUS + 4 * len(self.layout.contacts):
+            raise chattering_error(t, max(self.strike_counts, key=lambda name: self.strike_counts[name], default=""))
 
-    def meet(
-        self, given: GivenBlow, state: Array, time: float, row: int | None, said: Bolts | None = None
-    ) -> Jump | None:
-        """The blow at an instant, where there is one.
+    def handle_event(
+        self,
+        given_impulse: GivenImpulse,
+        state: Array,
+        time: float,
+        row: int | None,
+        latch_conditions: LatchConditions | None = None,
+    ) -> ImpulseEvent | None:
+        """Handle an event and return the impulse that it causes, if any.
 
-        row: of the contact that closed or opened there; said: what the conditions of latches say there, by the state's
-        own numbers where it is not told.
+        row: closure row of the contact that closed or opened there
+        latch_conditions: the conditions of latches there; by default evaluated at the state
         """
-        latches, closed = self.latches, self.holding > 0.0
-        require_smooth(self.layout, given, closed)
-        said = said or latches.freely(given.before, state)
-        released = latches.let_go(said)
-        sides = right_sides(self.evaluator, given, state, latches.holding())
-        touch = touching(self.layout, sides.still, closed, row, self.last)
-        catches = latches.catch(said, sides.still, touch)
-        free = latches.free_of(touch)
-        unwatched, touch = touch.which[~free], touch.some(free)
-        sides = with_catches(self.layout, sides, catches)
-        found, pressed = self.pose(given, sides, touch)
-        require_caught(self.evaluator, sides, found, catches, given.before)
-        outcome = self.solve(given, sides, found.columns, pressed, catches)
+        latches, is_closed = self.latches, self.holding > 0.0
+        require_smooth(self.layout, given_impulse, is_closed)
+        latch_conditions = latch_conditions or latches.evaluate_conditions(given_impulse.before_time, state)
+        released = latches.release(latch_conditions)
+        sides = make_right_sides(self.evaluator, given_impulse, state, latches.holding())
+        contacts_touching = find_touching(self.layout, sides.still, is_closed, row, self.last)
+        catches = latches.catch(latch_conditions, sides.still, contacts_touching)
+        is_free = latches.find_free(contacts_touching)
+        unwatched, contacts_touching = contacts_touching.indices[~is_free], contacts_touching.select(is_free)
+        sides = add_catches(self.layout, sides, catches)
+        solution, problem = self.make_problem(given_impulse, sides, contacts_touching)
+        require_caught(self.evaluator, sides, solution, catches, given_impulse.before_time)
+        outcome = self.solve(given_impulse, sides, solution.columns, problem, catches)
         self.holding = latches.holding()
-        self.holding[touch.which] = outcome.holding
+        self.holding[contacts_touching.indices] = outcome.holding
         self.holding[unwatched] = UNWATCHED
-        shared = self.shared(pressed, outcome, catches)
-        self.tell(time, touch, outcome, shared)
-        self.tell_latches(time, released, catches)
-        bears, n = np.flatnonzero(outcome.struck.impulses), len(sides.loads)
-        if not len(bears) and not n:
+        shared_impulses = self.find_shared(problem, outcome, catches)
+        self.add_notes(time, contacts_touching, outcome, shared_impulses)
+        self.add_latch_notes(time, released, catches)
+        bearing, n = np.flatnonzero(outcome.impulses.impulses), len(sides.loads)
+        if not len(bearing) and not n:
             return None
-        causes = (*sides.causes, *(self.layout.contacts[i].name for i in touch.which[bears]))
-        shown = np.array([*range(n), *(n + bears)], dtype=int)
-        found = Answered(outcome.columns.at(shown), found.unmet[shown], found.idle)
-        sides = replace(sides, still=self.shown(sides.still, pressed, outcome.struck))
-        struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
-        struck += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
-        blow = BlowResult(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck, shared)
-        jump = jump_of(self.evaluator, given, sides, blow)
-        terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, sides.impulses)
-        require_energy(jump, terms)
-        return jump
+        causes = (*sides.causes, *(self.layout.contacts[i].name for i in contacts_touching.indices[bearing]))
+        used_columns = np.array([*range(n), *(n + bearing)], dtype=int)
+        solution = Answered(outcome.columns.select(used_columns), solution.unmet[used_columns], solution.massless_count)
+        sides = replace(sides, still=self.with_active_contacts(sides.still, problem, outcome.impulses))
+        struck_names = tuple(
+            self.layout.contacts[i].name for i in contacts_touching.indices[outcome.impulses.takes_part]
+        )
+        struck_names += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
+        result = ImpulseResult(
+            time,
+            solution,
+            causes,
+            outcome.after_state,
+            outcome.work,
+            self.holding.copy(),
+            struck_names,
+            shared_impulses,
+        )
+        event = make_impulse_event(self.evaluator, given_impulse, sides, result)
+        energy_scale = 0.5 * float(outcome.impulses.impulses**2 @ np.diag(problem.A)) + free_impulse_energy(
+            self.layout, sides.impulses
+        )
+        require_energy(event, energy_scale)
+        return event
 
-    def pose(self, given: GivenBlow, sides: RightSides, touch: Touching) -> tuple[Answered, Pressed]:
-        """The columns of what is given and of each contact that touches, and the problem they make."""
+    def make_problem(
+        self, given_impulse: GivenImpulse, sides: RightSides, contacts_touching: TouchingContacts
+    ) -> tuple[Answered, ContactProblem]:
+        """Compute the columns of what is given and of each touching contact, and the contact problem they make."""
         self.evaluator.workspace.hold(self.latches.holding())
         n, n_u = len(sides.loads), len(self.layout.freedoms) + len(self.layout.rows)
-        loads = np.array([*sides.loads, *touch.loads]).reshape(-1, len(self.layout.place), 6)
-        jumps = np.array([*sides.jumps, *([np.zeros(n_u)] * len(touch.which))]).reshape(-1, n_u)
-        found = blows(self.evaluator.workspace, given.before, sides.still.states[0], loads, jumps)
-        rates = answers(touch, found.columns.bodies)
+        loads = np.array([*sides.loads, *contacts_touching.loads]).reshape(-1, len(self.layout.place), 6)
+        jumps = np.array([*sides.jumps, *([np.zeros(n_u)] * len(contacts_touching.indices))]).reshape(-1, n_u)
+        solution = solve_impulses(
+            self.evaluator.workspace, given_impulse.before_time, sides.still.states[0], loads, jumps
+        )
+        rates = opening_rates(contacts_touching, solution.columns.bodies)
         A = 0.5 * (rates[:, n:] + rates[:, n:].T)
-        return found, Pressed(touch, A, answerable(self.layout, touch, A), rates[:, :n].sum(axis=1))
+        return solution, ContactProblem(
+            contacts_touching, A, moves_something(self.layout, contacts_touching, A), rates[:, :n].sum(axis=1)
+        )
 
     def solve(
-        self, given: GivenBlow, sides: RightSides, units: Columns, pressed: Pressed, catches: list[Catch]
+        self,
+        given_impulse: GivenImpulse,
+        sides: RightSides,
+        units: Columns,
+        problem: ContactProblem,
+        catches: list[LatchCatch],
     ) -> ContactOutcome:
-        """Impulses, then who rests; a rebound too short to be seen is none."""
-        touch, open_ = pressed.touch, self.latches.holding()
-        at_rest = np.zeros(len(touch.which), dtype=bool)
+        """Solve for the impulses, then for the contacts that stay closed; a rebound too short to be seen does not
+        count.
+        """
+        contacts_touching, open_holding = problem.touching, self.latches.holding()
+        at_rest = np.zeros(len(contacts_touching.indices), dtype=bool)
         while True:
-            struck = self.strike(given.after, pressed, at_rest)
-            columns = self.scaled(units, touch, struck.impulses)
-            after, work = state_behind(self.layout, given, sides, columns)
-            then = self.evaluator.recovered(np.array([given.after]), after[None, :], holding=open_)
-            holding, acceleration = rests(touch, pressed.A, pressed.moves, struck.rate, then, self.layout)
-            instant = tolerances.SHORTEST_FLIGHT * self.last
-            short = short_flights(touch, struck.rate, acceleration, instant) & ~at_rest & pressed.moves
-            if not short.any():
+            impulses = self.solve_impulses(given_impulse.after_time, problem, at_rest)
+            columns = self.scale_columns(units, contacts_touching, impulses.impulses)
+            after_state, work = state_after(self.layout, given_impulse, sides, columns)
+            after_evaluation = self.evaluator.evaluate(
+                np.array([given_impulse.after_time]), after_state[None, :], holding=open_holding
+            )
+            holding, acceleration = find_resting(
+                contacts_touching, problem.A, problem.moves, impulses.rate, after_evaluation, self.layout
+            )
+            shortest_time = tolerances.SHORTEST_FLIGHT * self.last
+            is_short = (
+                is_short_flight(contacts_touching, impulses.rate, acceleration, shortest_time)
+                & ~at_rest
+                & problem.moves
+            )
+            if not is_short.any():
                 break
-            at_rest = at_rest | short
-        if self.layout.mechanism.rubbing:
-            self.require_decided(given.after, after, pressed, holding, struck.rate)
-        if struck.impulses.any():
-            bears = np.flatnonzero(struck.impulses)
-            own = np.arange(len(bears))
+            at_rest = at_rest | is_short
+        if self.layout.mechanism.joint_friction:
+            self.require_decided(given_impulse.after_time, after_state, problem, holding, impulses.rate)
+        if impulses.impulses.any():
+            bearing = np.flatnonzero(impulses.impulses)
+            basis = np.arange(len(bearing))
             if self.layout.mechanism.impacts != SIMULTANEOUS:
-                own = independent(pressed.A[np.ix_(bears, bears)])
-            unrefined = Unrefined(touch, struck, units, bears[own], np.delete(bears, own))
-            struck, columns, whole = self.refined(given, sides, unrefined)
-            after, work = state_behind(self.layout, given, sides, whole)
-        work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
+                basis = find_independent(problem.A[np.ix_(bearing, bearing)])
+            unrefined = UnrefinedImpulses(contacts_touching, impulses, units, bearing[basis], np.delete(bearing, basis))
+            impulses, columns, total = self.refine(given_impulse, sides, unrefined)
+            after_state, work = state_after(self.layout, given_impulse, sides, total)
+        work += float(impulses.impulses @ (0.5 * (contacts_touching.rate + impulses.rate)))
         work += work_of_catches(self.layout, catches, columns.multipliers)
-        self.bring_to_rest(sides.still.states[0], after)
-        return ContactOutcome(struck, holding, at_rest, columns, after, work)
+        self.bring_to_rest(sides.still.states[0], after_state)
+        return ContactOutcome(impulses, holding, at_rest, columns, after_state, work)
 
-    def strike(self, t: float, pressed: Pressed, at_rest: Mask) -> Struck:
-        """The impulses of the contacts; at_rest: those that stay. Raises SolveError for impacts without an end."""
-        touch = pressed.touch
+    def solve_impulses(self, t: float, problem: ContactProblem, at_rest: Mask) -> ContactImpulses:
+        """Solve for the impulses of the contacts; at_rest: those that stay closed. Raises SolveError for endless
+        impacts.
+        """
+        contacts_touching = problem.touching
         try:
-            return strikes(touch, pressed.A, pressed.moves, pressed.rates, at_rest, self.layout.mechanism.impacts)
+            return solve_contact_impulses(
+                contacts_touching, problem.A, problem.moves, problem.rates, at_rest, self.layout.mechanism.impacts
+            )
         except EndlessImpacts as endless:
-            own = [self.layout.contacts[i].name for i in touch.which.tolist()]
-            raise endless_impacts(t, [own[k] for k in endless.own.tolist()], own[endless.most]) from None
+            names = [self.layout.contacts[i].name for i in contacts_touching.indices.tolist()]
+            raise endless_impacts_error(
+                t, [names[k] for k in endless.contacts.tolist()], names[endless.most_struck]
+            ) from None
 
-    def shared(self, pressed: Pressed, outcome: ContactOutcome, catches: list[Catch]) -> tuple[SharedImpulse, ...]:
-        """The contacts of which a model says how they share the blow: those that bear, latches that catch, others."""
-        struck, which = outcome.struck, pressed.touch.which
-        own, n = np.flatnonzero(struck.closed), len(outcome.columns.multipliers) - len(which)
+    def find_shared(
+        self, problem: ContactProblem, outcome: ContactOutcome, catches: list[LatchCatch]
+    ) -> tuple[SharedImpulse, ...]:
+        """Find the contacts for which a model says how they share the impulse: bearing ones, catching latches, and
+        others.
+        """
+        impulses, which = outcome.impulses, problem.touching.indices
+        taking_part, n = np.flatnonzero(impulses.takes_part), len(outcome.columns.multipliers) - len(which)
         contacts = [
             LoadedContact(
-                contact.name, contact.row, n + int(k), impacts=int(struck.count[k]), settled=bool(struck.settled[k])
+                contact.name,
+                contact.row,
+                n + int(k),
+                impacts=int(impulses.count[k]),
+                comes_to_rest=bool(impulses.comes_to_rest[k]),
             )
-            for k, contact in ((k, self.layout.contacts[which[k]]) for k in own)
+            for k, contact in ((k, self.layout.contacts[which[k]]) for k in taking_part)
         ]
-        caught = [self.layout.contacts[catch.contact] for catch in catches if catch.rate != 0.0]
-        first = n - len(caught)
+        catching_contacts = [self.layout.contacts[catch.contact] for catch in catches if catch.rate != 0.0]
+        first = n - len(catching_contacts)
         contacts += [
-            LoadedContact(contact.name, contact.row, first + k, is_held=True) for k, contact in enumerate(caught)
+            LoadedContact(contact.name, contact.row, first + k, is_held=True)
+            for k, contact in enumerate(catching_contacts)
         ]
-        contacts += loaded(held_contacts(self.layout), outcome.columns.multipliers)
-        felt = np.zeros((len(contacts), len(contacts)), dtype=bool)
-        for group in feeling(pressed.A):  # also over contacts that bear nothing, which is a matter of the model, too
-            members = np.isin(own, group)
-            felt[: len(own), : len(own)] |= members[:, None] & members
-        return tuple(find_shared_impulses(contacts, felt, outcome.columns.multipliers))
+        contacts += select_loaded(list_bilateral_contacts(self.layout), outcome.columns.multipliers)
+        is_coupled = np.zeros((len(contacts), len(contacts)), dtype=bool)
+        for group in find_coupled_groups(
+            problem.A
+        ):  # also through contacts that bear nothing, which depends on the model, too
+            members = np.isin(taking_part, group)
+            is_coupled[: len(taking_part), : len(taking_part)] |= members[:, None] & members
+        return tuple(find_shared_impulses(contacts, is_coupled, outcome.columns.multipliers))
 
-    def require_decided(self, t: float, after: Array, pressed: Pressed, holding: Array, rate: Array) -> None:
-        """Raise SolveError where friction by what joints carry makes other contacts bear than those that are held."""
-        touch, held = pressed.touch, self.latches.holding()
-        held[touch.which] = holding
-        at = self.evaluator.recovered(np.array([t]), after[None, :], holding=held)
-        wrong = undecided_by_friction(touch, pressed.A, holding, rate, at, self.layout)
-        if wrong.any():
-            names = ", ".join(self.layout.contacts[i].name for i in touch.which[wrong])
+    def require_decided(
+        self, t: float, after_state: Array, problem: ContactProblem, holding: Array, rate: Array
+    ) -> None:
+        """Raise SolveError where load-dependent joint friction makes other contacts bear than those that are held."""
+        contacts_touching, full_holding = problem.touching, self.latches.holding()
+        full_holding[contacts_touching.indices] = holding
+        evaluation = self.evaluator.evaluate(np.array([t]), after_state[None, :], holding=full_holding)
+        is_wrong = find_undecided_by_friction(contacts_touching, problem.A, holding, rate, evaluation, self.layout)
+        if is_wrong.any():
+            names = ", ".join(self.layout.contacts[i].name for i in contacts_touching.indices[is_wrong])
             message = (
                 f"at t = {t:.9g} s friction by what joints carry decides whether {names} bears, and changes as it does"
             )
             hint = "friction of a given size, or contacts that are not touched there together"
             raise SolveError(Problem("friction-not-unique", message, hint=hint))
 
-    def refined(self, given: GivenBlow, sides: RightSides, found: Unrefined) -> tuple[Struck, Columns, Columns]:
-        """The impulses and columns, and all in one, with the digits that A loses between very unequal masses.
+    def refine(
+        self, given_impulse: GivenImpulse, sides: RightSides, unrefined_impulses: UnrefinedImpulses
+    ) -> tuple[ContactImpulses, Columns, Columns]:
+        """Recompute impulses and columns with the digits that A loses between very unequal masses; also return their
+        total.
 
-        With the rates behind known, what bears is held and answered by the factors of the closures, in one column; what
-        the columns of the contacts lack of it goes to the last of them.
+        With the rates after the impulse known, the bearing contacts are held and solved by the factors of the closures,
+        in one column. What the contacts' columns lack of it is added to the last of them.
         """
-        touch, struck, n = found.touch, found.struck, len(sides.loads)
-        own, others = found.basis, found.others
-        contacts = [self.layout.contacts[i] for i in touch.which[own].tolist()]
+        contacts_touching, impulse_solution, n = (
+            unrefined_impulses.touching,
+            unrefined_impulses.impulses,
+            len(sides.loads),
+        )
+        basis, others = unrefined_impulses.basis, unrefined_impulses.others
+        contacts = [self.layout.contacts[i] for i in contacts_touching.indices[basis].tolist()]
         rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])
         load = np.sum([np.zeros((len(self.layout.place), 6)), *sides.loads], axis=0)
-        load = load + np.einsum("k,kbi->bi", struck.impulses[others], touch.loads[others])
+        load = load + np.einsum("k,kbi->bi", impulse_solution.impulses[others], contacts_touching.loads[others])
         jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *sides.jumps], axis=0)
-        jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (struck.rate - touch.rate)[own]
+        jump[len(self.layout.freedoms) + np.array(rows)] -= (
+            sense * (impulse_solution.rate - contacts_touching.rate)[basis]
+        )
         holding = self.latches.holding()
-        holding[touch.which[own]] = 1.0
+        holding[contacts_touching.indices[basis]] = 1.0
         self.evaluator.workspace.hold(holding)
-        whole = blows(self.evaluator.workspace, given.before, sides.still.states[0], load[None], jump[None]).columns
-        impulses = struck.impulses.copy()
-        impulses[own] = -sense * whole.multipliers[0, rows]
-        columns = self.scaled(found.units, touch, impulses)
-        for k in others.tolist():  # which the one column has as given loads
-            contact = self.layout.contacts[touch.which[k]]
-            whole.multipliers[0, contact.row] -= contact.sense * impulses[k]
-        total, last = columns.sum(), n + int(own[-1])
+        single_column = solve_impulses(
+            self.evaluator.workspace, given_impulse.before_time, sides.still.states[0], load[None], jump[None]
+        ).columns
+        impulses = impulse_solution.impulses.copy()
+        impulses[basis] = -sense * single_column.multipliers[0, rows]
+        columns = self.scale_columns(unrefined_impulses.units, contacts_touching, impulses)
+        for k in others.tolist():  # these are given loads in the single column
+            contact = self.layout.contacts[contacts_touching.indices[k]]
+            single_column.multipliers[0, contact.row] -= contact.sense * impulses[k]
+        total, last = columns.sum(), n + int(basis[-1])
         for part in ("bodies", "freedoms"):
-            table, right, summed = (getattr(x, part) for x in (columns, whole, total))
+            table, right, summed = (getattr(x, part) for x in (columns, single_column, total))
             for name in table.dtype.names or ():
                 table[name][last] += right[name][0] - summed[name]
-        columns.multipliers[last] += whole.multipliers[0] - total.multipliers
-        return replace(struck, impulses=impulses), columns, whole
+        columns.multipliers[last] += single_column.multipliers[0] - total.multipliers
+        return replace(impulse_solution, impulses=impulses), columns, single_column
 
-    def bring_to_rest(self, before: Array, after: Array) -> None:
-        """Rates behind a blow that are rounding of those before are none, in place: what stands still has no motion."""
+    def bring_to_rest(self, before_state: Array, after_state: Array) -> None:
+        """Set rates after an impulse to zero, in place, where they are rounding of those before: what stands still has
+        no motion.
+        """
         for group in self.layout.tables["groups"]:
             rates = slice(group["rates"], group["end"])
             if group["rates"] < group["end"] and group["coordinates"] < group["rates"]:
-                largest = np.abs(before[rates] * self.layout.weights[rates]).max()
-                if np.abs(after[rates] * self.layout.weights[rates]).max() <= tolerances.SUM_ROUNDING * largest:
-                    after[rates] = 0.0
+                largest = np.abs(before_state[rates] * self.layout.weights[rates]).max()
+                if np.abs(after_state[rates] * self.layout.weights[rates]).max() <= tolerances.SUM_ROUNDING * largest:
+                    after_state[rates] = 0.0
 
-    def scaled(self, units: Columns, touch: Touching, impulses: Array) -> Columns:
-        """The columns of what is given, and those of the contacts by their impulses, each with its own multiplier."""
+    def scale_columns(self, units: Columns, contacts_touching: TouchingContacts, impulses: Array) -> Columns:
+        """Return the columns of what is given and those of the contacts times their impulses, each with its own
+        multiplier.
+        """
         n = len(units.multipliers) - len(impulses)
         factors = np.concatenate([np.ones(n), impulses])
 
-        def by(table: Table) -> Table:
+        def scale_table(table: Table) -> Table:
             out = table.copy()
             for name in table.dtype.names or ():
                 out[name] = table[name] * factors.reshape(-1, *([1] * (table[name].ndim - 1)))
             return out
 
         multipliers = units.multipliers * factors[:, None]
-        for k, i in enumerate(touch.which.tolist()):
+        for k, i in enumerate(contacts_touching.indices.tolist()):
             contact = self.layout.contacts[i]
             multipliers[n + k, contact.row] -= contact.sense * impulses[k]
-        return Columns(by(units.bodies), by(units.freedoms), multipliers)
+        return Columns(scale_table(units.bodies), scale_table(units.freedoms), multipliers)
 
-    def shown(self, still: Recovered, pressed: Pressed, struck: Struck) -> Recovered:
-        """The answers before the blow, with the contacts that take part in it: what they leave open is then seen.
+    def with_active_contacts(self, still: Evaluation, problem: ContactProblem, impulses: ContactImpulses) -> Evaluation:
+        """Return the results before the impulse, with the contacts that take part in it, so that indeterminate shares
+        are found.
 
-        A sequence determines the impulses of contacts that others could replace; these leave nothing open.
+        A sequence determines the impulses of contacts that others could replace; these leave nothing indeterminate.
         """
-        touch, rows, closed = pressed.touch, still.rows.copy(), self.latches.holding()
-        own = struck.closed
+        contacts_touching, rows, holding = problem.touching, still.rows.copy(), self.latches.holding()
+        is_active = impulses.takes_part
         if self.layout.mechanism.impacts != SIMULTANEOUS:
-            bears = np.flatnonzero(struck.impulses)
-            own = struck.depends.copy()
-            own[bears[independent(pressed.A[np.ix_(bears, bears)])]] = True
-        closed[touch.which] = own
-        if np.array_equal(self.layout.closed(closed), still.holding[0]):
+            bearing = np.flatnonzero(impulses.impulses)
+            is_active = impulses.depends.copy()
+            is_active[bearing[find_independent(problem.A[np.ix_(bearing, bearing)])]] = True
+        holding[contacts_touching.indices] = is_active
+        if np.array_equal(self.layout.closed_contacts(holding), still.holding[0]):
             return still
-        chosen = self.evaluator.recovered(still.times, still.states, holding=closed).rows
+        active_rows = self.evaluator.evaluate(still.times, still.states, holding=holding).rows
         for name in ("chosen", "closed"):
-            rows[name] = chosen[name]
+            rows[name] = active_rows[name]
         return replace(still, rows=rows)
 
-    def tell(self, t: float, touch: Touching, outcome: ContactOutcome, shared: tuple[SharedImpulse, ...]) -> None:
-        """Put down what is worth a sentence."""
-        own = [self.layout.contacts[i] for i in touch.which.tolist()]
-        struck = [own[k] for k in np.flatnonzero(outcome.struck.closed & (touch.rate < 0.0))]
-        for contact in struck:
-            self.strikes[contact.name] = self.strikes.get(contact.name, 0) + 1
-        at = f"at t = {t:.6g} s"
-        if len(struck) > 1 and not shared:
-            names = listed([contact.name for contact in struck])
-            self.notes[f"{at} {names} are struck at once, and do not load each other"] = None
+    def add_notes(
+        self,
+        t: float,
+        contacts_touching: TouchingContacts,
+        outcome: ContactOutcome,
+        shared_impulses: tuple[SharedImpulse, ...],
+    ) -> None:
+        """Record notes on contacts that are struck together or come to rest."""
+        contacts = [self.layout.contacts[i] for i in contacts_touching.indices.tolist()]
+        struck_contacts = [
+            contacts[k] for k in np.flatnonzero(outcome.impulses.takes_part & (contacts_touching.rate < 0.0))
+        ]
+        for contact in struck_contacts:
+            self.strike_counts[contact.name] = self.strike_counts.get(contact.name, 0) + 1
+        when = f"at t = {t:.6g} s"
+        if len(struck_contacts) > 1 and not shared_impulses:
+            names = join_names([contact.name for contact in struck_contacts])
+            self.notes[f"{when} {names} are struck at once, and do not load each other"] = None
         for k in np.flatnonzero(outcome.at_rest):
-            name = own[k].name
-            count = self.strikes.get(name, 0)
+            name = contacts[k].name
+            count = self.strike_counts.get(name, 0)
             if not count:
                 continue
-            self.notes[f"{name} rests {at}, after {count} strikes: further ones are too small to be seen"] = None
+            self.notes[f"{name} rests {when}, after {count} strikes: further ones are too small to be seen"] = None
 
-    def tell_latches(self, t: float, released: list[str], catches: list[Catch]) -> None:
-        """Put down what latches catch, and what they let go."""
-        for name in released:
+    def add_latch_notes(self, t: float, released_names: list[str], catches: list[LatchCatch]) -> None:
+        """Record notes on what latches catch and release."""
+        for name in released_names:
             self.notes[f"{name} lets go at t = {t:.6g} s"] = None
         for catch in catches:
             self.notes[f"{self.layout.contacts[catch.contact].name} catches at t = {t:.6g} s"] = None

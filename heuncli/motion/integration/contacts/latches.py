@@ -1,10 +1,11 @@
-"""Latches: which of them hold at an instant of a run, and where.
+"""Decide which latches hold at an instant of a run, and where.
 
-    g = q - c = 0 from the catch on, both ways;   J (V+ - V-) = -g' where it catches, one more row of a blow's equations
-A latch is out while its own condition is true and that of its release is not. Out, it catches what touches its stop's
-limit and does not leave it, what comes through its value, or what it is to hold wherever that is. What is caught has no
-rate behind the blow, whatever the restitution of the stop, and stays until the release becomes true. A coordinate that
-one latch holds no other one catches.
+    g = q - c = 0 from the catch on, both ways;   J (V+ - V-) = -g' where it catches, one more impulse equation
+
+A latch is extended while its own condition is true and that of its release is not. Then it catches a joint that touches
+its stop's limit and does not leave it, one that passes its value, or one that it is to hold wherever it is. After the
+impulse, what is caught has no rate, whatever the restitution of the stop, and it stays until the release becomes true.
+No second latch catches a coordinate that one latch holds.
 """
 
 from __future__ import annotations
@@ -16,42 +17,42 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.conditions import Conditions, coordinates_in
+from heuncli.motion.integration.conditions import Conditions, read_coordinates
 from heuncli.motion.integration.contacts.blows import RightSides
-from heuncli.motion.integration.contacts.touching import Touching, terms_of_gap, unit_load
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.contacts.touching import TouchingContacts, gap_terms, unit_load
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.layout import Contact, Layout
 from heuncli.results.results import Array, Mask
 
-UNWATCHED = -1.0  # of a contact: a latch holds it at its limit, and it is not looked at (kernel/answers.py)
+UNWATCHED = -1.0  # a contact that a latch holds at its limit, so that it is not watched (kernel/answers.py)
 
 
-class Bolts(NamedTuple):
-    """What the conditions say of each latch: whether it is out, is drawn back, and whether its value is passed."""
+class LatchConditions(NamedTuple):
+    """The conditions of each latch: whether it is extended, is drawn back, and whether its value is passed."""
 
     out: tuple[bool, ...]
     back: tuple[bool, ...]
     passed: tuple[bool, ...]
 
 
-def bolts(layout: Layout, truths: Sequence[float], before: Sequence[float] = ()) -> Bolts:
-    """By whether the scene's conditions are true (1.0), and were just before."""
+def evaluate_latches(layout: Layout, truths: Sequence[float], truths_before: Sequence[float] = ()) -> LatchConditions:
+    """Evaluate the latches' conditions from the truth of the scene's conditions (1.0), now and just before."""
     number = {id(condition): k for k, condition in enumerate(layout.mechanism.conditions)}
     latches = [stop.latch for stop in layout.mechanism.stops if stop.latch is not None]
     when = [None if latch.when is None else number[id(latch.when)] for latch in latches]
     release = [None if latch.release is None else number[id(latch.release)] for latch in latches]
     passes = [None if latch.passes is None else number[id(latch.passes)] for latch in latches]
-    return Bolts(
+    return LatchConditions(
         tuple(k is None or truths[k] == 1.0 for k in when),
         tuple(k is not None and truths[k] == 1.0 for k in release),
-        tuple(k is not None and len(before) > 0 and truths[k] != before[k] for k in passes),
+        tuple(k is not None and len(truths_before) > 0 and truths[k] != truths_before[k] for k in passes),
     )
 
 
 @record
-class Catch:
-    """A latch that catches: of the contacts, at which place of its coordinate, and at which rate that came."""
+class LatchCatch:
+    """A latch that catches: the number of its contact, the value of its coordinate there, and the rate before."""
 
     contact: int
     at: float
@@ -59,122 +60,145 @@ class Catch:
 
 
 class Latches:
-    """The latches of a run: which hold, and how often each has caught. Changes with every instant met."""
+    """The latches of a run: which hold, and how often each has caught. Changes with every event."""
 
     def __init__(self, layout: Layout, last: float) -> None:
         """last: the end of the run [s]."""
         self.layout, self.last = layout, last
         named = {stop.name: stop for stop in layout.mechanism.stops}
         self.stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
-        # of the other limits and latches the coordinate that each holds
+        # the coordinate of each limit and latch
         self.coordinates = {
             i: (named[c.name].joint, named[c.name].quantity) for i, c in enumerate(layout.contacts) if c.name in named
         }
         self.limits: Mapping[str, Stop] = named
         self.conditions = Conditions(layout) if layout.latches else None
-        self.holds: dict[int, float] = {}
-        self.caught: dict[int, int] = dict.fromkeys(self.stops, 0)
+        self.held_values: dict[int, float] = {}
+        self.catch_counts: dict[int, int] = dict.fromkeys(self.stops, 0)
 
-    def freely(self, t: float, state: Array) -> Bolts:
-        """What the conditions say at a state, by its numbers alone."""
+    def evaluate_conditions(self, t: float, state: Array) -> LatchConditions:
+        """Evaluate the conditions at a state, from its numbers alone."""
         if self.conditions is None:
-            return Bolts((), (), ())
-        there = coordinates_in(self.layout, t, state)
-        own = self.conditions
-        return bolts(self.layout, [own.free(k, t, 0.0, there) for k in range(len(own.conditions))])
+            return LatchConditions((), (), ())
+        coordinates = read_coordinates(self.layout, t, state)
+        conditions = self.conditions
+        return evaluate_latches(
+            self.layout, [conditions.evaluate_free(k, t, 0.0, coordinates) for k in range(len(conditions.conditions))]
+        )
 
     def holding(self) -> Array:
-        """What is told of the contacts where the latches that hold do so, and no others (Layout.all_open)."""
-        found, n = self.layout.all_open, len(self.layout.contacts)
-        for i, at in self.holds.items():
-            found[i], found[n + self.layout.latches.index(i)] = 1.0, at
-        return found
+        """Return the holding of all contacts where only the latches that hold do so (Layout.all_open)."""
+        holding, n = self.layout.open_contacts, len(self.layout.contacts)
+        for i, value in self.held_values.items():
+            holding[i], holding[n + self.layout.latches.index(i)] = 1.0, value
+        return holding
 
     @property
-    def idle(self) -> list[str]:
-        """Those that have not caught."""
-        return [stop.name for i, stop in self.stops.items() if not self.caught[i]]
+    def unused_names(self) -> list[str]:
+        """Names of the latches that have not caught."""
+        return [stop.name for i, stop in self.stops.items() if not self.catch_counts[i]]
 
-    def let_go(self, said: Bolts) -> list[str]:
-        """Let those go that are drawn back; their names."""
-        gone = [i for i, back in zip(self.stops, said.back, strict=True) if back and i in self.holds]
-        for i in gone:
-            del self.holds[i]
-        return [self.layout.contacts[i].name for i in gone]
+    def release(self, latch_conditions: LatchConditions) -> list[str]:
+        """Release the latches that are drawn back; return their names."""
+        released = [
+            i
+            for i, back in zip(self.stops, latch_conditions.is_drawn_back, strict=True)
+            if back and i in self.held_values
+        ]
+        for i in released:
+            del self.held_values[i]
+        return [self.layout.contacts[i].name for i in released]
 
-    def catch(self, said: Bolts, at: Recovered, touch: Touching) -> list[Catch]:
-        """Catch what those come to that are out; at: the state, with all open that do not hold yet."""
-        found = []
+    def catch(
+        self, latch_conditions: LatchConditions, evaluation: Evaluation, contacts_touching: TouchingContacts
+    ) -> list[LatchCatch]:
+        """Catch what the extended latches can catch; evaluation: the state with all open that do not hold yet."""
+        catches = []
         for n, (i, stop) in enumerate(self.stops.items()):
             assert stop.latch is not None
-            idle = i in self.holds or (self.caught[i] > 0 and not stop.latch.every)
-            if idle or not said.out[n] or said.back[n] or self.is_held(i):
+            is_inactive = i in self.held_values or (self.catch_counts[i] > 0 and not stop.latch.every)
+            if (
+                is_inactive
+                or not latch_conditions.is_extended[n]
+                or latch_conditions.is_drawn_back[n]
+                or self.is_held(i)
+            ):
                 continue
-            rate, noise = motion_along(self.layout, at, self.layout.contacts[i], self.last)
-            place = self.place(i, stop, at, touch, said.passed[n], abs(rate) <= noise)
+            rate, noise = latch_rate(self.layout, evaluation, self.layout.contacts[i], self.last)
+            place = self.find_catch_value(
+                i, stop, evaluation, contacts_touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
+            )
             if place is None:
                 continue
-            self.holds[i] = place
-            self.caught[i] += 1
-            found.append(Catch(i, place, rate if abs(rate) > noise else 0.0))
-        return found
+            self.held_values[i] = place
+            self.catch_counts[i] += 1
+            catches.append(LatchCatch(i, place, rate if abs(rate) > noise else 0.0))
+        return catches
 
     def is_held(self, i: int) -> bool:
-        """Whether a latch holds the coordinate of a contact."""
-        return self.coordinates.get(i) in {self.coordinates[k] for k in self.holds}
+        """Return whether a latch holds the coordinate of a contact."""
+        return self.coordinates.get(i) in {self.coordinates[k] for k in self.held_values}
 
-    def free_of(self, touch: Touching) -> Mask:
-        """Which of the touching contacts no latch holds at their limit, (k,)."""
-        return np.array([not self.is_held(i) for i in touch.which.tolist()], dtype=bool)
+    def find_free(self, contacts_touching: TouchingContacts) -> Mask:
+        """Return which of the touching contacts no latch holds at their limit, (k,)."""
+        return np.array([not self.is_held(i) for i in contacts_touching.indices.tolist()], dtype=bool)
 
-    def place(self, i: int, stop: Stop, at: Recovered, touch: Touching, passed: bool, still: bool) -> float | None:
-        """Where a latch that is out catches at a state; None where it does not."""
+    def find_catch_value(
+        self,
+        i: int,
+        stop: Stop,
+        evaluation: Evaluation,
+        contacts_touching: TouchingContacts,
+        is_passed: bool,
+        is_still: bool,
+    ) -> float | None:
+        """Return the value at which an extended latch catches at a state; None if it does not catch."""
         assert stop.latch is not None
         contact, latch = self.layout.contacts[i], stop.latch
-        gap = float(at.rows["gap"][0, contact.row])  # of one that is open from its value, or from zero
+        gap = float(evaluation.rows["gap"][0, contact.row])  # for an open latch, from its value, or from zero
         if latch.stop is not None:
             limits = self.limits[latch.stop]
-            for k, other in enumerate(self.layout.contacts[j] for j in touch.which.tolist()):
-                meant = not other.is_rope and other.name == latch.stop and other.sense in latch.sides
-                if meant and touch.rate[k] <= touch.noise[k]:
+            for k, other in enumerate(self.layout.contacts[j] for j in contacts_touching.indices.tolist()):
+                is_limit = not other.is_rope and other.name == latch.stop and other.sense in latch.sides
+                if is_limit and contacts_touching.rate[k] <= contacts_touching.noise[k]:
                     return limits.high if other.sense > 0 else limits.low
             return None
-        if latch.at is None:
+        if latch.position is None:
             return gap
-        near = tolerances.CONTACT_TOUCHES * terms_of_gap(self.layout, at.bodies[0], contact)
-        return latch.at if passed or (still and abs(gap) <= near) else None
+        near = tolerances.CONTACT_TOUCHES * gap_terms(self.layout, evaluation.bodies[0], contact)
+        return latch.position if is_passed or (is_still and abs(gap) <= near) else None
 
 
-def motion_along(layout: Layout, at: Recovered, contact: Contact, last: float) -> tuple[float, float]:
-    """The rate of the coordinate that a latch holds, and what rounding makes of it in a run up to `last`."""
-    bodies = at.bodies[0]
-    load = unit_load(layout, at, contact, way=1.0)
-    rate = float(np.sum(load[:, :3] * bodies["omega"]) + np.sum(load[:, 3:] * bodies["v"]))
-    sizes = np.linalg.norm(load[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
-    sizes += np.linalg.norm(load[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)
-    reach = tolerances.KERNEL["touching"] * terms_of_gap(layout, bodies, contact)
+def latch_rate(layout: Layout, evaluation: Evaluation, contact: Contact, last: float) -> tuple[float, float]:
+    """Return the rate of the coordinate that a latch holds, and its rounding error in a run up to `last`."""
+    bodies = evaluation.bodies[0]
+    unit_loads = unit_load(layout, evaluation, contact, multiplier=1.0)
+    rate = float(np.sum(unit_loads[:, :3] * bodies["omega"]) + np.sum(unit_loads[:, 3:] * bodies["v"]))
+    sizes = np.linalg.norm(unit_loads[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
+    sizes += np.linalg.norm(unit_loads[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)
+    reach = tolerances.KERNEL["touching"] * gap_terms(layout, bodies, contact)
     return rate, max(tolerances.CONTACT_RATE * float(sizes), reach / (last or 1.0))
 
 
-def with_catches(layout: Layout, sides: RightSides, catches: Sequence[Catch]) -> RightSides:
-    """The right sides of a blow with those of latches that catch: each brings its coordinate to rest."""
-    own = [catch for catch in catches if catch.rate != 0.0]
-    if not own:
+def add_catches(layout: Layout, sides: RightSides, catches: Sequence[LatchCatch]) -> RightSides:
+    """Add to the right sides of an impulse those of latches that catch: each brings its coordinate to rest."""
+    moving_catches = [catch for catch in catches if catch.rate != 0.0]
+    if not moving_catches:
         return sides
     loads, jumps = list(sides.loads), list(sides.jumps)
-    for catch in own:
+    for catch in moving_catches:
         jump = np.zeros(len(layout.freedoms) + len(layout.rows))
         jump[len(layout.freedoms) + layout.contacts[catch.contact].row] = -catch.rate
         loads.append(np.zeros((len(layout.place), 6)))
         jumps.append(jump)
-    causes = tuple(layout.contacts[catch.contact].name for catch in own)
+    causes = tuple(layout.contacts[catch.contact].name for catch in moving_catches)
     return replace(sides, loads=loads, jumps=jumps, causes=(*sides.causes, *causes))
 
 
-def work_of_catches(layout: Layout, catches: Sequence[Catch], multipliers: Array) -> float:
-    """Work of the impulses of latches that catch [J], by the mean of the rates before and behind.
+def work_of_catches(layout: Layout, catches: Sequence[LatchCatch], multipliers: Array) -> float:
+    """Return the work of the impulses of latches that catch [J], with the mean of the rates before and after.
 
-    multipliers (n, rows): of all columns of the blow.
+    multipliers (n, rows): of all columns of the impulse
     """
-    whole = multipliers.sum(axis=0)
-    return sum(0.5 * catch.rate * float(whole[layout.contacts[catch.contact].row]) for catch in catches)
+    total = multipliers.sum(axis=0)
+    return sum(0.5 * catch.rate * float(total[layout.contacts[catch.contact].row]) for catch in catches)

@@ -1,8 +1,9 @@
-"""Which of the contacts that touch are held from an instant on, and which let go.
+"""Decide which of the touching contacts are held from an instant on, and which let go.
 
     w = q + A z,   z >= 0,   w >= 0,   z . w = 0
-The problem of restitution.py once more, now of forces z of the contacts that open with no rate: w are the accelerations
-of opening, q those with every contact open.
+
+This is the problem of restitution.py again, now with the forces z of the contacts that have no rate of opening: w are
+the accelerations of opening, q those with every contact open.
 """
 
 from __future__ import annotations
@@ -10,66 +11,78 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.contacts.complementarity import complementary
-from heuncli.motion.integration.contacts.touching import CLOSED, LEANS, OPEN, Touching, spread
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.contacts.complementarity import solve_complementarity
+from heuncli.motion.integration.contacts.touching import CLOSED, CLOSED_BY_OTHERS, OPEN, TouchingContacts, scatter
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 
 
-def rests(touch: Touching, A: Array, moves: Mask, rate: Array, at: Recovered, layout: Layout) -> tuple[Array, Array]:
-    """Which of the touching contacts are held from here on (k,), and the accelerations of opening of all (k,).
+def find_resting(
+    contacts_touching: TouchingContacts, A: Array, moves: Mask, rate: Array, evaluation: Evaluation, layout: Layout
+) -> tuple[Array, Array]:
+    """Return which of the touching contacts are held from here on (k,), and the accelerations of opening of all (k,).
 
-    at: the state behind all blows, every contact open. What rests is what does not open with a rate.
+    Only contacts without a rate of opening can rest.
+
+    evaluation: the state after all impulses, every contact open
     """
-    contacts = [layout.contacts[i] for i in touch.which.tolist()]
-    rows = at.rows[0]
+    contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
+    rows = evaluation.rows[0]
     q = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, touch, A, at)
-    still = rate == 0.0
-    own = np.flatnonzero(still & moves)
-    found = complementary(A[np.ix_(own, own)], q[own], noise[own])
+    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, contacts_touching, A, evaluation)
+    is_still = rate == 0.0
+    candidates = np.flatnonzero(is_still & moves)
+    solution = solve_complementarity(A[np.ix_(candidates, candidates)], q[candidates], noise[candidates])
     holding = np.full(len(contacts), OPEN)
-    holding[own[found.bears]] = CLOSED
-    holding[own[found.depends]] = LEANS
-    holding[still & ~moves] = LEANS
-    return holding, q + A @ spread(found.z, own, len(contacts))
+    holding[candidates[solution.bears]] = CLOSED
+    holding[candidates[solution.depends]] = CLOSED_BY_OTHERS
+    holding[is_still & ~moves] = CLOSED_BY_OTHERS
+    return holding, q + A @ scatter(solution.z, candidates, len(contacts))
 
 
-def undecided_by_friction(
-    touch: Touching, A: Array, holding: Array, rate: Array, at: Recovered, layout: Layout
+def find_undecided_by_friction(
+    contacts_touching: TouchingContacts, A: Array, holding: Array, rate: Array, evaluation: Evaluation, layout: Layout
 ) -> Mask:
-    """Which of the touching contacts do not what `rests` found, (k,): w and z of that are those of given loads.
+    """Return which of the touching contacts contradict the result of `find_resting`, (k,): its w and z assume given
+    loads.
 
-    Friction by what a joint carries changes as they bear. at: the state with those held that are said to be.
+    Load-dependent joint friction changes as contacts bear.
+
+    evaluation: the state with those contacts held that are said to be
     """
-    contacts = [layout.contacts[i] for i in touch.which.tolist()]
-    rows = at.rows[0]
-    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, touch, A, at)
+    contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
+    rows = evaluation.rows[0]
+    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, contacts_touching, A, evaluation)
     z = np.array([-c.sense * float(rows["multiplier"][c.row]) for c in contacts])
     w = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    pulls = (holding == CLOSED) & (z * np.diag(A) < -noise)
-    return np.asarray(pulls | ((holding == OPEN) & (rate == 0.0) & (w < -noise)))
+    is_pulling = (holding == CLOSED) & (z * np.diag(A) < -noise)
+    return np.asarray(is_pulling | ((holding == OPEN) & (rate == 0.0) & (w < -noise)))
 
 
-def acceleration_terms(layout: Layout, touch: Touching, A: Array, at: Recovered) -> Array:
-    """Sizes of the terms that accelerations of opening are sums of (k,): of motion, and of all loads and weights.
+def acceleration_terms(layout: Layout, contacts_touching: TouchingContacts, A: Array, evaluation: Evaluation) -> Array:
+    """Return the sizes of the terms of the accelerations of opening (k,): of motion, and of all loads and weights.
 
-    Where a contact lets go these cancel: what bears nothing is known to the rounding of what it bore.
+    Where a contact lets go, these cancel: a force that has become zero is known only to the rounding of what it was.
     """
-    rows = [layout.contacts[i].row for i in touch.which.tolist()]
+    rows = [layout.contacts[i].row for i in contacts_touching.indices.tolist()]
     weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
-    load = weights + float(np.abs(at.loads["force"][0]).sum() + np.abs(at.loads["moment"][0]).sum() / layout.size)
+    load = weights + float(
+        np.abs(evaluation.loads["force"][0]).sum() + np.abs(evaluation.loads["moment"][0]).sum() / layout.size
+    )
     weight = layout.tables["closures"]["weight"][rows]
-    return np.asarray(at.rows["terms"][0, rows] + np.diag(A) * weight * load)
+    return np.asarray(evaluation.rows["terms"][0, rows] + np.diag(A) * weight * load)
 
 
-def short_flights(touch: Touching, rate: Array, acceleration: Array, instant: float) -> Mask:
-    """Whether what rebounds comes back before it is seen to leave: u^2 / 2 a within the rounding of its gap.
-
-    Or in less time than instants are told apart.
+def is_short_flight(
+    contacts_touching: TouchingContacts, rate: Array, acceleration: Array, shortest_time: float
+) -> Mask:
+    """Return which rebounds come back before they are seen: u^2 / 2 a within the rounding of the gap, or too short a
+    time.
     """
     a = -acceleration
-    falls = (rate > 0.0) & (a > 0.0)
-    a = np.where(falls, a, 1.0)
-    return np.asarray(falls & ((rate * rate <= 2.0 * a * touch.reach) | (2.0 * rate <= a * instant)))
+    is_returning = (rate > 0.0) & (a > 0.0)
+    a = np.where(is_returning, a, 1.0)
+    return np.asarray(
+        is_returning & ((rate * rate <= 2.0 * a * contacts_touching.reach) | (2.0 * rate <= a * shortest_time))
+    )

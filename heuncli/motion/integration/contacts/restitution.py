@@ -1,10 +1,11 @@
-"""Impulses of contacts that are struck: small complementarity problems on columns of the one map.
+"""Solve the impulses of struck contacts: small complementarity problems on columns of one linear map.
 
-    w = q + A z,   z >= 0,   w >= 0,   z . w = 0,      A = W M^-1 W'  (through all that holds both ways)
-W are the contacts' unit loads, positive where they bear. Of impulses z, w are the rates of opening behind the blow and
-those that Newton's restitution asks for: w = v+ + e v- of what is struck (v- < 0), v+ of what rests. A contact bears or
-opens, never both (Moreau 1988; Pfeiffer and Glocker 1996). Several that touch are struck at the same time, or one after
-another (sequential_impacts.py): rigid bodies alone do not say which.
+    w = q + A z,   z >= 0,   w >= 0,   z . w = 0,      A = W M^-1 W'  (through all bilateral constraints)
+
+W are the contacts' unit loads, positive where they bear. For impulses z, w are the rates of opening after the impulse
+plus those that Newton's restitution requires: w = v+ + e v- of what is struck (v- < 0), v+ of what rests. A contact
+bears or opens, never both (Moreau 1988; Pfeiffer and Glocker 1996). Several touching contacts are struck at the same
+time, or one after another (sequential_impacts.py): rigid bodies alone do not say which.
 """
 
 from __future__ import annotations
@@ -14,21 +15,22 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import fields, record
-from heuncli.motion.integration.contacts.complementarity import Pivots, complementary
-from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts, feels, strike_in_sequence
-from heuncli.motion.integration.contacts.touching import Touching, spread
+from heuncli.motion.integration.contacts.complementarity import ComplementaritySolution, solve_complementarity
+from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts, is_coupled, strike_in_sequence
+from heuncli.motion.integration.contacts.touching import TouchingContacts, scatter
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
 
-MOST_ROUNDS = 60  # strikes that follow each other at one instant, before what is left of them is plastic
+MAX_ROUNDS = 60  # consecutive strikes at one instant, after which further ones are plastic
 
 
 @record
-class Struck:
-    """Impulses of touching contacts (k,), the rates of opening behind them, and what is worth telling.
+class ContactImpulses:
+    """Impulses of touching contacts (k,) and the rates of opening after them.
 
-    depends (k,): those that others hold, so that how they share is not known; count (k,): how often each was struck;
-    settled (k,): those that rebound, and yet rest behind endlessly many impacts in a sequence.
+    depends (k,): closed by others, so that it is unknown how they share the impulse
+    count (k,): how often each was struck
+    settled (k,): those that rebound, yet rest after infinitely many impacts in a sequence
     """
 
     impulses: Array
@@ -38,112 +40,143 @@ class Struck:
     settled: Mask
 
     @property
-    def closed(self) -> Mask:
-        """Those that take part (k,)."""
+    def takes_part(self) -> Mask:
+        """The contacts that take part (k,)."""
         return np.asarray((self.impulses != 0.0) | self.depends)
 
 
-def strikes(
-    touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask, impacts: ImpactModel = SIMULTANEOUS
-) -> Struck:
-    """The impulses of contacts that are struck, or pressed by given blows (pressed: rates these add).
+def solve_contact_impulses(
+    contacts_touching: TouchingContacts,
+    A: Array,
+    moves: Mask,
+    added_rates: Array,
+    is_plastic: Mask,
+    impacts: ImpactModel = SIMULTANEOUS,
+) -> ContactImpulses:
+    """Solve the impulses of contacts that are struck, or pressed by given impulses.
 
-    What moves apart at the instant takes part only if it is struck in a later round. plastic: contacts that rest behind
-    the blow, whatever their restitution, and though they would open by less than is seen. impacts: whether what touches
-    is struck at the same time or in a sequence. Contacts that do not feel each other are struck as if each were alone.
+    added_rates: rates that given impulses add
+    is_plastic: contacts that rest after the impulse, whatever their restitution, though they would open by less than is
+    seen
+    impacts: whether touching contacts are struck at the same time or in a sequence
 
-    Neither adds energy: the work of an impulse is z (v- + v+) / 2, and what bears has v+ = -e v-, v- <= 0, e <= 1.
-    Raises EndlessImpacts.
+    A contact that opens at the instant takes part only if it is struck in a later round. Contacts that are not coupled
+    are struck as if each were alone. Energy is never added: the work of an impulse is z (v- + v+) / 2, and what bears
+    has v+ = -e v-, v- <= 0, e <= 1. Raises EndlessImpacts.
     """
-    k = len(touch.which)
-    none = np.zeros(k, dtype=bool)
-    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), np.zeros(k, dtype=int), none.copy())
-    strike = struck_together if impacts == SIMULTANEOUS else struck_in_sequence
-    for own in feeling(A):
+    k = len(contacts_touching.indices)
+    all_false = np.zeros(k, dtype=bool)
+    result = ContactImpulses(
+        np.zeros(k), contacts_touching.rate.copy(), all_false.copy(), np.zeros(k, dtype=int), all_false.copy()
+    )
+    strike = solve_simultaneous if impacts == SIMULTANEOUS else solve_sequence
+    for group in find_coupled_groups(A):
         try:
-            part = strike(touch.some(own), A[np.ix_(own, own)], moves[own], pressed[own], plastic[own])
+            part = strike(
+                contacts_touching.select(group),
+                A[np.ix_(group, group)],
+                moves[group],
+                added_rates[group],
+                is_plastic[group],
+            )
         except EndlessImpacts as endless:
-            raise EndlessImpacts(own[endless.own], int(own[endless.most])) from None
+            raise EndlessImpacts(group[endless.contacts], int(group[endless.most_struck])) from None
         for name, values in fields(part).items():
-            getattr(found, name)[own] = values
-    return found
+            getattr(result, name)[group] = values
+    return result
 
 
-def feeling(A: Array) -> list[Indices]:
-    """The groups of contacts that feel each other, by what one that bears does to the other, in their order."""
-    felt = feels(A)
-    np.fill_diagonal(felt, True)
+def find_coupled_groups(A: Array) -> list[Indices]:
+    """Return the groups of contacts whose impulses change each other's rates, directly or through others, in their
+    order.
+    """
+    coupling_matrix = is_coupled(A)
+    np.fill_diagonal(coupling_matrix, True)
     for _ in range(len(A)):
-        reached = felt @ felt
-        if np.array_equal(reached, felt):
+        is_reached = coupling_matrix @ coupling_matrix
+        if np.array_equal(is_reached, coupling_matrix):
             break
-        felt = reached
-    return [np.flatnonzero(row) for k, row in enumerate(felt) if not row[:k].any()]
+        coupling_matrix = is_reached
+    return [np.flatnonzero(row) for k, row in enumerate(coupling_matrix) if not row[:k].any()]
 
 
-def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
-    """The impulses of contacts of which each feels the others; arguments as those of `strikes`."""
-    v = touch.rate.copy()
+def solve_simultaneous(
+    contacts_touching: TouchingContacts, A: Array, moves: Mask, added_rates: Array, is_plastic: Mask
+) -> ContactImpulses:
+    """Solve the impulses of one coupled group at the same time; arguments as those of `solve_contact_impulses`."""
+    v = contacts_touching.rate.copy()
     total, count = np.zeros(len(v)), np.zeros(len(v), dtype=int)
     depends = np.zeros(len(v), dtype=bool)
-    noise, rounds = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed), 0
-    while rounds < 2 * MOST_ROUNDS:
-        struck = v < -noise
-        if not (struck.any() or (v + pressed < -noise).any()):
-            v = v + pressed  # blows that lift what rests, say
+    noise, rounds = contacts_touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates), 0
+    while rounds < 2 * MAX_ROUNDS:
+        is_struck = v < -noise
+        if not (is_struck.any() or (v + added_rates < -noise).any()):
+            v = v + added_rates  # e.g. impulses that lift resting contacts
             break
-        e = np.where(plastic | (rounds >= MOST_ROUNDS), 0.0, touch.restitution)
-        own = np.flatnonzero((v <= noise) & moves)
-        found = one_round(A, v, pressed, own, np.where(struck, e, 0.0), noise)
-        z = spread(found.z, own, len(v))
-        depends[own[found.depends]] = True
-        rebound, bears = np.where(struck, -e * v, 0.0), own[found.bears]
-        v = v + pressed + A @ z
-        v[bears] = rebound[bears]
-        pressed = np.zeros(len(v))
+        e = np.where(is_plastic | (rounds >= MAX_ROUNDS), 0.0, contacts_touching.restitution)
+        candidates = np.flatnonzero((v <= noise) & moves)
+        solution = solve_round(A, v, added_rates, candidates, np.where(is_struck, e, 0.0), noise)
+        z = scatter(solution.z, candidates, len(v))
+        depends[candidates[solution.depends]] = True
+        rebound, bearing = np.where(is_struck, -e * v, 0.0), candidates[solution.bears]
+        v = v + added_rates + A @ z
+        v[bearing] = rebound[bearing]
+        added_rates = np.zeros(len(v))
         total += z
-        count[bears] += 1
+        count[bearing] += 1
         rounds += 1
         noise = np.maximum(noise, tolerances.CONTACT_RATE * (np.abs(A) @ total))
     v = np.where(np.abs(v) <= noise, 0.0, v)
-    total, v = brought_to_rest(A, total, v, moves, plastic)
-    return Struck(total, v, depends & (total == 0.0), count, np.zeros(len(v), dtype=bool))
+    total, v = bring_plastic_to_rest(A, total, v, moves, is_plastic)
+    return ContactImpulses(total, v, depends & (total == 0.0), count, np.zeros(len(v), dtype=bool))
 
 
-def struck_in_sequence(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
-    """The same, of contacts that are struck one after another (sequential_impacts.py)."""
-    e = np.where(plastic, 0.0, touch.restitution)
-    noise = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed)
+def solve_sequence(
+    contacts_touching: TouchingContacts, A: Array, moves: Mask, added_rates: Array, is_plastic: Mask
+) -> ContactImpulses:
+    """Solve the impulses of contacts that are struck one after another (sequential_impacts.py)."""
+    e = np.where(is_plastic, 0.0, contacts_touching.restitution)
+    noise = contacts_touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates)
 
     def solve_impulses(v: Array, own: Indices, e: Array, noise: Array) -> tuple[Array, Mask]:
         part = A[np.ix_(own, own)]
-        found = one_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise)
-        return found.z, found.depends
+        sequence = solve_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise)
+        return sequence.z, sequence.depends
 
-    found = strike_in_sequence(touch, A, touch.rate + pressed, noise, moves, e, solve_impulses)
-    v = np.where(np.abs(found.rate) <= found.noise, 0.0, found.rate)
-    settled = (found.count > 1) & (e > 0.0) & (v == 0.0)
-    total, v = brought_to_rest(A, found.impulses, v, moves, plastic)
-    return Struck(total, v, found.depends & (total == 0.0), found.count, settled)
+    sequence = strike_in_sequence(
+        contacts_touching, A, contacts_touching.rate + added_rates, noise, moves, e, solve_impulses
+    )
+    v = np.where(np.abs(sequence.rate) <= sequence.noise, 0.0, sequence.rate)
+    comes_to_rest = (sequence.count > 1) & (e > 0.0) & (v == 0.0)
+    total, v = bring_plastic_to_rest(A, sequence.impulses, v, moves, is_plastic)
+    return ContactImpulses(total, v, sequence.depends & (total == 0.0), sequence.count, comes_to_rest)
 
 
-def brought_to_rest(A: Array, total: Array, v: Array, moves: Mask, plastic: Mask) -> tuple[Array, Array]:
-    """The impulses and rates with those of plastic contacts that would still open by less than is seen brought to 0."""
-    if (plastic & (v > 0.0)).any():
-        own = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | plastic & (v > 0.0))
-        total[own] -= np.linalg.lstsq(A[np.ix_(own, own)], v[own], rcond=tolerances.CONTACT_DEPENDS)[0]
-        v[own] = 0.0
+def bring_plastic_to_rest(A: Array, total: Array, v: Array, moves: Mask, is_plastic: Mask) -> tuple[Array, Array]:
+    """Return impulses and rates in which plastic contacts that would still open by less than is seen are brought to
+    rest.
+    """
+    if (is_plastic & (v > 0.0)).any():
+        contacts = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | is_plastic & (v > 0.0))
+        total[contacts] -= np.linalg.lstsq(
+            A[np.ix_(contacts, contacts)], v[contacts], rcond=tolerances.CONTACT_DEPENDS
+        )[0]
+        v[contacts] = 0.0
     return total, v
 
 
-def one_round(A: Array, v: Array, pressed: Array, own: Indices, e: Array, noise: Array) -> Pivots:
-    """Impulses of one round: those that leave v+ >= -e v-."""
-    q = (v + pressed + e * v)[own]
-    return complementary(A[np.ix_(own, own)], q, noise[own])
+def solve_round(
+    A: Array, v: Array, added_rates: Array, candidates: Indices, e: Array, noise: Array
+) -> ComplementaritySolution:
+    """Solve the impulses of one round: those that leave v+ >= -e v-."""
+    q = (v + added_rates + e * v)[candidates]
+    return solve_complementarity(A[np.ix_(candidates, candidates)], q, noise[candidates])
 
 
-def undecided(t: float, name: str) -> SolveError:
-    """The problem of contacts that follow each other at one instant without an end; name: of the one most struck."""
+def chattering_error(t: float, name: str) -> SolveError:
+    """Make the error of contacts that follow each other endlessly at one instant; name: of the one most often
+    struck.
+    """
     message = f"at t = {t:.9g} s stops and ropes strike and let go again and again without the time going on"
     hint = "contacts that work against each other: loosen one of them"
-    return SolveError(Problem("chattering", message, hint=hint, about=name))
+    return SolveError(Problem("chattering", message, hint=hint, entry_path=name))

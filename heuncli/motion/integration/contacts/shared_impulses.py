@@ -1,7 +1,8 @@
-"""Which one-sided contacts share the impulse of a blow, so that rigid bodies alone do not say how: found and said.
+"""Find and describe the unilateral contacts that share an impulse, so that rigid bodies alone do not determine how.
 
-A contact shares a blow with another one if both bear an impulse and each changes the other's rate of opening. Ropes,
-paths and cams without restitution, and wheels, push or pull one way only, too; a blow meets them as held both ways.
+A contact shares an impulse with another one if both bear an impulse and each changes the other's rate of opening.
+Ropes, paths and cams without restitution, and wheels, push or pull one way only, too; an impulse meets them as if held
+both ways.
 """
 
 from __future__ import annotations
@@ -21,10 +22,12 @@ MOST_NAMES = 6  # that a sentence lists
 
 @record
 class SharedImpulse:
-    """Contacts that share one blow.
+    """Contacts that share one impulse.
 
-    names: of all of them; held: those of them that the blow meets as held both ways; impacts: how often all others were
-    struck in it; settled: those that rest behind infinitely many impacts.
+    names: names of all of them
+    bilateral_names: those of them that the impulse meets as held both ways
+    impacts: how often all others were struck in it
+    resting_names: those that rest after infinitely many impacts
     """
 
     names: tuple[str, ...]
@@ -35,11 +38,13 @@ class SharedImpulse:
 
 @record
 class LoadedContact:
-    """A one-sided contact that may bear an impulse in a blow.
+    """A unilateral contact that may bear an impulse.
 
-    row: of the closures; column: of the blow's columns, the one that its own impulse makes, -1: none; is_held: whether
-    the blow meets it as held both ways; impacts: how often it was struck; settled: whether it rests behind infinitely
-    many impacts.
+    row: its closure row
+    column: the column that its own impulse makes, -1 if none
+    is_held: whether the impulse meets it as held both ways
+    impacts: how often it was struck
+    comes_to_rest: whether it rests after infinitely many impacts
     """
 
     name: str
@@ -50,113 +55,134 @@ class LoadedContact:
     settled: bool = False
 
 
-def held_contacts(layout: Layout) -> list[LoadedContact]:
-    """One-sided conditions that a blow meets as held both ways: ropes, paths and cams without restitution, wheels."""
+def list_bilateral_contacts(layout: Layout) -> list[LoadedContact]:
+    """Return the unilateral contacts that an impulse meets as held both ways: ropes, paths, cams without restitution,
+    wheels.
+    """
     mechanism = layout.mechanism
-    found = [
-        LoadedContact(mechanism.owner(layout.rows[row["row"]]).partition(".")[2], int(row["row"]), is_held=True)
+    contacts = [
+        LoadedContact(mechanism.owner_path(layout.rows[row["row"]]).partition(".")[2], int(row["row"]), is_held=True)
         for row in layout.tables["contacts"]
         if row["opens"] == 0
     ]
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
-        if coupling.given.type == "wheel" and not coupling.given.held:
-            found.append(LoadedContact(coupling.name, layout.rows.index(owner), is_held=True))  # its first row touches
-    return found
+        if coupling.entry.type == "wheel" and not coupling.entry.held:
+            contacts.append(
+                LoadedContact(coupling.name, layout.rows.index(owner), is_held=True)
+            )  # its first row touches
+    return contacts
 
 
-def loaded(contacts: Iterable[LoadedContact], multipliers: Array) -> list[LoadedContact]:
-    """Those whose rows bear an impulse; multipliers (n, rows): of the columns of a blow."""
+def select_loaded(contacts: Iterable[LoadedContact], multipliers: Array) -> list[LoadedContact]:
+    """Select the contacts whose rows bear an impulse; multipliers (n, rows): of the columns of the impulse."""
     least = tolerances.NO_FORCE * np.abs(multipliers).max(initial=0.0)
     return [contact for contact in contacts if abs(float(multipliers[:, contact.row].sum())) > least]
 
 
-def find_shared_impulses(contacts: Sequence[LoadedContact], felt: Mask, multipliers: Array) -> list[SharedImpulse]:
-    """The groups of loaded contacts that change each other's rates.
+def find_shared_impulses(
+    contacts: Sequence[LoadedContact], is_coupled: Mask, multipliers: Array
+) -> list[SharedImpulse]:
+    """Find the groups of loaded contacts that change each other's rates.
 
-    felt (n, n): whether the impulse of the one changes the rate of the other, as far as both open; multipliers
-    (n_c, rows): of the columns of the blow, by which those that are held feel each cause.
+    is_coupled (n, n): whether the impulse of one changes the rate of the other, as far as both can open
+    multipliers (n_c, rows): of the columns of the impulse, which show the causes that act on held contacts
     """
     group = list(range(len(contacts)))
 
-    def join(i: int, k: int) -> None:
+    def join_groups(i: int, k: int) -> None:
         old, new = group[i], group[k]
-        group[:] = [new if own == old else own for own in group]
+        group[:] = [new if loaded_indices == old else loaded_indices for loaded_indices in group]
 
-    for i, k in zip(*np.nonzero(felt), strict=True):
-        join(int(i), int(k))
-    held = [i for i, contact in enumerate(contacts) if contact.is_held]
+    for i, k in zip(*np.nonzero(is_coupled), strict=True):
+        join_groups(int(i), int(k))
+    held_indices = [i for i, contact in enumerate(contacts) if contact.is_held]
     for number, column in enumerate(multipliers):
         least = tolerances.NO_FORCE * np.abs(column).max(initial=0.0)
-        own = [i for i in held if abs(column[contacts[i].row]) > least]
-        own += [i for i, contact in enumerate(contacts) if contact.column == number and i not in own]
-        for i in own[1:]:
-            join(i, own[0])
-    parts = ([c for c, own in zip(contacts, group, strict=True) if own == number] for number in dict.fromkeys(group))
-    return [shared_impulse(part) for part in parts if len(part) > 1]
+        loaded_indices = [i for i in held_indices if abs(column[contacts[i].row]) > least]
+        loaded_indices += [
+            i for i, contact in enumerate(contacts) if contact.column == number and i not in loaded_indices
+        ]
+        for i in loaded_indices[1:]:
+            join_groups(i, loaded_indices[0])
+    parts = (
+        [c for c, loaded_indices in zip(contacts, group, strict=True) if loaded_indices == number]
+        for number in dict.fromkeys(group)
+    )
+    return [make_shared_impulse(part) for part in parts if len(part) > 1]
 
 
-def shared_impulse(contacts: Sequence[LoadedContact]) -> SharedImpulse:
-    """What is told of contacts that share a blow."""
+def make_shared_impulse(contacts: Sequence[LoadedContact]) -> SharedImpulse:
+    """Collect what is reported of contacts that share an impulse."""
     return SharedImpulse(
         tuple(dict.fromkeys(contact.name for contact in contacts)),
         tuple(dict.fromkeys(contact.name for contact in contacts if contact.is_held)),
         sum(contact.impacts for contact in contacts),
-        tuple(dict.fromkeys(contact.name for contact in contacts if contact.settled)),
+        tuple(dict.fromkeys(contact.name for contact in contacts if contact.comes_to_rest)),
     )
 
 
-def sharing_sentences(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
-    """A sentence for each group of contacts that share blows; blows: their instants and the groups of each."""
+def format_sharing(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
+    """Format a sentence for each group of contacts that share impulses; blows: their instants and the groups of
+    each.
+    """
     first: dict[tuple[object, ...], tuple[float, SharedImpulse]] = {}
     count: dict[tuple[object, ...], int] = {}
     for time, groups in blows:
         for shared in groups:
-            key = replace(shared, impacts=0).names, shared.held, shared.settled
+            key = replace(shared, impacts=0).names, shared.bilateral_names, shared.resting_names
             first.setdefault(key, (time, shared))
             count[key] = count.get(key, 0) + 1
-    return [sentence(time, shared, count[key], impacts) for key, (time, shared) in first.items()]
+    return [format_sharing_sentence(time, shared, count[key], impacts) for key, (time, shared) in first.items()]
 
 
-def sentence(time: float, shared: SharedImpulse, count: int, impacts: ImpactModel) -> str:
-    """How contacts share a blow, and what is assumed."""
+def format_sharing_sentence(time: float, shared_group: SharedImpulse, count: int, impacts: ImpactModel) -> str:
+    """Say how contacts share an impulse, and what is assumed."""
     several = f"{count} blows, the first" if count > 1 else "the blow"
-    lead = f"{listed(shared.names)} share {several} at t = {time:.6g} s; how is a model (impacts: {impacts}): "
-    struck = [name for name in shared.names if name not in shared.held]
+    lead = (
+        f"{join_names(shared_group.names)} share {several} at t = {time:.6g} s; how is a model (impacts: {impacts}): "
+    )
+    struck_names = [name for name in shared_group.names if name not in shared_group.bilateral_names]
     parts = []
-    if struck and impacts == SIMULTANEOUS:
+    if struck_names and impacts == SIMULTANEOUS:
         parts.append("all act at the same time, what is struck takes its own restitution, what rested does not rebound")
-    elif struck:
-        number = f"{shared.impacts} impacts" if shared.impacts != 1 else "one impact"
+    elif struck_names:
+        number = f"{shared_group.impacts} impacts" if shared_group.impacts != 1 else "one impact"
         parts.append(
             f"they strike one after another, as over equal tiny gaps, each with its own restitution ({number})"
         )
-    if shared.settled:
-        parts.append(f"{listed(shared.settled)} {verb(shared.settled, 'rests', 'rest')} behind infinitely many impacts")
-    if shared.held:
-        parts.append(f"{listed(shared.held)} {verb(shared.held, 'is', 'are')} held both ways, without rebound")
+    if shared_group.resting_names:
+        parts.append(
+            f"{join_names(shared_group.resting_names)} {choose_verb_form(shared_group.resting_names, 'rests', 'rest')} behind infinitely many impacts"
+        )
+    if shared_group.bilateral_names:
+        parts.append(
+            f"{join_names(shared_group.bilateral_names)} {choose_verb_form(shared_group.bilateral_names, 'is', 'are')} held both ways, without rebound"
+        )
     return lead + "; ".join(parts)
 
 
-def sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
-    """A sentence where contacts share blows: their numbers hang on a model."""
-    own = [(time, groups[0]) for time, groups in blows if groups]
-    if not own:
+def format_sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
+    """Warn where contacts share impulses, because their values depend on a model."""
+    shared_blows = [(time, groups[0]) for time, groups in blows if groups]
+    if not shared_blows:
         return []
-    time, shared = own[0]
+    time, first_group = shared_blows[0]
     lead = (
-        f"in the blow at t = {time:.6g} s" if len(own) == 1 else f"in {len(own)} blows, the first at t = {time:.6g} s,"
+        f"in the blow at t = {time:.6g} s"
+        if len(shared_blows) == 1
+        else f"in {len(shared_blows)} blows, the first at t = {time:.6g} s,"
     )
     assumed = f"rigid bodies do not say how, impacts: {impacts} is assumed (heun explain impacts)"
-    return [f"{lead} {listed(shared.names)} share the impulse: {assumed}"]
+    return [f"{lead} {join_names(first_group.names)} share the impulse: {assumed}"]
 
 
-def listed(names: Sequence[str]) -> str:
-    """Names as they stand in a sentence, the first of many."""
+def join_names(names: Sequence[str]) -> str:
+    """Join names as in a sentence, only the first of many."""
     if len(names) > MOST_NAMES:
         return f"{', '.join(names[:MOST_NAMES])} and {len(names) - MOST_NAMES} more"
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
-def verb(names: Sequence[str], one: str, several: str) -> str:
-    """The form of a verb that fits so many names."""
+def choose_verb_form(names: Sequence[str], one: str, several: str) -> str:
+    """Return the form of a verb that fits so many names."""
     return one if len(names) == 1 else several

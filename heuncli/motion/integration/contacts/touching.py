@@ -1,4 +1,4 @@
-"""The contacts that touch at a state: their loads, their rates of opening, and what rounding makes of both."""
+"""Find the contacts that touch at a state: their loads, their rates of opening, and the rounding error of both."""
 
 from __future__ import annotations
 
@@ -10,22 +10,26 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import fields, record
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.tree.layout import Contact, Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 
-OPEN, CLOSED, LEANS = 0.0, 1.0, 2.0  # of Trajectory.holding: open, closed, closed by others
+OPEN, CLOSED, CLOSED_BY_OTHERS = 0.0, 1.0, 2.0  # of Trajectory.holding: open, closed, closed by others
 
 
 @record
-class Touching:
+class TouchingContacts:
     """The contacts that touch at a state.
 
-    which (k,): places among the layout's; loads (k, n_b, 6): what each puts on the bodies where it bears 1, moment
-    about the joint point and force; rate (k,): of opening; noise (k,): what rounding makes of it; reach (k,): of the
-    gap; restitution (k,); length (k,): what the unit of the gap is of a length [m].
+    indices (k,): numbers among the layout's contacts
+    loads (k, n_b, 6): load on the bodies if the contact bears 1; moment about the joint point and force
+    rate (k,): rates of opening
+    noise (k,): rounding error of the rates
+    reach (k,): rounding error of the gaps
+    restitution (k,): coefficients of restitution
+    length (k,): ratio of the unit of the gap to a length [m]
     """
 
     which: Indices
@@ -36,89 +40,102 @@ class Touching:
     restitution: Array
     length: Array
 
-    def some(self, own: Indices | Mask) -> Touching:
-        """Some of them."""
-        return Touching(**{name: value[own] for name, value in fields(self).items()})
+    def select(self, selection: Indices | Mask) -> TouchingContacts:
+        """Select some of them."""
+        return TouchingContacts(**{name: value[selection] for name, value in fields(self).items()})
 
 
-def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, last: float) -> Touching:
-    """The contacts that touch at a state: closed ones, the row of the event, and those with hardly a gap.
+def find_touching(
+    layout: Layout, evaluation: Evaluation, is_closed: Mask, event: int | None, last: float
+) -> TouchingContacts:
+    """Find the contacts that touch at a state: closed ones, the row of the event, and those with hardly a gap.
 
-    What was closed until then opens with no rate; nor does what would stay within its reach over the run, up to `last`.
+    A contact that was closed opens with no rate; nor does one that would stay within its reach over the run, up to
+    `last`.
     """
-    rows, bodies = at.rows[0], at.bodies[0]
-    found = []
+    rows, bodies = evaluation.rows[0], evaluation.bodies[0]
+    numbers = []
     for i, contact in enumerate(layout.contacts):
         if contact.sense == 0:
             continue  # a latch
         gap = -contact.sense * float(rows["gap"][contact.row])
-        near = tolerances.CONTACT_TOUCHES * terms_of_gap(layout, bodies, contact)
-        if closed[i] or contact.row == event or gap <= near:
-            found.append(i)
-    own = [layout.contacts[i] for i in found]
-    loads = np.array([unit_load(layout, at, contact, -contact.sense) for contact in own])
-    loads = loads.reshape(len(own), len(bodies), 6)
+        tolerance = tolerances.CONTACT_TOUCHES * gap_terms(layout, bodies, contact)
+        if is_closed[i] or contact.row == event or gap <= tolerance:
+            numbers.append(i)
+    contacts = [layout.contacts[i] for i in numbers]
+    loads = np.array([unit_load(layout, evaluation, contact, -contact.sense) for contact in contacts])
+    loads = loads.reshape(len(contacts), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
-    terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
+    terms = np.array([gap_terms(layout, bodies, contact) for contact in contacts])
     reaches = tolerances.KERNEL["touching"] * terms
-    turned, shifted = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
-    speeds = turned @ np.linalg.norm(bodies["omega"], axis=1) + shifted @ np.linalg.norm(bodies["v"], axis=1)
+    moments, forces = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
+    speeds = moments @ np.linalg.norm(bodies["omega"], axis=1) + forces @ np.linalg.norm(bodies["v"], axis=1)
     noise = tolerances.CONTACT_RATE * speeds
-    return Touching(
-        which=np.array(found, dtype=int),
+    return TouchingContacts(
+        indices=np.array(numbers, dtype=int),
         loads=loads,
-        rate=np.where(closed[found], 0.0, np.einsum("kbi,bi->k", loads, motion) + paid_out(layout, own, at)),
+        rate=np.where(
+            is_closed[numbers],
+            0.0,
+            np.einsum("kbi,bi->k", loads, motion) + prescribed_opening_rate(layout, contacts, evaluation),
+        ),
         noise=np.maximum(noise, reaches / (last or 1.0)),
         reach=reaches,
-        restitution=np.array([contact.restitution for contact in own]),
-        length=layout.tables["closures"]["weight"][[contact.row for contact in own]],
+        restitution=np.array([contact.restitution for contact in contacts]),
+        length=layout.tables["closures"]["weight"][[contact.row for contact in contacts]],
     )
 
 
-def paid_out(layout: Layout, contacts: Sequence[Contact], at: Recovered) -> Array:
-    """How fast a law in time makes contacts open: of a rope that is paid out its rate, of others 0."""
+def prescribed_opening_rate(layout: Layout, contacts: Sequence[Contact], evaluation: Evaluation) -> Array:
+    """Return how fast a prescribed motion makes contacts open: the rate of a rope that is paid out, 0 for others."""
     laws = {law.owner: law.value for law in layout.mechanism.laws}
-    driven = layout.tables["closures"]["program"]["count"] > 0
-    t = float(at.times[0])
-    rates = [c.sense * laws[c.joint].derivatives(t)[1] if driven[c.row] else 0.0 for c in contacts]
+    is_driven = layout.tables["closures"]["program"]["count"] > 0
+    t = float(evaluation.times[0])
+    rates = [c.sense * laws[c.joint].derivatives(t)[1] if is_driven[c.row] else 0.0 for c in contacts]
     return np.array(rates).reshape(len(contacts))
 
 
-def terms_of_gap(layout: Layout, bodies: Table, contact: Contact) -> float:
-    """The size of what a contact's gap is the sum of [m or rad]."""
+def gap_terms(layout: Layout, bodies: Table, contact: Contact) -> float:
+    """Return the size of the terms that a contact's gap is the sum of [m or rad]."""
     row = layout.tables["closures"][contact.row]
-    places = [point(bodies, part) for part in conditions(layout, contact.row) if part["kind"] not in LYING]
-    far = sum(layout.size + math.sqrt(float(Q @ Q)) for Q in places)
-    return far / float(row["weight"]) + abs(float(row["length"]))
+    places = [
+        world_point(bodies, part) for part in find_conditions(layout, contact.row) if part["kind"] not in ON_SHEAVE
+    ]
+    extent = sum(layout.size + math.sqrt(float(Q @ Q)) for Q in places)
+    return extent / float(row["weight"]) + abs(float(row["length"]))
 
 
-LYING = (kernel.ARC, kernel.WOUND)  # what of a rope lies on its sheaves, which loads nothing
+ON_SHEAVE = (kernel.ARC, kernel.WOUND)  # the parts of a rope on its sheaves, which load nothing
 
 
-def conditions(layout: Layout, row: int) -> Table:
-    """The conditions of two bodies that a closure row is the sum of; its own, where it is none."""
-    own = layout.tables["closures"][row]
-    if own["kind"] != kernel.SUM:
+def find_conditions(layout: Layout, row: int) -> Table:
+    """Return the conditions between two bodies that a closure row is the sum of; the row itself if it is no sum."""
+    closure = layout.tables["closures"][row]
+    if closure["kind"] != kernel.SUM:
         return layout.tables["closures"][row : row + 1]
-    return layout.tables["parts"][own["part"] : own["part"] + own["part_count"]]
+    return layout.tables["parts"][closure["part"] : closure["part"] + closure["part_count"]]
 
 
-def point(bodies: Table, row: Table) -> Array:
-    """World place of the `to` point of a condition of two bodies."""
+def world_point(bodies: Table, row: Table) -> Array:
+    """Return the world position of the `to` point of a condition between two bodies."""
     q: Array = np.array(row["q"].tolist())
     return q if row["b"] < 0 else bodies["r"][row["b"]] + bodies["R"][row["b"]] @ q
 
 
-def unit_load(layout: Layout, at: Recovered, contact: Contact, way: float) -> Array:
-    """What a contact whose multiplier is `way` puts on the bodies, (n_b, 6)."""
-    bodies, own = at.bodies[0], layout.tables["closures"][contact.row]
+def unit_load(layout: Layout, evaluation: Evaluation, contact: Contact, multiplier: float) -> Array:
+    """Return the load on the bodies of a contact with a given multiplier, (n_b, 6)."""
+    bodies, closure = evaluation.bodies[0], layout.tables["closures"][contact.row]
     load = np.zeros((len(bodies), 6))
-    for k, row in enumerate(conditions(layout, contact.row), int(own["part"])):
-        if own["kind"] == kernel.SUM:
-            Q, f, m = (at.parts[of][0, k] for of in ("Q", "f", "m"))
+    for k, row in enumerate(find_conditions(layout, contact.row), int(closure["part"])):
+        if closure["kind"] == kernel.SUM:
+            Q, f, m = (evaluation.parts[name][0, k] for name in ("Q", "f", "m"))
         else:
-            Q, f, m = point(bodies, row), at.rows["f"][0, contact.row], at.rows["m"][0, contact.row]
-        f, m = way * f, way * m
+            Q, f, m = (
+                world_point(bodies, row),
+                evaluation.rows["f"][0, contact.row],
+                evaluation.rows["m"][0, contact.row],
+            )
+        f, m = multiplier * f, multiplier * m
         for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
             if body >= 0:
                 load[body, :3] += sign * (m + cross_rows(Q - bodies["r"][body], f))
@@ -126,22 +143,22 @@ def unit_load(layout: Layout, at: Recovered, contact: Contact, way: float) -> Ar
     return load
 
 
-def answers(touch: Touching, columns: Table) -> Array:
-    """Rates of opening that columns of jumps give, (k, n_c)."""
+def opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
+    """Return the rates of opening that columns of jumps give, (k, n_c)."""
     motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
-    return np.asarray(np.einsum("kbi,cbi->kc", touch.loads, motion))
+    return np.asarray(np.einsum("kbi,cbi->kc", contacts_touching.loads, motion))
 
 
-def answerable(layout: Layout, touch: Touching, A: Array) -> Mask:
-    """Whether something moves where a contact bears: else all that holds both ways holds it, too."""
+def moves_something(layout: Layout, contacts_touching: TouchingContacts, A: Array) -> Mask:
+    """Return whether a bearing contact moves something; else all bilateral constraints hold it too."""
     mass = layout.bodies["mass"]
-    size = np.einsum("kbi,b->k", touch.loads[:, :, 3:] ** 2, 1.0 / mass)
-    size += np.einsum("kbi,b->k", (touch.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
+    size = np.einsum("kbi,b->k", contacts_touching.loads[:, :, 3:] ** 2, 1.0 / mass)
+    size += np.einsum("kbi,b->k", (contacts_touching.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
     return np.asarray(np.diag(A) > tolerances.NO_ANSWER * size)
 
 
-def spread(z: Array, own: Indices, n: int) -> Array:
-    """Values of some contacts, 0 of the others."""
+def scatter(z: Array, indices: Indices, n: int) -> Array:
+    """Return n values: those given at some indices, 0 elsewhere."""
     out = np.zeros(n)
-    out[own] = z
+    out[indices] = z
     return out

@@ -1,7 +1,7 @@
-"""Loads along the line between two points, where that has no length: what pushes there has no direction.
+"""Find loads along the line between two points that coincide, so that the load has no direction.
 
-A spring without free length is as strong as it is long, and needs none; where it is damped and its points part, the
-damping does.
+A spring without free length has a force proportional to its length, so it needs no direction. If it is damped and its
+points separate, the damping force does.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import PairLoad
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
@@ -19,47 +19,52 @@ HINT = "in a pin or slide use type: torque; else keep its points apart"
 
 
 def needs_direction(load: PairLoad) -> bool:
-    """Whether it pushes where its line has no length."""
+    """Return whether a load has a force where its line has no length."""
     if load.value is None:
         return load.stiffness * load.length != 0.0
     return load.value.constant != 0.0
 
 
-def without_direction(layout: Layout, recovered: Recovered, begins: bool = False) -> list[Problem]:
-    """The loads that push along no line, each at its first instant; begins: a motion, so what will push counts, too."""
-    near = tolerances.NO_LENGTH * layout.size
+def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_start: bool = False) -> list[Problem]:
+    """Return a problem for each load without a direction, at its first instant.
+
+    is_motion_start: a motion starts here, so what may push later counts too
+    """
+    tolerance = tolerances.NO_LENGTH * layout.size
     problems = []
-    for load, rows in layout.mechanism.load_rows():
+    for load, rows in layout.mechanism.iter_load_rows():
         if not isinstance(load, PairLoad):
             continue
-        here = recovered.loads[:, rows][:, 0]
-        together = here["span"] <= near
-        if not together.any():
+        load_rows = evaluation.loads[:, rows][:, 0]
+        is_coincident = load_rows["span"] <= tolerance
+        if not is_coincident.any():
             continue
         if not needs_direction(load):
-            parts = np.sqrt(np.sum(parting(layout, load, recovered) ** 2, axis=1))
-            together &= (here["span"] == 0.0) & (load.damping * parts > 0.0)
+            separation_speed = np.sqrt(np.sum(separation_velocity(layout, load, evaluation) ** 2, axis=1))
+            is_coincident &= (load_rows["span"] == 0.0) & (load.damping * separation_speed > 0.0)
         elif load.value is not None:
-            together &= begins | (here["value"] != 0.0)
-        if together.any():
-            problems.append(coincide(load.name, float(recovered.times[int(np.argmax(together))])))
+            is_coincident &= is_motion_start | (load_rows["value"] != 0.0)
+        if is_coincident.any():
+            problems.append(make_problem(load.name, float(evaluation.times[int(np.argmax(is_coincident))])))
     return problems
 
 
-def parting(layout: Layout, load: PairLoad, recovered: Recovered) -> Array:
-    """The velocity of its one point against the other, (n_t, 3) [m/s]."""
+def separation_velocity(layout: Layout, load: PairLoad, evaluation: Evaluation) -> Array:
+    """Return the velocity of the second point relative to the first, (n_t, 3) [m/s]."""
     speeds = []
     for body, end in ((load.a, "from_at"), (load.b, "at")):
         if body < 0:
-            speeds.append(np.zeros((len(recovered.times), 3)))
+            speeds.append(np.zeros((len(evaluation.times), 3)))
             continue
-        own = recovered.bodies[:, layout.place[body]]
-        at = next(recovered.loads[:, rows][:, 0][end] for one, rows in layout.mechanism.load_rows() if one is load)
-        speeds.append(own["v"] + np.cross(own["omega"], at - own["r"]))
+        body_rows = evaluation.bodies[:, layout.place[body]]
+        position = next(
+            evaluation.loads[:, rows][:, 0][end] for one, rows in layout.mechanism.iter_load_rows() if one is load
+        )
+        speeds.append(body_rows["v"] + np.cross(body_rows["omega"], position - body_rows["r"]))
     return np.asarray(speeds[1] - speeds[0])
 
 
-def coincide(name: str, t: float) -> Problem:
-    """The problem of a load at an instant."""
+def make_problem(name: str, t: float) -> Problem:
+    """Make the problem of a load at an instant."""
     return Problem("no-direction", f"at t = {t:.9g} s the points of forces.{name} coincide: its force has no direction",
                    hint=HINT)  # fmt: skip

@@ -1,8 +1,8 @@
-"""Freedoms without inertia: motions of the tree that turn bodies about axes without inertia and move no mass.
+"""Find freedoms without inertia: motions of the tree that turn bodies about axes without inertia and move no mass.
 
-Some inertia is lent to those bodies, so that the tree can be factored, and what it takes of the loads is given back
-(kernel/response.py, weigh_lent), which leaves the bodies as they are. Where the closed loops hold them that has an
-answer; where nothing holds them no acceleration exists, and it is said which bodies turn about which axes.
+Those bodies get some artificial inertia, so that the tree can be factored. The loads that it takes are given back
+(kernel/response.py, weigh_lent), so the result is unchanged. If the closed loops hold those bodies, a solution exists.
+If nothing holds them, no acceleration exists, and the error says which bodies turn about which axes.
 """
 
 from __future__ import annotations
@@ -16,32 +16,32 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.evaluator import Evaluator, Recovered
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.mechanism.model import GROUND, PointLoad, RopeLoad
-from heuncli.multibody.tree.idle_spins import without_inertia
+from heuncli.multibody.tree.idle_spins import find_massless_axes
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.prepare import PreparedScene, lacking_inertia
-from heuncli.multibody.tree.tables import Table, table, vectors
+from heuncli.multibody.tree.prepare import PreparedScene, find_missing_inertia
+from heuncli.multibody.tree.tables import Table, make_table, vector_array
 from heuncli.results.results import Array
 
-POSES = 3  # at which axes are looked for beside the start: those of one pose may be an accident
+POSES = 3  # searched for axes besides the start, because those of one pose may be a coincidence
 SEED = 1901  # fixed: the same scene is solved in the same way
 
 
 @record
 class TreePoses:
-    """Where the bodies are, tree order: attitudes R (n, 3, 3), joint points r (n, 3)."""
+    """Positions of the bodies in tree order: attitudes R (n, 3, 3), joint points r (n, 3)."""
 
     R: Array
     r: Array
 
 
 @record
-class Massless:
-    """Motions of the tree, k of them, independent, that move no mass: all bodies that are not listed rest.
+class MasslessMotions:
+    """k independent motions of the tree that move no mass; all bodies that are not listed rest.
 
-    bodies (n): their places in the tree; omega, v (n, 3, k): angular velocity, velocity of the joint point over the
-    scene's size.
+    bodies (n): their numbers in the tree
+    omega, v (n, 3, k): angular velocity, and velocity of the joint point divided by the scene's size
     """
 
     bodies: list[int]
@@ -50,103 +50,123 @@ class Massless:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of motions."""
         return int(self.omega.shape[2])
 
-    def among(self, N: Array) -> Massless:
-        """Combinations of them, N (k, other)."""
-        return Massless(self.bodies, self.omega @ N, self.v @ N)
+    def combine(self, N: Array) -> MasslessMotions:
+        """Return combinations of the motions, N (k, other)."""
+        return MasslessMotions(self.bodies, self.omega @ N, self.v @ N)
 
-    def of(self, body: int, point: Array | None, at: TreePoses, size: float) -> tuple[Array, Array]:
-        """Of a body (-1: the ground) its angular velocities, and velocities over the size of its point, (3, k)."""
+    def body_velocities(self, body: int, point: Array | None, poses: TreePoses, size: float) -> tuple[Array, Array]:
+        """Return of a body (-1: the ground) its angular velocities, and velocities of its point divided by the size,
+        (3, k).
+        """
         if body not in self.bodies:
             return np.zeros((3, self.count)), np.zeros((3, self.count))
         n = self.bodies.index(body)
-        arm = np.zeros(3) if point is None else (point - at.r[body]) / size
+        arm = np.zeros(3) if point is None else (point - poses.r[body]) / size
         return self.omega[n], self.v[n] + np.cross(self.omega[n], arm, axis=0)
 
-    def axes(self, at: TreePoses) -> dict[int, Array]:
-        """Of each body that turns its angular velocities, body axes (k, 3)."""
-        turning = np.einsum("nji,njk->nki", at.R[self.bodies], self.omega)
+    def find_axes(self, poses: TreePoses) -> dict[int, Array]:
+        """Return for each body that turns its angular velocities, body axes (k, 3)."""
+        turning = np.einsum("nji,njk->nki", poses.R[self.bodies], self.omega)
         largest = np.abs(turning).max(axis=(1, 2), initial=0.0)
         least = tolerances.RANK * largest.max(initial=0.0)
         return {b: turning[n] for n, b in enumerate(self.bodies) if largest[n] > least}
 
 
-def lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> PreparedScene:
-    """The scene with inertia lent to what motions of its tree turn that move no mass, among bodies that lack some."""
-    layout, at = scene.layout, start_of(scene)
-    # the first body that turns hangs on one that rests: mostly it resists by itself
-    alone = (at_rest(layout, i, axes, at) @ freedoms_of(layout, i, at).T for i, axes in lacking.items())
-    if not any(null_space(resisted, tolerances.RANK).size for resisted in alone):
-        return scene
-    if not massless(scene, lacking, at).count:
-        return scene
-    rows = [row for body, axes in axes_to_lend(scene, lacking).items() for row in lent(scene, body, axes)]
-    return replace(scene, layout=replace(layout, tables=layout.tables | {"lents": table(kernel.Lent, rows)}))
+def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -> PreparedScene:
+    """Return the scene with artificial inertia for what massless motions of its tree turn.
 
-
-def loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Array]:
-    """The bodies that turn without inertia where nothing holds them, and their axes, body axes (k, 3), unit vectors.
-
-    By recovered bodies and closure rows, of one instant.
+    lacking: the bodies that lack inertia, and their axes without it
     """
-    at = TreePoses(bodies["R"], bodies["r"])
-    still = massless(scene, lacking_inertia(scene), at)
-    return {i: span(turning) for i, turning in loose(scene.layout, still, at, rows).axes(at).items()}
+    layout, poses = scene.layout, start_poses(scene)
+    # the parent of the first body that turns is at rest; mostly the body itself resists
+    own_resistances = (
+        rest_conditions(layout, i, axes, poses) @ freedom_directions(layout, i, poses).T for i, axes in lacking.items()
+    )
+    if not any(null_space(resisted, tolerances.RANK).size for resisted in own_resistances):
+        return scene
+    if not find_massless_motions(scene, lacking, poses).count:
+        return scene
+    rows = [
+        row
+        for body, axes in find_axes_in_any_pose(scene, lacking).items()
+        for row in artificial_inertia_rows(scene, body, axes)
+    ]
+    return replace(
+        scene, layout=replace(layout, tables=layout.tables | {"lents": make_table(kernel.ArtificialInertia, rows)})
+    )
 
 
-INDIFFERENT = ("ball", "universal", "rod", "weld")  # to spins of a body about the points that they hold
+def find_loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Array]:
+    """Return the bodies that turn without inertia where nothing holds them, and their axes, body axes (k, 3), unit
+    vectors.
 
-
-def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
-    """Whether what nothing holds at an instant are spins about all points at which bodies are held, and unloaded.
-
-    Such as those of two thin rods on a universal: accelerations and reactions do not depend on them, for what the
-    universal holds of one spin the other one gives way to.
+    bodies, rows: results for bodies and closure rows at one instant
     """
-    layout, bodies = scene.layout, recovered.bodies[k]
-    at = TreePoses(bodies["R"], bodies["r"])
-    free = loose(layout, massless(scene, lacking_inertia(scene), at), at, recovered.rows[k])
-    if free.count != recovered.idle[k] or not holds_still(scene, free, at):
+    poses = TreePoses(bodies["R"], bodies["r"])
+    motions = find_massless_motions(scene, find_missing_inertia(scene), poses)
+    return {
+        i: span_vectors(turning)
+        for i, turning in find_loose_motions(scene.layout, motions, poses, rows).find_axes(poses).items()
+    }
+
+
+INDIFFERENT = ("ball", "universal", "rod", "weld")  # to spins of a body about their joint points
+
+
+def is_unloaded_spin(scene: PreparedScene, evaluation: Evaluation, k: int) -> bool:
+    """Return whether the free motions at an instant are spins about all points at which bodies are held, and unloaded.
+
+    Such are those of two thin rods on a universal joint: accelerations and reactions do not depend on them, because one
+    rod follows the spin that the universal joint passes on from the other.
+    """
+    layout, bodies = scene.layout, evaluation.bodies[k]
+    poses = TreePoses(bodies["R"], bodies["r"])
+    free = find_loose_motions(
+        layout, find_massless_motions(scene, find_missing_inertia(scene), poses), poses, evaluation.rows[k]
+    )
+    if free.count != evaluation.massless_count[k] or not leaves_joints_fixed(scene, free, poses):
         return False
     power, scale = np.zeros(free.count), 0.0
-    for load, rows in scene.mechanism.load_rows():
+    for load, rows in scene.mechanism.iter_load_rows():
         if isinstance(load, RopeLoad):
-            pulled, size = pulled_along(scene, recovered, k, load, free, at)
-            power, scale = power + pulled, scale + size
+            rope_part_power, size = rope_power(scene, evaluation, k, load, free, poses)
+            power, scale = power + rope_part_power, scale + size
             continue
-        for row, answer in zip(layout.tables["loads"][rows], recovered.loads[k, rows], strict=True):
-            F, M = answer["force"], answer["moment"]
-            ends = [(row["b"], answer["at"], 1.0), (row["a"], answer["from_at"], -1.0)]
+        for row, load_result in zip(layout.tables["loads"][rows], evaluation.loads[k, rows], strict=True):
+            F, M = load_result["force"], load_result["moment"]
+            ends = [(row["b"], load_result["at"], 1.0), (row["a"], load_result["from_at"], -1.0)]
             for body, point, sign in ends[:1] if isinstance(load, PointLoad) else ends:
-                omega, v = free.of(int(body), point, at, layout.size)
+                omega, v = free.body_velocities(int(body), point, poses, layout.size)
                 power += sign * (F @ v * layout.size + M @ omega)
             scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
     return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
 
 
-def pulled_along(
-    scene: PreparedScene, recovered: Recovered, k: int, load: RopeLoad, free: Massless, at: TreePoses
+def rope_power(
+    scene: PreparedScene, evaluation: Evaluation, k: int, load: RopeLoad, free: MasslessMotions, poses: TreePoses
 ) -> tuple[Array, float]:
-    """What a rope that stretches does along the motions at an instant, (count,), and of what size its loads are."""
-    layout, row = scene.layout, scene.mechanism.row_of_rope(load.name)
-    first, value = int(layout.tables["loads"][row]["part"]), float(recovered.loads["value"][k, row])
+    """Return the power of a stretching rope along the motions at an instant, (count,), and the magnitude of its
+    loads.
+    """
+    layout, row = scene.layout, scene.mechanism.rope_load_row(load.name)
+    first, value = int(layout.tables["loads"][row]["part"]), float(evaluation.loads["value"][k, row])
     power, scale = np.zeros(free.count), 0.0
-    for own in range(first, first + len(load.parts)):
-        ends, answer = layout.tables["parts"][own], recovered.parts[k, own]
-        F, M = value * answer["f"], value * answer["m"]
+    for part in range(first, first + len(load.parts)):
+        ends, part_result = layout.tables["parts"][part], evaluation.parts[k, part]
+        F, M = value * part_result["f"], value * part_result["m"]
         for body, sign in ((int(ends["b"]), 1.0), (int(ends["a"]), -1.0)):
-            omega, v = free.of(body, answer["Q"], at, layout.size)
+            omega, v = free.body_velocities(body, part_result["Q"], poses, layout.size)
             power += sign * (F @ v * layout.size + M @ omega)
         scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
     return power, scale
 
 
-def holds_still(scene: PreparedScene, free: Massless, at: TreePoses) -> bool:
-    """Whether motions leave the points of all joints where they are, and turn no direction that guides another body.
-
-    Nor an angle that is told: a pin's, a cylinder's.
+def leaves_joints_fixed(scene: PreparedScene, free: MasslessMotions, poses: TreePoses) -> bool:
+    """Return whether motions leave all joint points in place, turn no direction that guides another body and change no
+    reported angle, such as a pin's or a cylinder's.
     """
     layout = scene.layout
     for joint in scene.mechanism.joints:
@@ -154,119 +174,134 @@ def holds_still(scene: PreparedScene, free: Massless, at: TreePoses) -> bool:
             body = layout.place.get(end, -1)
             if body < 0:
                 continue
-            held = at.r[body] + at.R[body] @ (point - layout.reference[body])
-            omega, v = free.of(body, held, at, layout.size)
-            guided = joint.kind in ("line", "plane") and end == joint.b
+            joint_point = poses.r[body] + poses.R[body] @ (point - layout.reference[body])
+            omega, v = free.body_velocities(body, joint_point, poses, layout.size)
+            is_guided = joint.kind in ("line", "plane") and end == joint.b
             if np.abs(v).max(initial=0.0) > tolerances.ON_AXIS:
                 return False
-            if np.abs(omega).max(initial=0.0) > tolerances.RANK and joint.kind not in INDIFFERENT and not guided:
+            if np.abs(omega).max(initial=0.0) > tolerances.RANK and joint.kind not in INDIFFERENT and not is_guided:
                 return False
     return True
 
 
-def start_of(scene: PreparedScene) -> TreePoses:
-    """Where the bodies are at the start."""
+def start_poses(scene: PreparedScene) -> TreePoses:
+    """Return the positions of the bodies at the start."""
     layout, start = scene.layout, scene.start
-    order = [h.body for h in layout.spanning.hangs]
+    order = [h.body for h in layout.spanning.links]
     R = start.rotation[order]
     return TreePoses(R, start.position[order] + np.einsum("nij,nj->ni", R, layout.reference))
 
 
-def massless(scene: PreparedScene, lacking: Mapping[int, Array], at: TreePoses) -> Massless:
-    """The motions of the tree that move no mass; lacking: the bodies that lack inertia, and their axes without it.
+def find_massless_motions(scene: PreparedScene, lacking: Mapping[int, Array], poses: TreePoses) -> MasslessMotions:
+    """Find the motions of the tree that move no mass.
 
-    A body with all its inertia rests in them as the ground does; its freedoms may make up for what its parent does.
-    Tips to roots: A (turn, shift) = 0 of a body where neither it nor what it carries resists; what its own freedoms S
-    cannot make up for is a condition on its parent. Roots to tips: what the freedoms then do.
+    lacking: the bodies that lack inertia, and their axes without it
+
+    A body with all its inertia rests in them as the ground does; its freedoms may compensate the motion of its parent.
+    From tips to roots: A (turn, shift) = 0 for a body where neither it nor what it carries resists; what its own
+    freedoms S cannot compensate is a condition on its parent. From roots to tips: the resulting motions of the
+    freedoms.
     """
     layout = scene.layout
     parents = layout.bodies["parent"].tolist()
     bodies = [i for i, parent in enumerate(parents) if i in lacking or parent in lacking]
-    conditions = {i: [at_rest(layout, i, lacking.get(i), at)] for i in bodies}
-    own, inverse = {}, {}
+    conditions = {i: [rest_conditions(layout, i, lacking.get(i), poses)] for i in bodies}
+    free_motions, inverse = {}, {}
     for i in reversed(bodies):
-        A, S = np.concatenate(conditions[i]), freedoms_of(layout, i, at).T
+        A, S = np.concatenate(conditions[i]), freedom_directions(layout, i, poses).T
         U, sigma, Vt = np.linalg.svd(A @ S, full_matrices=True)
-        rank = rank_of(sigma, tolerances.RANK)
-        own[i] = S @ Vt[rank:].T
+        rank = count_singular_values(sigma, tolerances.RANK)
+        free_motions[i] = S @ Vt[rank:].T
         inverse[i] = S @ (Vt[:rank].T / sigma[:rank]) @ U[:, :rank].T @ A
         if parents[i] in lacking:
-            conditions[parents[i]].append(independent(U[:, rank:].T @ A @ carried_along(layout, i, at)))
-    motion = np.zeros((len(bodies), 6, sum(free.shape[1] for free in own.values())))
+            conditions[parents[i]].append(independent_rows(U[:, rank:].T @ A @ transfer_matrix(layout, i, poses)))
+    motion = np.zeros((len(bodies), 6, sum(free.shape[1] for free in free_motions.values())))
     first = 0
     number = {body: n for n, body in enumerate(bodies) if body in lacking}
     for n, i in enumerate(bodies):
         if parents[i] in number:
-            along = carried_along(layout, i, at) @ motion[number[parents[i]]]
-            motion[n] = along - inverse[i] @ along
-        end = first + own[i].shape[1]
-        motion[n, :, first:end] += own[i]
+            carried_motion = transfer_matrix(layout, i, poses) @ motion[number[parents[i]]]
+            motion[n] = carried_motion - inverse[i] @ carried_motion
+        end = first + free_motions[i].shape[1]
+        motion[n, :, first:end] += free_motions[i]
         first = end
     _, sigma, Vt = np.linalg.svd(motion.reshape(6 * len(bodies), first), full_matrices=False)
-    return Massless(bodies, motion[:, :3], motion[:, 3:]).among(Vt.T / sigma)
+    return MasslessMotions(bodies, motion[:, :3], motion[:, 3:]).combine(Vt.T / sigma)
 
 
-def at_rest(layout: Layout, i: int, axes: Array | None, at: TreePoses) -> Array:
-    """Conditions on turn and shift of a body, (n, 6): its centre rests, it turns about `axes` without inertia alone."""
-    R, c = at.R[i], layout.mechanism.bodies[layout.spanning.hangs[i].body].center - layout.reference[i]
+def rest_conditions(layout: Layout, i: int, axes: Array | None, poses: TreePoses) -> Array:
+    """Return the conditions on turn and shift of a body, (n, 6): its centre rests, it turns about `axes` without
+    inertia alone.
+    """
+    R, c = poses.R[i], layout.mechanism.bodies[layout.spanning.links[i].body].center - layout.reference[i]
     across = np.eye(3) if axes is None else np.linalg.svd(axes, full_matrices=True)[2][len(axes) :]
-    found = np.zeros((3 + len(across), 6))
-    found[:3, :3], found[:3, 3:], found[3:, :3] = turned_by(R @ c / layout.size), np.eye(3), across @ R.T
-    return found
+    conditions = np.zeros((3 + len(across), 6))
+    conditions[:3, :3], conditions[:3, 3:], conditions[3:, :3] = (
+        cross_matrix(R @ c / layout.size),
+        np.eye(3),
+        across @ R.T,
+    )
+    return conditions
 
 
-def turned_by(arm: Array) -> Array:
-    """The matrix of omega x arm."""
+def cross_matrix(arm: Array) -> Array:
+    """Return the matrix of omega x arm."""
     x, y, z = arm
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 
 
-def carried_along(layout: Layout, i: int, at: TreePoses) -> Array:
-    """What the parent's turn and shift do to a body whose joint is fixed, (6, 6); a ball's turns are its own."""
-    found = np.eye(6)
-    arm = (at.r[i] - at.r[layout.bodies["parent"][i]]) / layout.size
-    found[3:, :3] = turned_by(arm)
+def transfer_matrix(layout: Layout, i: int, poses: TreePoses) -> Array:
+    """Return the effect of the parent's turn and shift on a body whose joint is fixed, (6, 6); a ball joint passes no
+    turn on.
+    """
+    matrix = np.eye(6)
+    arm = (poses.r[i] - poses.r[layout.bodies["parent"][i]]) / layout.size
+    matrix[3:, :3] = cross_matrix(arm)
     if layout.bodies["ball"][i]:
-        found[:3] = 0.0
-    return found
+        matrix[:3] = 0.0
+    return matrix
 
 
-def freedoms_of(layout: Layout, i: int, at: TreePoses) -> Array:
-    """What each freedom of a body that is not driven does to it: turn and shift, world axes (n, 6)."""
+def freedom_directions(layout: Layout, i: int, poses: TreePoses) -> Array:
+    """Return turn and shift from each freedom of a body that is not driven, world axes (n, 6)."""
     row = layout.bodies[i]
-    of_parent = at.R[row["parent"]] if row["parent"] >= 0 else np.eye(3)
-    found = [np.eye(3, 6)] if row["ball"] else []
+    of_parent = poses.R[row["parent"]] if row["parent"] >= 0 else np.eye(3)
+    directions = [np.eye(3, 6)] if row["ball"] else []
     for freedom in layout.tables["freedoms"][row["first_freedom"] : row["end_freedom"]]:
         if not freedom["driven"]:
-            s = (at.R[i] if freedom["kind"] == kernel.TURN_IN_BODY else of_parent) @ vectors(freedom["direction"])
+            s = (poses.R[i] if freedom["kind"] == kernel.TURN_IN_BODY else of_parent) @ vector_array(
+                freedom["direction"]
+            )
             shifts = freedom["kind"] == kernel.SHIFT
-            found.append(np.concatenate([0.0 * s, s] if shifts else [s, 0.0 * s])[None])
-    return np.concatenate([np.zeros((0, 6)), *found])
+            directions.append(np.concatenate([0.0 * s, s] if shifts else [s, 0.0 * s])[None])
+    return np.concatenate([np.zeros((0, 6)), *directions])
 
 
-def loose(layout: Layout, still: Massless, at: TreePoses, rows: Table) -> Massless:
-    """Those massless motions that the closure rows do not resist, or none by more than NEARLY_SINGULAR; one at least.
+def find_loose_motions(layout: Layout, motions: MasslessMotions, poses: TreePoses, rows: Table) -> MasslessMotions:
+    """Select the massless motions that the closure rows resist by no more than NEARLY_SINGULAR; at least one.
 
-    Rows as loads/redundancy/self_stress.py scales them.
+    Rows are scaled as in loads/redundancy/self_stress.py.
     """
-    number = {body: n for n, body in enumerate(still.bodies)}
+    number = {body: n for n, body in enumerate(motions.bodies)}
     closures = layout.tables["closures"]
-    measure = layout.size / lever(layout)
-    resisted = np.zeros((len(closures), still.count))
+    measure = layout.size / mean_lever(layout)
+    resisted = np.zeros((len(closures), motions.count))
     for k, closure in enumerate(closures):
         f, m, b = rows["f"][k], rows["m"][k], int(closure["b"])
-        Q = vectors(closure["q"]) if b < 0 else at.r[b] + at.R[b] @ vectors(closure["q"])
+        Q = vector_array(closure["q"]) if b < 0 else poses.r[b] + poses.R[b] @ vector_array(closure["q"])
         for body, sign in ((b, 1.0), (int(closure["a"]), -1.0)):
             if body in number:
                 n = number[body]
-                v = still.v[n] + np.cross(still.omega[n], (Q - at.r[body]) / layout.size, axis=0)
-                resisted[k] += sign * (measure * f @ v + m @ still.omega[n])
+                v = motions.v[n] + np.cross(motions.omega[n], (Q - poses.r[body]) / layout.size, axis=0)
+                resisted[k] += sign * (measure * f @ v + m @ motions.omega[n])
     free = null_space(resisted, tolerances.NEARLY_SINGULAR)
-    return still.among(free if free.shape[1] else np.linalg.svd(resisted)[2][-1:].T)
+    return motions.combine(free if free.shape[1] else np.linalg.svd(resisted)[2][-1:].T)
 
 
-def lever(layout: Layout) -> float:
-    """Mean distance of the cut joints' points from the centres of their bodies [m]; without any, the scene's size."""
+def mean_lever(layout: Layout) -> float:
+    """Return the mean distance of the cut joints' points from the centres of their bodies [m]; without any, the scene's
+    size.
+    """
     bodies = layout.mechanism.bodies
     cut = [layout.mechanism.joints[k] for k in layout.spanning.cut]
     arms = [p - bodies[i].center for j in cut for i, p in ((j.a, j.p), (j.b, j.q)) if i != GROUND]
@@ -274,56 +309,60 @@ def lever(layout: Layout) -> float:
     return mean or layout.size
 
 
-def axes_to_lend(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int, Array]:
-    """The bodies that massless motions turn, and their axes in any pose of the tree, body axes (k, 3), unit vectors."""
+def find_axes_in_any_pose(scene: PreparedScene, lacking: Mapping[int, Array]) -> dict[int, Array]:
+    """Return the bodies that massless motions turn, and their axes in any pose of the tree, body axes (k, 3), unit
+    vectors.
+    """
     layout = scene.layout
     none = {name: layout.tables[name][:0] for name in ("closures", "contacts")}
-    alone = replace(layout, rows=(), contacts=(), tables=layout.tables | none)
+    tree_layout = replace(layout, rows=(), contacts=(), tables=layout.tables | none)
     shift = np.zeros((POSES + 1, layout.n_state))
     rng = np.random.default_rng(SEED)
     for group in layout.tables["groups"]:
-        own = slice(group["coordinates"], group["rates"])
-        shift[1:, own] = rng.uniform(-1.0, 1.0, shift[1:, own].shape)
+        coordinates = slice(group["coordinates"], group["rates"])
+        shift[1:, coordinates] = rng.uniform(-1.0, 1.0, shift[1:, coordinates].shape)
     shift /= np.where(layout.weights > 0.0, layout.weights, 1.0)
-    poses = Evaluator(alone).recovered(np.zeros(POSES + 1), layout.y0 + shift).bodies
-    found: dict[int, list[Array]] = {}
-    for one in poses:
-        at = TreePoses(one["R"], one["r"])
-        for body, turning in massless(scene, lacking, at).axes(at).items():
-            found.setdefault(body, []).append(turning)
-    return {body: span(np.concatenate(turning)) for body, turning in found.items()}
+    poses = Evaluator(tree_layout).evaluate(np.zeros(POSES + 1), layout.y0 + shift).bodies
+    turnings: dict[int, list[Array]] = {}
+    for pose_bodies in poses:
+        pose = TreePoses(pose_bodies["R"], pose_bodies["r"])
+        for body, turning in find_massless_motions(scene, lacking, pose).find_axes(pose).items():
+            turnings.setdefault(body, []).append(turning)
+    return {body: span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
 
 
-def lent(scene: PreparedScene, place: int, axes: Array) -> list[dict[str, Any]]:
-    """The inertia lent to a body about some axes, such as its mass might have; a row of the kernel's table each."""
-    mechanism, i = scene.mechanism, scene.layout.spanning.hangs[place].body
+def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[dict[str, Any]]:
+    """Return artificial inertia for a body about some axes, of the order of its mass's own; one row of the kernel's
+    table each.
+    """
+    mechanism, i = scene.mechanism, scene.layout.spanning.links[place].body
     body = mechanism.bodies[i]
-    arms = [p - body.center for j in mechanism.joints for of, p in ((j.a, j.p), (j.b, j.q)) if of == i]
+    arms = [p - body.center for j in mechanism.joints for end, p in ((j.a, j.p), (j.b, j.q)) if end == i]
     reach = max([tolerances.LENT_REACH * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
-    inertia = max(body.mass * reach**2, without_inertia(body, scene.layout.size)[1])
+    inertia = max(body.mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
     return [{"body": place, "root": math.sqrt(inertia), "axis": axis} for axis in axes]
 
 
-def rank_of(sigma: Array, least: float) -> int:
-    """How many singular values count; `least`: of the largest, or of 1."""
-    return int(np.sum(sigma > least * max(1.0, float(sigma.max(initial=0.0)))))
+def count_singular_values(sigma: Array, threshold: float) -> int:
+    """Count the singular values above the threshold, which is relative to the largest, or to 1."""
+    return int(np.sum(sigma > threshold * max(1.0, float(sigma.max(initial=0.0)))))
 
 
-def null_space(A: Array, least: float) -> Array:
-    """What A maps to nothing, orthonormal columns."""
+def null_space(A: Array, threshold: float) -> Array:
+    """Return the null space of A, orthonormal columns."""
     _, sigma, Vt = np.linalg.svd(A, full_matrices=True)
-    return Vt[rank_of(sigma, least) :].T
+    return Vt[count_singular_values(sigma, threshold) :].T
 
 
-def independent(rows: Array) -> Array:
-    """As many rows as are independent, with the same null space."""
+def independent_rows(rows: Array) -> Array:
+    """Return as many rows as are independent, with the same null space."""
     _, sigma, Vt = np.linalg.svd(rows, full_matrices=False)
-    rank = rank_of(sigma, tolerances.RANK)
+    rank = count_singular_values(sigma, tolerances.RANK)
     return np.asarray(sigma[:rank, None] * Vt[:rank])
 
 
-def span(rows: Array) -> Array:
-    """Unit vectors that span the rows, (k, 3); an axis alone points the way of its largest component."""
+def span_vectors(rows: Array) -> Array:
+    """Return unit vectors that span the rows, (k, 3); the largest component of a single axis is positive."""
     _, S, Vt = np.linalg.svd(rows, full_matrices=False)
-    found = Vt[S > tolerances.RANK * float(S[0])]
-    return found if len(found) > 1 else found * np.sign(found[0, np.argmax(np.abs(found[0]))]) + 0.0
+    vectors = Vt[S > tolerances.RANK * float(S[0])]
+    return vectors if len(vectors) > 1 else vectors * np.sign(vectors[0, np.argmax(np.abs(vectors[0]))]) + 0.0

@@ -1,6 +1,6 @@
-"""Whether ropes stay on their sheaves: none that lifts off one, and none that leaves its plane too far.
+"""Check that ropes stay on their sheaves: that none lifts off one, and none leaves its plane too far.
 
-Looked at where loads are told and compared, at the ends of all steps among these; a rope that is slack is on none.
+This is checked where loads are reported and compared, including the ends of all steps; a slack rope is on no sheave.
 """
 
 from __future__ import annotations
@@ -12,92 +12,98 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
-from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 
-BY_HAND = "a sheave on a bearing that turns with the rope, or a plain point in its place"
+HINT = "a sheave on a bearing that turns with the rope, or a plain point in its place"
 
 
-def require_on_sheaves(layout: Layout, recovered: Recovered) -> None:
+def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
     """Raise SolveError at the first instant at which a rope has left a sheave, or its plane."""
-    found: list[tuple[float, Problem]] = []
-    for coupling, part, k, taut in rope_parts(layout, recovered):
+    problems: list[tuple[float, Problem]] = []
+    for coupling, part, k, is_taut in iter_rope_parts(layout, evaluation):
         if part.kind == "arc":
-            angle = recovered.parts["gap"][:, k] / abs(part.radius)
-            off = np.flatnonzero(taut & (angle < -tolerances.OFF_SHEAVE))
+            angle = evaluation.parts["gap"][:, k] / abs(part.radius)
+            violations = np.flatnonzero(is_taut & (angle < -tolerances.OFF_SHEAVE))
             message, hint = "lifts off a sheave", "the run up to there; a rope that lies on it at times is not told"
         elif part.kind == "strand":
-            off = np.flatnonzero(taut & (np.abs(slant(layout, recovered, part, k)) > tolerances.FLEET_ANGLE))
-            message, hint = f"leaves a sheave's plane by more than {FLEET}", BY_HAND
-            askew = np.flatnonzero(taut & skewed(layout, recovered, part))
-            if len(askew) and not (len(off) and off[0] <= askew[0]):
-                off, message = askew, "runs between two sheaves whose axes do not stay parallel"
+            violations = np.flatnonzero(
+                is_taut & (np.abs(slant_angle(layout, evaluation, part, k)) > tolerances.FLEET_ANGLE)
+            )
+            message, hint = f"leaves a sheave's plane by more than {FLEET}", HINT
+            skewed_instants = np.flatnonzero(is_taut & is_skewed(layout, evaluation, part))
+            if len(skewed_instants) and not (len(violations) and violations[0] <= skewed_instants[0]):
+                violations, message = skewed_instants, "runs between two sheaves whose axes do not stay parallel"
         else:
             continue
-        if len(off):
-            t = float(recovered.times[off[0]])
+        if len(violations):
+            t = float(evaluation.times[violations[0]])
             path = f"couplings.{coupling.name}"
-            found.append((t, Problem("rope-off-sheave", f"at t = {t:.9g} s {path} {message}", None, hint, path)))
-    if found:
-        raise SolveError(min(found, key=lambda one: one[0])[1])
+            problems.append((t, Problem("rope-off-sheave", f"at t = {t:.9g} s {path} {message}", None, hint, path)))
+    if problems:
+        raise SolveError(min(problems, key=lambda one: one[0])[1])
 
 
 FLEET = f"{math.degrees(tolerances.FLEET_ANGLE):.0f} deg"
 
 
-def slanting(layout: Layout, recovered: Recovered) -> list[str]:
-    """A sentence on each rope that leaves a sheave's plane so far that its forces are seen to be off."""
-    most: dict[str, float] = {}
-    for coupling, part, k, taut in rope_parts(layout, recovered):
+def format_slant_warnings(layout: Layout, evaluation: Evaluation) -> list[str]:
+    """Format a sentence on each rope that leaves a sheave's plane so far that its forces become visibly inexact."""
+    largest_angles: dict[str, float] = {}
+    for coupling, part, k, is_taut in iter_rope_parts(layout, evaluation):
         if part.kind == "strand":
-            angles = np.where(taut, np.abs(slant(layout, recovered, part, k)), 0.0)
-            most[coupling.name] = max(most.get(coupling.name, 0.0), float(angles.max(initial=0.0)))
+            angles = np.where(is_taut, np.abs(slant_angle(layout, evaluation, part, k)), 0.0)
+            largest_angles[coupling.name] = max(largest_angles.get(coupling.name, 0.0), float(angles.max(initial=0.0)))
     return [
         f"couplings.{name} leaves a sheave's plane by up to {math.degrees(angle):.2g} deg: its forces are right to "
         f"{1.0 - math.cos(angle):.1g} of them"
-        for name, angle in most.items()
+        for name, angle in largest_angles.items()
         if angle > tolerances.FLEET_SEEN
     ]
 
 
-def rope_parts(layout: Layout, recovered: Recovered) -> Iterator[tuple[Coupling, CouplingPart, int, Mask]]:
-    """The parts of ropes: the coupling, the part, its place among the kernel's, and at which instants it is taut."""
+def iter_rope_parts(layout: Layout, evaluation: Evaluation) -> Iterator[tuple[Coupling, CouplingPart, int, Mask]]:
+    """Yield for each part of a rope: the coupling, the part, its number in the kernel, and at which instants it is
+    taut.
+    """
     mechanism = layout.mechanism
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
-        if coupling.given.type != "rope":
+        if coupling.entry.type != "rope":
             continue
-        if coupling.stretched is not None:
-            load = mechanism.row_of_rope(coupling.name)
-            taut = recovered.loads["value"][:, load] < 0.0
-            for k, part in enumerate(coupling.stretched.parts, int(layout.tables["loads"][load]["part"])):
-                yield coupling, part, k, taut
+        if coupling.stretched_row is not None:
+            load = mechanism.rope_load_row(coupling.name)
+            is_taut = evaluation.loads["value"][:, load] < 0.0
+            for k, part in enumerate(coupling.stretched_row.parts, int(layout.tables["loads"][load]["part"])):
+                yield coupling, part, k, is_taut
         rows = [r for r, k in enumerate(layout.rows) if k == owner]
         for r, row in zip(rows, coupling.rows, strict=True):
             first = int(layout.tables["closures"][r]["part"])
-            taut = recovered.rows["closed"][:, r] != 0.0
+            is_taut = evaluation.rows["closed"][:, r] != 0.0
             for k, part in enumerate(row.parts, first):
-                yield coupling, part, k, taut
+                yield coupling, part, k, is_taut
 
 
-def skewed(layout: Layout, recovered: Recovered, part: CouplingPart) -> Mask:
-    """Whether the axes of a strand's two sheaves have left each other, (n_t,)."""
+def is_skewed(layout: Layout, evaluation: Evaluation, part: CouplingPart) -> Mask:
+    """Return whether the axes of a strand's two sheaves are no longer parallel, (n_t,)."""
     if not part.g[1]:
-        return np.zeros(len(recovered.times), dtype=bool)
-    a, b = (axis_of(layout, recovered, body, axis) for body, axis in ((part.a, part.e), (part.b, part.other_axis)))
+        return np.zeros(len(evaluation.times), dtype=bool)
+    a, b = (
+        world_direction(layout, evaluation, body, axis) for body, axis in ((part.a, part.e), (part.b, part.other_axis))
+    )
     return np.asarray(np.sum((a - b) ** 2, axis=1) > tolerances.ASKEW**2)
 
 
-def axis_of(layout: Layout, recovered: Recovered, body: int, axis: object) -> Array:
-    """A direction fixed in a body, or the ground, world axes, (n_t, 3)."""
+def world_direction(layout: Layout, evaluation: Evaluation, body: int, axis: object) -> Array:
+    """Return a direction fixed in a body or the ground in world axes, (n_t, 3)."""
     e = np.asarray(axis)
-    return np.tile(e, (len(recovered.times), 1)) if body < 0 else recovered.bodies["R"][:, layout.place[body]] @ e
+    return np.tile(e, (len(evaluation.times), 1)) if body < 0 else evaluation.bodies["R"][:, layout.place[body]] @ e
 
 
-def slant(layout: Layout, recovered: Recovered, part: CouplingPart, k: int) -> Array:
-    """The angle between a strand and the plane of the sheave that it is seen from [rad], (n_t,)."""
-    n = axis_of(layout, recovered, part.a, part.e)
-    way = recovered.parts["on_b"][:, k] - recovered.parts["on_a"][:, k]
-    long = np.sqrt(np.sum(way * way, axis=1))
-    return np.asarray(np.arcsin(np.clip(np.sum(way * n, axis=1) / np.where(long > 0.0, long, 1.0), -1.0, 1.0)))
+def slant_angle(layout: Layout, evaluation: Evaluation, part: CouplingPart, k: int) -> Array:
+    """Return the angle between a strand and the plane of the sheave it is measured from [rad], (n_t,)."""
+    n = world_direction(layout, evaluation, part.a, part.e)
+    strand = evaluation.parts["on_b"][:, k] - evaluation.parts["on_a"][:, k]
+    length = np.sqrt(np.sum(strand * strand, axis=1))
+    return np.asarray(np.arcsin(np.clip(np.sum(strand * n, axis=1) / np.where(length > 0.0, length, 1.0), -1.0, 1.0)))

@@ -1,4 +1,4 @@
-"""Whether accelerations exist and are unique: if not, an error instead of numbers."""
+"""Check that accelerations exist and are unique; if not, raise an error instead of returning numbers."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
-from heuncli.base.number_range import out_of_range
+from heuncli.base.number_range import range_error
 from heuncli.base.records import record
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad, path_of_load
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.multibody.mechanism.model import BushingLoad, PairLoad, load_path
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
@@ -21,8 +21,11 @@ LARGE = "look at the units of loads, masses and lengths nearby"
 
 
 @record
-class Wording:
-    """What is asked of a scene, in words; given [N m] or [N m s]: the largest moment of what is given beside loads."""
+class ErrorWording:
+    """Words for what is computed of a scene.
+
+    moment_scale [N m] or [N m s]: largest moment given besides the loads
+    """
 
     answers: str = "accelerations"
     moment: str = "moment"
@@ -30,33 +33,35 @@ class Wording:
     given: float = 0.0
 
 
-def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wording = Wording()) -> None:  # noqa: B008
+def require_solvable(scene: PreparedScene, evaluation: Evaluation, wording: ErrorWording = ErrorWording()) -> None:  # noqa: B008
     """Raise SolveError for accelerations that are not finite, freedoms without inertia, moments about such axes."""
-    moved, loads = np.abs(recovered.bodies.view(np.float64)), np.abs(recovered.loads["value"])
-    if not max(moved.max(initial=0.0), loads.max(initial=0.0)) <= tolerances.MOST_MAGNITUDE:  # also what is no number
-        finite = np.isfinite(moved).all(axis=1)
-        if not finite.all():
-            raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
-        require_range(scene, recovered, np.maximum(moved.max(axis=1, initial=0.0), loads.max(axis=1, initial=0.0)))
-    for k in np.flatnonzero(recovered.idle > 0).tolist() if recovered.idle.any() else ():
-        from heuncli.motion.integration.diagnosis.massless_motions import is_idle
+    body_values, loads = np.abs(evaluation.bodies.view(np.float64)), np.abs(evaluation.loads["value"])
+    if not max(body_values.max(initial=0.0), loads.max(initial=0.0)) <= tolerances.MOST_MAGNITUDE:  # also true for nan
+        is_finite = np.isfinite(body_values).all(axis=1)
+        if not is_finite.all():
+            raise SolveError(*find_not_finite(scene, evaluation, int(np.flatnonzero(~is_finite)[0])))
+        require_range(
+            scene, evaluation, np.maximum(body_values.max(axis=1, initial=0.0), loads.max(axis=1, initial=0.0))
+        )
+    for k in np.flatnonzero(evaluation.massless_count > 0).tolist() if evaluation.massless_count.any() else ():
+        from heuncli.motion.integration.diagnosis.massless_motions import is_unloaded_spin
 
-        if not is_idle(scene, recovered, k):
-            raise SolveError(freedom_without_inertia(scene, recovered, k))
-    unmet = recovered.residual > recovered.may_stay
-    if unmet.any():
-        raise SolveError(unmet_rows(scene, recovered, int(np.flatnonzero(unmet)[0]), wording))
+        if not is_unloaded_spin(scene, evaluation, k):
+            raise SolveError(no_inertia_problem(scene, evaluation, k))
+    is_unmet = evaluation.residual > evaluation.allowed_residual
+    if is_unmet.any():
+        raise SolveError(unmet_rows_problem(scene, evaluation, int(np.flatnonzero(is_unmet)[0]), wording))
     layout, gravity = scene.layout, scene.mechanism.gravity
-    for spin in scene.idle:
-        rows = recovered.bodies[:, layout.place[spin.body]]
+    for spin in scene.idle_spins:
+        rows = evaluation.bodies[:, layout.place[spin.body]]
         R = rows["R"]
         alpha = np.einsum("tki,tk->ti", R, rows["alpha"])
-        moment = np.abs(alpha @ (spin.axes @ spin.lent).T).max(initial=0.0)
+        moment = np.abs(alpha @ (spin.axes @ spin.artificial_inertia).T).max(initial=0.0)
         # the scale is made of applied loads and rates: the acceleration is amplified by the missing inertia
-        force = np.abs(rows["joint_force"]).max(initial=0.0) + np.abs(recovered.loads["force"]).max(initial=0.0)
+        force = np.abs(rows["joint_force"]).max(initial=0.0) + np.abs(evaluation.loads["force"]).max(initial=0.0)
         body = scene.mechanism.bodies[spin.body]
         scale = (force + body.mass * float(np.abs(gravity).max())) * layout.size
-        scale += np.abs(recovered.loads["moment"]).max(initial=0.0) + wording.given
+        scale += np.abs(evaluation.loads["moment"]).max(initial=0.0) + wording.moment_scale
         scale += float(np.trace(body.inertia)) * float(np.sum(rows["omega"] ** 2, axis=1).max())
         if moment > tolerances.NO_MOMENT * scale:
             axis = ", ".join(f"{x:.4g}" for x in spin.axes[0])
@@ -69,106 +74,109 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wordin
             raise SolveError(Problem("no-inertia", message, hint=hint))
 
 
-def require_range(scene: PreparedScene, recovered: Recovered, largest: Array) -> None:
-    """Raise SolveError for motions of bodies and for loads that are too large to be computed with: squares are next.
+def require_range(scene: PreparedScene, evaluation: Evaluation, largest: Array) -> None:
+    """Raise SolveError for motions of bodies or loads that are too large to compute with, because squares follow.
 
-    largest (n_t,): at each instant. What is small passes: it is on its way through 0.
+    largest (n_t,): largest value at each instant. Small values pass, because they may be on their way through 0.
     """
-    large = largest > tolerances.MOST_MAGNITUDE
-    if large.any():
-        raise SolveError(*too_large(scene, recovered, int(np.argmax(large))))
+    is_large = largest > tolerances.MOST_MAGNITUDE
+    if is_large.any():
+        raise SolveError(*find_too_large(scene, evaluation, int(np.argmax(is_large))))
 
 
-def too_large(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
-    """The problems of values in time that are too large there, else the one of the largest load, or of the motion."""
-    from heuncli.motion.integration.diagnosis.domains import coordinates_at, large_values  # only on the way to an error
+def find_too_large(scene: PreparedScene, evaluation: Evaluation, instant: int) -> list[Problem]:
+    """Return the problems of expressions that are too large there, else that of the largest load or motion."""
+    from heuncli.motion.integration.diagnosis.domains import (  # only on the way to an error
+        evaluate_coordinates,
+        find_large_values,
+    )
 
-    t, mechanism = float(recovered.times[instant]), scene.mechanism
-    problems = large_values(mechanism, t, coordinates_at(scene.layout, recovered, instant))
+    t, mechanism = float(evaluation.times[instant]), scene.mechanism
+    problems = find_large_values(mechanism, t, evaluate_coordinates(scene.layout, evaluation, instant))
     if problems:
         return problems
-    sizes = np.abs(recovered.loads[instant]["value"])
-    values = [(float(sizes[rows].max()), load) for load, rows in mechanism.load_rows()]
+    sizes = np.abs(evaluation.loads[instant]["value"])
+    values = [(float(sizes[rows].max()), load) for load, rows in mechanism.iter_load_rows()]
     value, load = max(values, key=lambda pair: pair[0], default=(0.0, None))
     if load is not None and value > tolerances.MOST_MAGNITUDE:
-        what = f"at t = {t:.9g} s the value of {path_of_load(load)}"
+        what = f"at t = {t:.9g} s the value of {load_path(load)}"
     else:
-        bodies = recovered.bodies[instant]
+        bodies = evaluation.bodies[instant]
         largest = {name: np.abs(bodies[name]).max(axis=-1) for name in QUANTITIES}
         name = max(largest, key=lambda key: float(largest[key].max()))
         place = int(np.argmax(largest[name]))
-        body = mechanism.bodies[scene.layout.spanning.hangs[place].body].name
+        body = mechanism.bodies[scene.layout.spanning.links[place].body].name
         value, what = float(largest[name][place]), f"at t = {t:.9g} s the {QUANTITIES[name]} bodies.{body}"
-    found = out_of_range(value, what)
-    return [Problem(found.code, found.message, hint=LARGE)]
+    range_problem = range_error(value, what)
+    return [Problem(range_problem.code, range_problem.message, hint=LARGE)]
 
 
-def require_start(scene: PreparedScene, start: Recovered, wording: Wording = Wording()) -> None:  # noqa: B008
+def require_start(scene: PreparedScene, evaluation: Evaluation, wording: ErrorWording = ErrorWording()) -> None:  # noqa: B008
     """Raise SolveError where there are no accelerations at the start, or loads push between points that coincide."""
-    require_solvable(scene, start, wording)
-    require_directions(scene, start, begins=True)
+    require_solvable(scene, evaluation, wording)
+    require_directions(scene, evaluation, is_motion_start=True)
 
 
-def require_directions(scene: PreparedScene, recovered: Recovered, begins: bool = False) -> None:
-    """Raise SolveError for actuators and springs that push between points that coincide; begins: or are about to."""
+def require_directions(scene: PreparedScene, evaluation: Evaluation, is_motion_start: bool = False) -> None:
+    """Raise SolveError for actuators and springs that push between coincident points; is_motion_start: or will push."""
     if any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
-        from heuncli.motion.integration.diagnosis.coincident_points import without_direction  # few scenes have them
+        from heuncli.motion.integration.diagnosis.coincident_points import find_undirected_loads  # few scenes have them
 
-        if problems := without_direction(scene.layout, recovered, begins):
+        if problems := find_undirected_loads(scene.layout, evaluation, is_motion_start):
             raise SolveError(*problems)
 
 
-def unmet_rows(scene: PreparedScene, recovered: Recovered, instant: int, wording: Wording) -> Problem:
-    """The problem of closed chains that nothing found holds together."""
-    from heuncli.motion.integration.diagnosis.fighting_drives import fighting
+def unmet_rows_problem(scene: PreparedScene, evaluation: Evaluation, instant: int, wording: ErrorWording) -> Problem:
+    """Make the problem of closed chains that the accelerations found do not hold together."""
+    from heuncli.motion.integration.diagnosis.fighting_drives import find_fighting_drives
 
-    t, residual = float(recovered.times[instant]), float(recovered.residual[instant])
-    if (problem := fighting(scene.mechanism, t, t)) is not None:
+    t, residual = float(evaluation.times[instant]), float(evaluation.residual[instant])
+    if (problem := find_fighting_drives(scene.mechanism, t, t)) is not None:
         return problem
-    message = f"at t = {t:.9g} s the {wording.answers} leave {residual:.1g} of what the closed chains ask of them unmet"
+    message = f"at t = {t:.9g} s the {wording.results} leave {residual:.1g} of what the closed chains ask of them unmet"
     return Problem("closure-lost", message, hint="a singular pose, or joints that contradict each other by a little")
 
 
-def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list[Problem]:
-    """Problems of the expressions without a value there, else one that says that no acceleration exists."""
+def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) -> list[Problem]:
+    """Return problems of the expressions without a value there, else one that says that no acceleration exists."""
     from heuncli.motion.integration.diagnosis.domains import (  # only on the way to an error
-        coordinates_at,
-        without_value,
+        evaluate_coordinates,
+        find_without_value,
     )
 
-    t, length = float(recovered.times[instant]), float(recovered.times[-1])
-    problems = without_value(scene.mechanism, t, length, coordinates_at(scene.layout, recovered, instant))
+    t, length = float(evaluation.times[instant]), float(evaluation.times[-1])
+    problems = find_without_value(scene.mechanism, t, length, evaluate_coordinates(scene.layout, evaluation, instant))
     if not problems and any(isinstance(load, BushingLoad) for load in scene.mechanism.loads):
-        from heuncli.motion.integration.diagnosis.turned_bushings import at_half_turn
+        from heuncli.motion.integration.diagnosis.turned_bushings import find_half_turned
 
-        problems = at_half_turn(scene.mechanism, recovered, instant)
-    if not problems and scene.mechanism.rubbing:
-        from heuncli.motion.integration.diagnosis.jamming import jammed_at
+        problems = find_half_turned(scene.mechanism, evaluation, instant)
+    if not problems and scene.mechanism.joint_friction:
+        from heuncli.motion.integration.diagnosis.jamming import find_jammed
 
-        problems = jammed_at(scene.mechanism, recovered, instant)
+        problems = find_jammed(scene.mechanism, evaluation, instant)
     message = f"at t = {t:.9g} s no finite acceleration exists"
     return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
 
 
-def freedom_without_inertia(scene: PreparedScene, recovered: Recovered, instant: int) -> Problem:
-    """The problem of a freedom that moves no mass: which bodies turn in it, about which axes."""
-    from heuncli.motion.integration.diagnosis.massless_motions import loose_axes
+def no_inertia_problem(scene: PreparedScene, evaluation: Evaluation, instant: int) -> Problem:
+    """Make the problem of a freedom that moves no mass: which bodies turn in it, about which axes."""
+    from heuncli.motion.integration.diagnosis.massless_motions import find_loose_axes
 
     layout = scene.layout
     lacking = []
-    for place, axes in loose_axes(scene, recovered.bodies[instant], recovered.rows[instant]).items():
-        body = layout.mechanism.bodies[layout.spanning.hangs[place].body]
-        lacking.append(f"bodies.{body.name} has no inertia about {in_words(axes)}")
-    message = f"at t = {float(recovered.times[instant]):.6g} s a freedom has no inertia behind it"
+    for place, axes in find_loose_axes(scene, evaluation.bodies[instant], evaluation.rows[instant]).items():
+        body = layout.mechanism.bodies[layout.spanning.links[place].body]
+        lacking.append(f"bodies.{body.name} has no inertia about {describe_axes(axes)}")
+    message = f"at t = {float(evaluation.times[instant]):.6g} s a freedom has no inertia behind it"
     message = ": ".join([message, *(["; ".join(lacking)] if lacking else [])])
     return Problem("no-inertia", message, hint="give those bodies their moments of inertia, or hold the turn")
 
 
-def in_words(axes: Array) -> str:
-    """Axes (k, 3) of a body in its own components: one, those across one, or any."""
+def describe_axes(axes: Array) -> str:
+    """Describe axes (k, 3) of a body by its own components: one axis, those across one, or any."""
     if len(axes) == 3:
         return "any axis"
     n = axes[0] if len(axes) == 1 else np.cross(axes[0], axes[1])
     n = n * np.sign(n[np.argmax(np.abs(n))])  # the sign of a singular vector is arbitrary
-    listed = ", ".join(f"{x:.4g}" for x in np.where(np.abs(n) < tolerances.DUST, 0.0, n))
-    return f"its axis ({listed})" if len(axes) == 1 else f"its axes across ({listed})"
+    components = ", ".join(f"{x:.4g}" for x in np.where(np.abs(n) < tolerances.DUST, 0.0, n))
+    return f"its axis ({components})" if len(axes) == 1 else f"its axes across ({components})"

@@ -1,6 +1,6 @@
-"""Explicit methods of lower order: of given step Euler's, Heun's own two and the classical one, and an adaptive pair.
+"""Explicit methods of lower order: of fixed step Euler's, Heun's two and the classical one, and an adaptive pair.
 
-Between the ends of a given step the cubic through both ends serves: it errs by h^4, no lower an order than theirs.
+Between the ends of a fixed step the cubic through both ends is used: its error h^4 is of no lower order than theirs.
 """
 
 from __future__ import annotations
@@ -8,18 +8,18 @@ from __future__ import annotations
 from heuncli.motion.integration.methods.method import Method
 
 # Euler, Institutiones calculi integralis I (1768), II.7: along the slope at the start.
-EULER = Method(name="Euler", order=1, fixed=True, nodes=(0.0,), stages=(), solution=((0, 1.0),))
+EULER = Method(name="Euler", order=1, has_fixed_step=True, nodes=(0.0,), stages=(), solution=((0, 1.0),))
 
 # Heun, Zeitschrift fuer Mathematik und Physik 45 (1900) 23-38: the mean of the slopes at both ends.
 HEUN2 = Method(
-    name="Heun2", order=2, fixed=True, nodes=(0.0, 1.0), stages=(((0, 1.0),),), solution=((0, 0.5), (1, 0.5))
+    name="Heun2", order=2, has_fixed_step=True, nodes=(0.0, 1.0), stages=(((0, 1.0),),), solution=((0, 0.5), (1, 0.5))
 )
 
 # There, too: third order from two slopes that count, at 0 and 2/3 (Hairer, Norsett, Wanner, Solving ODEs I, II.1).
 HEUN3 = Method(
     name="Heun3",
     order=3,
-    fixed=True,
+    has_fixed_step=True,
     nodes=(0.0, 1 / 3, 2 / 3),
     stages=(((0, 1 / 3),), ((1, 2 / 3),)),
     solution=((0, 1 / 4), (2, 3 / 4)),
@@ -29,7 +29,7 @@ HEUN3 = Method(
 RK4 = Method(
     name="RK4",
     order=4,
-    fixed=True,
+    has_fixed_step=True,
     nodes=(0.0, 0.5, 0.5, 1.0),
     stages=(((0, 0.5),), ((1, 0.5),), ((2, 1.0),)),
     solution=((0, 1 / 6), (1, 1 / 3), (2, 1 / 3), (3, 1 / 6)),
@@ -39,7 +39,7 @@ RK4 = Method(
 DOPRI5 = Method(
     name="DOPRI5",
     stable=3.31,
-    within=(0.3, 0.75),
+    sample_fractions=(0.3, 0.75),
     order=5,
     nodes=(0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0),
     stages=(

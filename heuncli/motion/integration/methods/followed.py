@@ -1,4 +1,4 @@
-"""The motion that its drives determine: nothing is integrated (kernel/following.py).
+"""The method for a motion that its drives determine: nothing is integrated (kernel/following.py).
 
 Its interpolation has two rows more than the cubic's.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from heuncli.motion.integration.methods.method import Method
 
-FOLLOWED = Method(
+DRIVE_DETERMINED = Method(
     name="none: every instant is solved by itself",
     order=1,
     nodes=(0.0,),
@@ -17,5 +17,5 @@ FOLLOWED = Method(
     estimates=(((0, 1.0),),),
     error_order=1,
     dense=((), ()),
-    determined=True,
+    is_determined=True,
 )

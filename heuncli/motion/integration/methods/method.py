@@ -1,4 +1,4 @@
-"""A method of integration as data: rows of (stage, coefficient), zeros left out, and the arrays the kernel takes."""
+"""An integration method as data: rows of (stage, coefficient) without zeros, and the arrays that the kernel takes."""
 
 from __future__ import annotations
 
@@ -15,31 +15,33 @@ QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step
 
 @record
 class Method:
-    """A Runge-Kutta method with dense output, or what stands in for one; a step goes from y by h, with x = 0 ... 1.
+    """A Runge-Kutta method with dense output, or a substitute for one; a step goes from y by h, with x = 0 ... 1.
 
     stages, solution, extra, estimates and dense are rows of its tableau. Of two estimates the first is the coarser one,
     and the error is h e5^2 / sqrt(e5^2 + 0.01 e3^2).
-    Dense output is a polynomial in nested form, y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))): F0, F1, F2 are
-    those of the cubic through both ends, which every method has, and the rows give the others.
+
+    Dense output is a polynomial in nested form, y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))). F0, F1, F2 are
+    those of the cubic through both ends, which every method has; the rows give the others.
     """
 
     name: str
     order: int
     nodes: tuple[float, ...]  # of all stages, the first 0
-    stages: tuple[Row, ...]  # of stages 1, 2, ...: what each takes of those before it
+    stages: tuple[Row, ...]  # of stages 1, 2, ...: coefficients of the stages before
     solution: Row
     extra: tuple[Row, ...] = ()  # further stages, for the dense output
     estimates: tuple[Row, ...] = ()  # of the error: one, or two
     error_order: int = 1  # of the estimate in h
-    # of F3, F4, ...; in them an implicit method combines what stages 1, 2, ... are beyond the start, then F0, F1, F2
+    # rows of F3, F4, ...; those of an implicit method apply to stages 1, 2, ... minus the start, then to F0, F1,
+    # F2
     dense: tuple[Row, ...] = ()
     determined: bool = False  # nothing is integrated: every instant follows from the drives
-    fixed: bool = False  # steps are given, and none is judged
-    by_step: bool = False  # no dense output: an instant within a step is reached by a step of its own from the start
+    fixed: bool = False  # the step is given, and no error is tested
+    by_step: bool = False  # no dense output: an instant within a step is reached by an extra step from its start
     implicit: bool = False  # the stages are solved for (kernel/collocation.py), by the numbers in `collocation`
     attitude: int = QUATERNION  # how attitudes are held within a step
     foreign: str = ""  # its name in SciPy, where its steps are taken (motion/integration/run/scipy_loop.py)
-    # the largest h |lambda| at which it lets decay what goes as exp(lambda t): |R(-h |lambda|)| = 1; 0: not watched
+    # stability limit: the largest h |lambda| with |R(-h |lambda|)| = 1 for decay exp(lambda t); 0: not watched
     stable: float = 0.0
     # where in a step its interpolation errs most, on open and closed chains (tests/convergence/test_between_ends.py)
     within: tuple[float, ...] = (0.5, 0.85)
@@ -48,7 +50,7 @@ class Method:
 
     @cached_property
     def arrays(self) -> dict[str, Any]:
-        """The method as the kernel takes it (kernel/stepping.py)."""
+        """The method's arrays for the kernel (kernel/stepping.py)."""
         rows = [(), *self.stages, self.solution, *self.extra, *self.estimates, *self.dense]
         begin = [0]
         for row in rows:
@@ -59,8 +61,8 @@ class Method:
             "dense_rows": len(self.dense),
             "estimates": len(self.estimates),
             "exponent": 1.0 / self.error_order,
-            "determined": int(self.determined),
-            "fixed": int(self.fixed),
+            "determined": int(self.is_determined),
+            "fixed": int(self.has_fixed_step),
             "by_step": int(self.by_step),
             "implicit": int(self.implicit),
             "attitude": self.attitude,

@@ -1,22 +1,21 @@
-"""The methods by their names, each with its coefficients loaded where it is asked for.
+"""Load methods by name; the coefficients of each are loaded on demand.
 
-The rows stand in heuncli/base/method_rows.py, where the spec reads them, too.
+The rows are in heuncli/base/method_rows.py, where the spec reads them, too.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
 
-from heuncli.base.method_rows import AUTO, DEFAULT, row_of
+from heuncli.base.method_rows import AUTO, DEFAULT, find_method
 from heuncli.motion.integration.methods.method import Method
 
 
-def method_of(name: str) -> Method:
-    """The method of that name, in whatever case; of `auto` the one that a scene takes unless something speaks against.
-
-    Raises KeyError for any other name.
+def load_method_by_name(name: str) -> Method:
+    """Return the method of that name, in either case; for `auto`, the default method. Raises KeyError for any other
+    name.
     """
-    row = row_of(DEFAULT if name.lower() == AUTO else name)
+    row = find_method(DEFAULT if name.lower() == AUTO else name)
     if row is None:
         raise KeyError(name)
     module, _, attribute = row.coefficients.partition(".")

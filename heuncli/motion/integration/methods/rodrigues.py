@@ -1,10 +1,10 @@
-"""DOP853 with attitudes held by Rodrigues' numbers within a step (kernel/attitudes.py).
+"""DOP853 with attitudes represented by Rodrigues parameters within a step (kernel/attitudes.py).
 
 Global: kappa and its rate, counted from the attitude as drawn: Heun's no. 20, in Lagrange's form. Re-centred: kappa
 from the start of each step, and the angular velocity.
 
-How far a step may turn is bounded by the chart and not by the tolerance: of what turns fast a finer run takes the same
-steps and errs alike. So the check run goes by quaternions.
+The chart, not the tolerance, bounds the rotation in a step: for fast rotations a finer run takes the same steps and has
+the same error. So the check run uses quaternions.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Verner's efficient 9(8) pair with its interpolant of order 8, for what is asked to 1e-12 and below.
+"""Verner's efficient 9(8) pair with its interpolant of order 8, for tolerances of 1e-12 and below.
 
-Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical Algorithms 53 (2010) 383-396, and the
-numbers given with it. The interpolant's weights are brought into nested form by exact arithmetic; to three rows they
-are the cubic's, which tells that both ends and their slopes are met. The order conditions are a test's.
+Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical Algorithms 53 (2010) 383-396, and the numbers
+given with it. Exact arithmetic brings the interpolant's weights into nested form; except for three rows they are the
+cubic's, which shows that both ends and their slopes are met. A test checks the order conditions.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from heuncli.motion.integration.methods.method import Method
 VERNER98 = Method(
     name="Verner98",
     stable=4.48,
-    within=(0.15, 0.25, 0.5, 0.875),
+    sample_fractions=(0.15, 0.25, 0.5, 0.875),
     order=9,
     nodes=(
         0.0,

@@ -1,4 +1,4 @@
-"""How a run is left before its end: errors, and the reasons to begin it anew by another method."""
+"""How a run stops before its end: errors, and the reasons to restart it with another method."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from heuncli.kernel.choose import steps as kernel
 from heuncli.motion.integration.methods.method import Method
 from heuncli.results.results import Array
 
-TROUBLE = {
+KERNEL_ERRORS = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
         "the step length fell to the rounding error of the time",
@@ -32,29 +32,40 @@ TROUBLE = {
 
 
 class ClosuresLost(SolveError):
-    """A run that ended where its closed chains could not be held; passed: instants and states, failed: where, last."""
+    """A run ended where its closed chains could not be held.
 
-    def __init__(self, problem: Problem, *, passed: list[tuple[float, Array]], failed: float, last: float) -> None:
-        super().__init__(problem)
-        self.passed, self.failed, self.last = passed, failed, last
-
-
-class Stiff(Exception):
-    """A run that was left, for another method takes less; told: why, in a sentence; seconds: that it took."""
-
-    def __init__(self, method: Method, told: str) -> None:
-        super().__init__(told)
-        self.method, self.told, self.seconds = method, told, 0.0
-
-
-class Eventful(Exception):
-    """A run that was left, for so many of its steps end at events that another method may take less, or no more do.
-
-    reached [s] in so many steps, of which events cut so many, and evaluations, at a local tolerance; seconds: that it
-    took. told: why another method takes less, in a sentence.
+    passed_states: instants and states before
+    failure_time, last: instant of failure, and intended end [s]
     """
 
-    def __init__(self, reached: float, steps: int, cut: int, evaluations: int, local: float) -> None:
+    def __init__(
+        self, problem: Problem, *, passed_states: list[tuple[float, Array]], failure_time: float, last: float
+    ) -> None:
+        super().__init__(problem)
+        self.passed_states, self.failure_time, self.last = passed_states, failure_time, last
+
+
+class StiffRun(Exception):
+    """A run was stopped because another method takes less work.
+
+    reason: why, in a sentence
+    seconds: time that the run took
+    """
+
+    def __init__(self, method: Method, reason: str) -> None:
+        super().__init__(reason)
+        self.method, self.reason, self.seconds = method, reason, 0.0
+
+
+class EventfulRun(Exception):
+    """A run was stopped because so many of its steps end at events that another method may take less, or because few do
+    now.
+
+    end_time [s] in so many steps, of which events cut `cut`, and evaluations, at a local tolerance; seconds: time that
+    it took. reason: why another method takes less, in a sentence.
+    """
+
+    def __init__(self, end_time: float, steps: int, cut: int, evaluations: int, local: float) -> None:
         super().__init__(f"{cut} of {steps} steps end at events")
-        self.reached, self.steps, self.cut, self.evaluations, self.local = reached, steps, cut, evaluations, local
-        self.seconds, self.told = 0.0, ""
+        self.end_time, self.steps, self.cut, self.evaluations, self.local = end_time, steps, cut, evaluations, local
+        self.seconds, self.reason = 0.0, ""

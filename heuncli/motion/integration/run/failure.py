@@ -1,4 +1,4 @@
-"""Why a run cannot go on where the kernel's loop has ended. Imported only on the way to an error."""
+"""Explain why a run cannot continue where the kernel's loop has ended. Imported only on the way to an error."""
 
 from __future__ import annotations
 
@@ -7,106 +7,120 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.motion.integration.diagnosis.domains import FARTHEST, coordinates_at, without_value
-from heuncli.motion.integration.diagnosis.growth import growing, largest_load
-from heuncli.motion.integration.diagnosis.jamming import jammed_beyond
-from heuncli.motion.integration.diagnosis.ways import Moving, ways_left
-from heuncli.motion.integration.evaluator import Recovered
-from heuncli.motion.integration.run.errors import TROUBLE, ClosuresLost
+from heuncli.motion.integration.diagnosis.domains import FARTHEST, evaluate_coordinates, find_without_value
+from heuncli.motion.integration.diagnosis.growth import describe_largest_load, find_growing
+from heuncli.motion.integration.diagnosis.jamming import find_jammed_after
+from heuncli.motion.integration.diagnosis.ways import Moving, find_left_paths
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.run.errors import KERNEL_ERRORS, ClosuresLost
 from heuncli.motion.integration.run.kernel_loop import CHATTERING, HALF_TURN
-from heuncli.motion.integration.run.progress import Progress
+from heuncli.motion.integration.run.progress import RunProgress
 from heuncli.multibody.mechanism.model import BushingLoad
 from heuncli.scene.expressions.programs import Expression
 
 
-class Ended:
-    """Where a run has ended, answered once for all that ask."""
+class RunFailure:
+    """The state in which a run has failed, evaluated once for all checks."""
 
-    def __init__(self, progress: Progress) -> None:
+    def __init__(self, progress: RunProgress) -> None:
         self.progress, self.t, self.scene = progress, progress.t, progress.scene
         self.mechanism = progress.scene.layout.mechanism
 
     @cached_property
-    def recovered(self) -> Recovered:
-        """The answers there."""
-        return self.scene.recovered(np.array([self.t]), self.progress.state[None, :])
+    def evaluation(self) -> Evaluation:
+        """The results at that state."""
+        return self.scene.evaluate(np.array([self.t]), self.progress.state[None, :])
 
     @cached_property
     def coordinates(self) -> Moving:
-        """What expressions use, there."""
-        return coordinates_at(self.scene.layout, self.recovered, 0)
+        """The coordinates that expressions use at that state."""
+        return evaluate_coordinates(self.scene.layout, self.evaluation, 0)
 
 
-def failure(progress: Progress, code: int) -> SolveError:
-    """The error of a run that the kernel's loop ended with a code."""
+def make_failure_error(progress: RunProgress, code: int) -> SolveError:
+    """Make the error of a run that the kernel's loop ended with a code."""
     t, scene, loop = progress.t, progress.scene, progress.kernel.loop
     if code == CHATTERING:
-        return SolveError(chattering(t, *scene.layout.pack.branches[loop.turning]))
+        return SolveError(chattering_problem(t, *scene.layout.pack.branches[loop.changed_branch]))
     if code == HALF_TURN:
-        from heuncli.motion.integration.diagnosis.half_turns import half_turn  # the global chart alone has them
+        from heuncli.motion.integration.diagnosis.half_turns import half_turn_error  # the global chart alone has them
 
-        itself = progress.moving.layout is scene.layout
-        return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
-    name, message, hint = TROUBLE[code]
-    ended = Ended(progress)
+        is_unreduced = progress.integrated_scene.layout is scene.layout
+        return half_turn_error(
+            progress.integrated_scene, loop.half_turn, t, progress.integrated_state, is_unreduced=is_unreduced
+        )
+    name, message, hint = KERNEL_ERRORS[code]
+    run_failure = RunFailure(progress)
     if name == "closure-lost":
-        if known := ways_ended(ended) or turned_bushings(ended) or loads_ended(ended):
-            return SolveError(*known)
+        if (
+            problems := find_left_paths_at(run_failure)
+            or find_turned_bushings(run_failure)
+            or find_lost_loads(run_failure)
+        ):
+            return SolveError(*problems)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
-        return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
-    return without_acceleration(ended, name, message, hint)
+        return ClosuresLost(problem, passed_states=progress.passed_states, failure_time=t, last=progress.last)
+    return no_acceleration_error(run_failure, name, message, hint)
 
 
-def ways_ended(ended: Ended) -> list[Problem]:
-    """The problems of points that have run off their paths there, and of cams that have turned off their lifts.
+def find_left_paths_at(run_failure: RunFailure) -> list[Problem]:
+    """Return the problems of points that have run off their paths there, and of cams that have turned off their lifts.
 
-    No closed chain has to be looked at for them, though one that hangs on them is lost with them.
+    No closed chain has to be inspected for them, though one that depends on them is lost with them.
     """
-    mechanism = ended.mechanism
-    on_cams = any(coupling.given.type == "cam" for coupling in mechanism.couplings)
+    mechanism = run_failure.mechanism
+    on_cams = any(coupling.entry.type == "cam" for coupling in mechanism.couplings)
     if not on_cams and all(joint.path is None for joint in mechanism.joints):
         return []
-    return ways_left(mechanism, ended.t, ended.progress.last * 2.0**-FARTHEST, ended.coordinates)
+    return find_left_paths(
+        mechanism, run_failure.t, run_failure.progress.last * 2.0**-FARTHEST, run_failure.coordinates
+    )
 
 
-def loads_ended(ended: Ended) -> list[Problem]:
-    """The problems of loads that lose their values there while couplings are held: their rows cannot answer them."""
-    if not ended.mechanism.couplings:
+def find_lost_loads(run_failure: RunFailure) -> list[Problem]:
+    """Return the problems of loads without a value there while couplings are held, whose rows then have no solution."""
+    if not run_failure.mechanism.couplings:
         return []
-    return without_value(ended.mechanism, ended.t, ended.progress.last, ended.coordinates)
+    return find_without_value(run_failure.mechanism, run_failure.t, run_failure.progress.last, run_failure.coordinates)
 
 
-def without_acceleration(ended: Ended, name: str, message: str, hint: str) -> SolveError:
-    """An expression without a value there, else one that grows without bound, else what the kernel's code means."""
-    progress, t, scene, mechanism = ended.progress, ended.t, ended.scene, ended.mechanism
-    problems = without_value(mechanism, t, progress.last, ended.coordinates)
-    if not problems and mechanism.rubbing:
-        problems = jammed_beyond(mechanism, progress.moving.workspace, t)
-    problems = problems or turned_bushings(ended)
-    problems = problems or growing(scene, t, progress.state, progress.passed)
+def no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint: str) -> SolveError:
+    """Return the error of an expression without a value there, else of one that grows without bound, else that of the
+    code.
+    """
+    progress, t, scene, mechanism = run_failure.progress, run_failure.t, run_failure.scene, run_failure.mechanism
+    problems = find_without_value(mechanism, t, progress.last, run_failure.coordinates)
+    if not problems and mechanism.joint_friction:
+        problems = find_jammed_after(mechanism, progress.integrated_scene.workspace, t)
+    problems = problems or find_turned_bushings(run_failure)
+    problems = problems or find_growing(scene, t, progress.state, progress.passed_states)
     if problems:
         return SolveError(*problems)
-    hint = "; ".join(filter(None, [hint, largest_load(mechanism, ended.recovered)]))
-    hangs = scene.layout.spanning.hangs
-    light = sorted({f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["lents"]["body"]})
-    if light and name == "step-collapsed":
-        hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(light)}"
+    hint = "; ".join(filter(None, [hint, describe_largest_load(mechanism, run_failure.evaluation)]))
+    hangs = scene.layout.spanning.links
+    massless_bodies = sorted(
+        {f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["lents"]["body"]}
+    )
+    if massless_bodies and name == "step-collapsed":
+        hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(massless_bodies)}"
     return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
 
-def turned_bushings(ended: Ended) -> list[Problem]:
-    """Those by which a run ends, of whatever it is that fails there: by their moment, which jumps."""
-    if not any(isinstance(load, BushingLoad) for load in ended.mechanism.loads):
+def find_turned_bushings(run_failure: RunFailure) -> list[Problem]:
+    """Return the bushings that end the run by the jump of their moment, whatever fails there."""
+    if not any(isinstance(load, BushingLoad) for load in run_failure.mechanism.loads):
         return []
-    from heuncli.motion.integration.diagnosis.turned_bushings import at_half_turn
+    from heuncli.motion.integration.diagnosis.turned_bushings import find_half_turned
 
-    return at_half_turn(ended.mechanism, ended.recovered, 0)
+    return find_half_turned(run_failure.mechanism, run_failure.evaluation, 0)
 
 
-def chattering(t: float, expression: Expression, branch: int) -> Problem:
-    """The problem of a branch that turns back as soon as it turned: the motion would have to stay between."""
+def chattering_problem(t: float, expression: Expression, branch: int) -> Problem:
+    """Make the problem of a branch that changes back as soon as it changed: the motion would have to stay in
+    between.
+    """
     message = (
-        f"at t = {t:.9g} s '{expression.held[branch]}' in '{expression.source.strip()}' chatters: "
+        f"at t = {t:.9g} s '{expression.held_branches[branch]}' in '{expression.source.strip()}' chatters: "
         "it changes back as soon as it has changed, for on either side the motion is driven to the other"
     )
     hint = "what sticks needs a smooth law: tanh(rate/0.001) in place of sign(rate), or a force of type friction"

@@ -1,4 +1,4 @@
-"""The kernel's stepping loop with the arrays that it writes to, and the codes by which it ends."""
+"""The kernel's stepping loop with the arrays that it writes to, and the codes with which it ends."""
 
 from __future__ import annotations
 
@@ -21,25 +21,27 @@ REACHED, MORE, ROPE_SLACK, CHATTERING, STRUCK, LET_GO, TURNED, STIFF, HALF_TURN 
     kernel.CODES[name]
     for name in ["reached", "more", "rope slack", "chattering", "struck", "let go", "turned", "stiff", "half turn"]
 )
-GOES_ON = (MORE, STRUCK, LET_GO, TURNED, STIFF)
+CONTINUE_CODES = (MORE, STRUCK, LET_GO, TURNED, STIFF)
 UNSOLVED = kernel.CODES["unsolved"]
-STIFF_AFTER = 15  # steps held short by stability, as in Hairer's DOP853 ...
-EASY_AFTER = 6  # ... and steps on end that were not, after which their count begins anew
-LOOK_AFTER = 1_000  # steps; then each time that they have doubled
-UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
-# What is put down of each step: its end [s], whether its stages were settled on the closures, the least pivot of these,
-# whether branches turned at its end.
+STIFF_AFTER = 15  # steps limited by stability, as in Hairer's DOP853 ...
+EASY_AFTER = 6  # ... and consecutive others, after which their count restarts
+FIRST_LOOK = 1_000  # steps; then each time that they have doubled
+NO_STIFFNESS_WATCH = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
+# Recorded for each step: its end [s], whether its stages were projected onto the closures, their smallest pivot,
+# whether branches changed at its end.
 PER_STEP = ("ends", "settled", "pivots", "turned")
-SPAN = 3  # numbers beside a polynomial: whether it was left, begin and length of its step [s]
+SPAN_WIDTH = 3  # numbers per polynomial: whether it is stored, begin and length of its step [s]
 
 
 @record
-class Start:
-    """What a run sets out from, and what its steps are judged by.
+class LoopStart:
+    """The start of a run, and the scales of its error test.
 
-    local: the tolerance of a step, or of a method of given steps their length; rate [1/s]: slower ones are judged as if
-    that fast. following: its steps are given by their ends, and none is judged; late: events are met late by rounding,
-    to see what that makes of the run; watched: it is noticed where stability holds its steps short.
+    local: tolerance of a step, or the step of a method of fixed step
+    rate [1/s]: slower rates are judged as if they were this fast
+    is_replay: the ends of its steps are given, and no error is tested
+    late: events are reached late by rounding, to see its effect on the run
+    watch_stiffness: notice where stability limits the steps
     """
 
     state: Array
@@ -51,94 +53,100 @@ class Start:
 
 
 class KernelLoop:
-    """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
+    """The kernel's loop over the requested instants, at most `max_steps` at a time, with the arrays it writes to."""
 
     def __init__(
-        self, layout: Layout, workspace: Workspace, method: Method, times: Array, most: int, start: Start,
-        *, keeping: bool = False,
+        self, layout: Layout, workspace: Workspace, method: Method, times: Array, max_steps: int, start: LoopStart,
+        *, stores_polynomials: bool = False,
     ) -> None:  # fmt: skip
-        """keeping: the polynomials of steps that make one are put down."""
-        if method.foreign:
+        """stores_polynomials: store the polynomials of steps that make one"""
+        if method.scipy_name:
             raise ValueError(f"the kernel has no stages of {method.name}")
         n = self.n = layout.n_state
         self.method, self.start = method, start
-        self.width = integration.record_width(workspace, n)
-        self.most, self.per_step = most, np.zeros((len(PER_STEP), most))
-        self.held = layout.pack.held
-        self.branches = np.zeros(most * self.held)
-        self.passed = np.empty(0 if start.following else most * self.width)
+        self.record_width = integration.record_width(workspace, n)
+        self.max_steps, self.per_step = max_steps, np.zeros((len(PER_STEP), max_steps))
+        self.branch_count = layout.pack.branch_count
+        self.branches = np.zeros(max_steps * self.branch_count)
+        self.record_buffer = np.empty(0 if start.is_replay else max_steps * self.record_width)
         self.count = len(times)
         self.samples = np.zeros(self.count * n)
-        self.keeping = keeping
-        self.spans = np.empty(SPAN * most if keeping else 0)
-        self.courses = np.empty((4 + method.arrays["dense_rows"]) * n * most if keeping else 0)
+        self.stores_polynomials = stores_polynomials
+        self.spans = np.empty(SPAN_WIDTH * max_steps if stores_polynomials else 0)
+        self.polynomials = np.empty((4 + method.arrays["dense_rows"]) * n * max_steps if stores_polynomials else 0)
         output = {
-            "times": flat(times), "samples": self.samples, "passed": self.passed, "branches": self.branches,
-            "spans": self.spans, "courses": self.courses,
+            "times": to_double_array(times), "samples": self.samples, "passed": self.record_buffer, "branches": self.branches,
+            "spans": self.spans, "courses": self.polynomials,
         }  # fmt: skip
         output.update(zip(PER_STEP, self.per_step, strict=True))
-        self.loop = integration.Integration(workspace, method.arrays, begin_with(start, method, layout), output)
+        self.loop = integration.Integration(workspace, method.arrays, loop_input(start, method, layout), output)
 
-    def put_down(self) -> Array:
-        """What PER_STEP names of the steps just done, (count, 4); a view."""
-        return self.per_step[:, : self.loop.done].T
+    def read_steps(self) -> Array:
+        """Return the PER_STEP values of the last steps, (count, 4); a view."""
+        return self.per_step[:, : self.loop.last_step_count].T
 
-    def records(self, every: int, offset: int) -> Array:
-        """What the steps after those just done start from: of every so many, (count, width); a view."""
-        done = self.loop.done
-        return self.passed[: done * self.width].reshape(done, self.width)[offset::every]
+    def read_records(self, every: int, offset: int) -> Array:
+        """Return the start records of the steps after the last ones, every so many, (count, width); a view."""
+        done = self.loop.last_step_count
+        return self.record_buffer[: done * self.record_width].reshape(done, self.record_width)[offset::every]
 
-    def keep_no_more(self) -> None:
-        """Put down no polynomials any more."""
-        self.keeping = False
-        self.loop.keep_no_more()
+    def stop_storing_polynomials(self) -> None:
+        """Stop storing polynomials."""
+        self.stores_polynomials = False
+        self.loop.stop_recording()
 
-    def put_down_courses(self) -> tuple[Array, Array]:
-        """What the steps just done left of their polynomials, (count, .) each: where they hold, and their numbers."""
-        done = self.loop.done
-        return self.spans.reshape(self.most, -1)[:done], self.courses.reshape(self.most, -1)[:done]
+    def read_polynomials(self) -> tuple[Array, Array]:
+        """Return the polynomials of the last steps, (count, .) each: where they hold, and their numbers."""
+        done = self.loop.last_step_count
+        return self.spans.reshape(self.max_steps, -1)[:done], self.polynomials.reshape(self.max_steps, -1)[:done]
 
-    def held_branches(self) -> Array:
-        """The branches that the steps just done held, (count, n); a view."""
-        return self.branches[: self.loop.done * self.held].reshape(-1, self.held)
+    def read_branches(self) -> Array:
+        """Return the branches that the last steps held, (count, n); a view."""
+        return self.branches[: self.loop.last_step_count * self.branch_count].reshape(-1, self.branch_count)
 
-    def states(self) -> Array:
-        """The states at the asked instants, (n_t, n)."""
+    def read_states(self) -> Array:
+        """Return the states at the requested instants, (n_t, n)."""
         self.loop.fetch()
         return self.samples.reshape(self.count, self.n)
 
 
-def flat(numbers: Array) -> array[float]:
-    """Numbers one after the other, as the kernel's loop copies them fastest."""
+def to_double_array(numbers: Array) -> array[float]:
+    """Copy numbers into one array, as the kernel's loop reads them fastest."""
     return array("d", np.asarray(numbers, dtype=float).tobytes())
 
 
-def begin_with(start: Start, method: Method, layout: Layout) -> dict[str, Any]:
-    """A start as the kernel's loop takes it (kernel/integration.py): its tolerance, or the step in its place."""
+def loop_input(start: LoopStart, method: Method, layout: Layout) -> dict[str, Any]:
+    """Return a start as input of the kernel's loop (kernel/integration.py): its tolerance, or the fixed step
+    instead.
+    """
     return {
         "groups": layout.tables["groups"],
         "energy_group": layout.energy_group,
-        "weights": flat(layout.weights),
-        "state": flat(start.state),
-        "tolerance": 1.0 if method.fixed else start.local,
-        "step": start.local if method.fixed else 0.0,
+        "weights": to_double_array(layout.weights),
+        "state": to_double_array(start.state),
+        "tolerance": 1.0 if method.has_fixed_step else start.local,
+        "step": start.local if method.has_fixed_step else 0.0,
         "rate": start.rate,
-        "following": int(start.following),
+        "following": int(start.is_replay),
         "late": int(start.late),
-        **(stiffness_of(method, layout) if start.watched else UNWATCHED),
+        **(stiffness_limits(method, layout) if start.watch_stiffness else NO_STIFFNESS_WATCH),
     }
 
 
-def stiffness_of(method: Method, layout: Layout) -> dict[str, float]:
-    """By what the kernel's loop notices stiffness (kernel/stiffness.py); an implicit method is not held by it."""
+def stiffness_limits(method: Method, layout: Layout) -> dict[str, float]:
+    """Return the limits by which the kernel's loop notices stiffness (kernel/stiffness.py); none for implicit
+    methods.
+    """
     if method.stable == 0.0:
-        return UNWATCHED
-    look = LOOK_AFTER if any(depends(load) for load in layout.mechanism.loads) else 0
+        return NO_STIFFNESS_WATCH
+    first_look = FIRST_LOOK if any(depends_on_state(load) for load in layout.mechanism.loads) else 0
     stable = tolerances.STIFF * method.stable
-    return {"stiff_after": STIFF_AFTER, "easy_after": EASY_AFTER, "look_after": look, "stable": stable}
+    return {"stiff_after": STIFF_AFTER, "easy_after": EASY_AFTER, "look_after": first_look, "stable": stable}
 
 
-def depends(load: Load) -> bool:
-    """Whether a load depends on where bodies are, or how fast: a spring, damper, friction, or by its expression."""
-    resists = isinstance(load, BushingLoad | ThreadLoad) or (isinstance(load, JointLoad) and load.kind == "friction")
-    return resists or not load.values or any(value.uses for value in load.values)
+def depends_on_state(load: Load) -> bool:
+    """Return whether a load depends on positions or velocities: a spring, damper, friction, or by its expression."""
+    is_resistance = isinstance(load, BushingLoad | ThreadLoad) or (
+        isinstance(load, JointLoad) and load.kind == "friction"
+    )
+    return is_resistance or not load.values or any(value.uses for value in load.values)

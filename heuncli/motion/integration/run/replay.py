@@ -1,9 +1,8 @@
-"""States of a run at other instants: by what its steps left of themselves, else they are done once more.
+"""Return states of a run at other instants, from the stored polynomials of its steps, or by repeating steps.
 
-Steps are done again from records that were kept of some of them.
-
-To the last bit what the run would have given, had these instants been among those it was asked for; and what it gave,
-where they were. It takes no other steps than the run, so it costs at most as much and succeeds wherever the run did.
+Steps are repeated from records that are stored for some of them. The states agree to the last bit with those that the
+run would have given at these instants; also where these are its own. A replay takes the same steps as the run, so it
+costs at most as much and succeeds wherever the run did.
 """
 
 from __future__ import annotations
@@ -14,99 +13,110 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
 from heuncli.motion.integration.integrated_scene import IntegratedScene
-from heuncli.motion.integration.run.errors import TROUBLE
-from heuncli.motion.integration.run.kernel_loop import KernelLoop, Start
+from heuncli.motion.integration.run.errors import KERNEL_ERRORS
+from heuncli.motion.integration.run.kernel_loop import KernelLoop, LoopStart
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array, Indices, Mask
 
 
-def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
-    """The scene's states (n_t, n) at instants of a run, ascending, within it."""
+def resample_run(integrated_scene: IntegratedScene, run: Trajectory, times: Array) -> Array:
+    """Return the scene's states (n_t, n) at instants of a run, ascending, within it."""
     times = np.ascontiguousarray(times, dtype=float)
-    if run.within is not None:
-        return run.within(times)
+    if run.interpolate is not None:
+        return run.interpolate(times)
     out = np.empty((len(times), run.states.shape[1]))
-    own = np.minimum(run.times.searchsorted(times), len(run.times) - 1)
-    known = asked = run.times[own] == times
-    for blow in run.blows:  # its own instant shows the state behind it
-        struck = times == blow.time
-        out[struck], known = blow.after, known | struck
-    out[asked] = run.states[own[asked]]
-    others = (~known).nonzero()[0]
-    step = run.ends.searchsorted(times[others])  # the step in which an instant lies
-    told, states = by_its_steps(moving, run, times[others], step)
+    sample_index = np.minimum(run.times.searchsorted(times), len(run.times) - 1)
+    is_known = is_requested = run.times[sample_index] == times
+    for event in run.impulse_events:  # at its own instant, the state after it counts
+        is_at_event = times == event.time
+        out[is_at_event], is_known = event.after_state, is_known | is_at_event
+    out[is_requested] = run.states[sample_index[is_requested]]
+    unknown = (~is_known).nonzero()[0]
+    step = run.ends.searchsorted(times[unknown])  # the step in which an instant lies
+    is_interpolated, states = interpolate_stored(integrated_scene, run, times[unknown], step)
     if len(states):
-        out[others[told]] = moving.embed(times[others[told]], states)
-        others, step = others[~told], step[~told]
-    if not len(others):
+        out[unknown[is_interpolated]] = integrated_scene.embed(times[unknown[is_interpolated]], states)
+        unknown, step = unknown[~is_interpolated], step[~is_interpolated]
+    if not len(unknown):
         return out
-    base = np.searchsorted(run.kept.steps, step, side="right") - 1
+    base = np.searchsorted(run.records.steps, step, side="right") - 1
     # consecutive steps are replayed together
     breaks = np.flatnonzero((np.diff(step) > 1) & (np.diff(base) > 0)) + 1
-    for group in np.split(np.arange(len(others)), breaks):
+    for group in np.split(np.arange(len(unknown)), breaks):
         if len(group):
-            to = others[group]
-            states = replayed(moving, run, int(base[group[0]]), int(step[group[-1]]), times[to])
-            out[to] = moving.embed(times[to], states)
+            instants = unknown[group]
+            states = replay_steps(integrated_scene, run, int(base[group[0]]), int(step[group[-1]]), times[instants])
+            out[instants] = integrated_scene.embed(times[instants], states)
     return out
 
 
-def by_its_steps(moving: IntegratedScene, run: Trajectory, times: Array, step: Indices) -> tuple[Mask, Array]:
-    """At which instants, in these steps, the states of what is integrated follow from what was kept, and these.
+def interpolate_stored(
+    integrated_scene: IntegratedScene, run: Trajectory, times: Array, step: Indices
+) -> tuple[Mask, Array]:
+    """Return at which instants, within these steps, the integrated states follow from stored data, and the states
+    there.
 
-    They do within steps whose polynomials were kept, and at the ends of steps behind which the next one's start was.
+    These are instants in steps with a stored polynomial, and ends of steps where the next one's start is stored.
     """
-    n = moving.layout.n_state
+    n = integrated_scene.layout.n_state
     states = np.empty((len(times), n))
-    told = np.zeros(len(times), dtype=bool)
+    is_interpolated = np.zeros(len(times), dtype=bool)
     if not len(times) or not len(run.ends):
-        return told, states
-    if run.courses is not None:
-        told = run.courses.known(times, step, run.ends)
-        if told.all():
-            return told, run.courses.states(times, step, n)
-        states[told] = run.courses.states(times[told], step[told], n)
+        return is_interpolated, states
+    if run.polynomials is not None:
+        is_interpolated = run.polynomials.has_polynomial(times, step, run.ends)
+        if is_interpolated.all():
+            return is_interpolated, run.polynomials.interpolate_states(times, step, n)
+        states[is_interpolated] = run.polynomials.interpolate_states(times[is_interpolated], step[is_interpolated], n)
     at_end = times == run.ends[step]
     if at_end.any():
-        next_ = np.minimum(run.kept.steps.searchsorted(step + 1), len(run.kept) - 1)
-        at_end &= run.kept.steps[next_] == step + 1
-        if run.after_blows:  # whose records are of the states behind the blows
-            at_end &= ~np.isin(step + 1, list(run.after_blows))
-        states[at_end] = run.kept.records[next_[at_end], :n]
-        told = told | at_end
-    return told, states[told]
+        next_record = np.minimum(run.records.steps.searchsorted(step + 1), len(run.records) - 1)
+        at_end &= run.records.steps[next_record] == step + 1
+        if run.records_after_impulses:  # whose records hold the states after the impulses
+            at_end &= ~np.isin(step + 1, list(run.records_after_impulses))
+        states[at_end] = run.records.records[next_record[at_end], :n]
+        is_interpolated = is_interpolated | at_end
+    return is_interpolated, states[is_interpolated]
 
 
-def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:
-    """States (n_t, n') of what is integrated at instants within the steps from a kept record on to step `last`.
+def replay_steps(integrated_scene: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:
+    """Return integrated states (n_t, n') at instants within the steps from a stored record on to step `last`.
 
-    record: its place in `run.kept`. The run takes over the polynomials that the steps make.
-    Raises SolveError where a step cannot be done again, as an implicit one.
+    record: its index in `run.records`. The run stores the polynomials that the steps make. Raises SolveError where a
+    step cannot be repeated, such as an implicit one.
     """
-    first, state = int(run.kept.steps[record]), run.kept.records[record]
-    given = Start(moving.layout.y0, math.inf, following=True)
-    count, keeping = last - first + 1, run.courses is not None
-    kernel = KernelLoop(moving.layout, moving.workspace, run.method, times, count, given, keeping=keeping)
-    loop, after = kernel.loop, run.after_blows
-    loop.stand(state)
+    first, state = int(run.records.steps[record]), run.records.records[record]
+    loop_start = LoopStart(integrated_scene.layout.y0, math.inf, is_replay=True)
+    count, keeping = last - first + 1, run.polynomials is not None
+    kernel = KernelLoop(
+        integrated_scene.layout,
+        integrated_scene.workspace,
+        run.method,
+        times,
+        count,
+        loop_start,
+        stores_polynomials=keeping,
+    )
+    loop, records_after = kernel.loop, run.records_after_impulses
+    loop.restore(state)
     t = float(run.ends[first - 1]) if first else 0.0
     while first <= last:
-        begin, before_end, end = run.segments.at(t)
-        to = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
-        steps = slice(first, to + 1)
-        loop.follow(run.ends[steps], run.settled[steps], run.branches[steps])
-        if first in after:
-            loop.stand(after[first])
-        moving.workspace.hold(run.holding[first])
+        begin, before_end, end = run.segments.find_segment(t)
+        last_in_segment = min(last, int(np.searchsorted(run.ends, end)))  # a segment ends with a step
+        steps = slice(first, last_in_segment + 1)
+        loop.set_followed_steps(run.ends[steps], run.is_projected[steps], run.branches[steps])
+        if first in records_after:
+            loop.restore(records_after[first])
+        integrated_scene.workspace.hold(run.holding[first])
         if t <= begin:
             loop.begin(begin, before_end, end)
         else:
             loop.resume(t, before_end, end)
-        if (left_for := loop.advance(to + 1 - first, False, False)) in TROUBLE:
-            code, message, hint = TROUBLE[left_for]
+        if (end_code := loop.advance(last_in_segment + 1 - first, False, False)) in KERNEL_ERRORS:
+            code, message, hint = KERNEL_ERRORS[end_code]
             raise SolveError(Problem(code, f"at t = {loop.t:.9g} s: {message}", hint=hint))
-        if run.courses is not None:
-            run.courses.take(first, *kernel.put_down_courses())
+        if run.polynomials is not None:
+            run.polynomials.store(first, *kernel.read_polynomials())
         t = loop.t
-        first = to + 1
-    return kernel.states()
+        first = last_in_segment + 1
+    return kernel.read_states()

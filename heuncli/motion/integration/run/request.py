@@ -1,4 +1,4 @@
-"""What a run is asked for, and for what it may be left before its end."""
+"""The request for a run, and the reasons to stop it before its end."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ from heuncli.results.results import Array
 
 @record
 class MotionTask:
-    """A run from t = 0 over the asked instants.
+    """A run from t = 0 over the requested instants.
 
-    times (n_t,) ascending [s]: it ends with the last of them; local: the tolerance of a step, or of a method of given
-    steps their length [s]; discontinuities: instants [s] at which a load or drive in time is not smooth; start (n,): a
-    state of the scene beside its own, to see what rounding makes of a run: events are then late by rounding, too;
-    deadline: by time.monotonic(); most_steps: after which it is given up; keeping: it will be asked for other
-    instants, and keeps what its steps know of these.
+    times (n_t,): ascending [s]; the run ends with the last of them
+    local: tolerance of a step, or the step of a method of fixed step [s]
+    discontinuities: instants at which a load or drive in time is not smooth [s]
+    start (n,): a perturbed state of the scene, to see the effect of rounding; events are then late by rounding, too
+    deadline: by time.monotonic()
+    most_steps: number of steps after which it is stopped
+    stores_polynomials: it will be asked for other instants, so store the polynomials of its steps
     """
 
     times: Sequence[float] | Array
@@ -36,7 +38,7 @@ class MotionTask:
 
     @cached_property
     def instants(self) -> Array:
-        """The asked instants, (n_t,)."""
+        """The requested instants, (n_t,)."""
         return np.ascontiguousarray(self.times, dtype=float)
 
     @property
@@ -47,10 +49,11 @@ class MotionTask:
 
 @record
 class StoppingRules:
-    """What a run may be left for before its last instant.
+    """The reasons to stop a run before its last instant.
 
-    ending: the condition that ends it became true; stiffness: an implicit method takes less (run/stiffness.py);
-    events: they end most of its steps, or those of a method for such no more (run/event_frequency.py).
+    ending: the condition that ends it became true
+    stiffness: an implicit method takes less work (run/stiffness.py)
+    events: they end most of its steps or, with a method for this case, no longer do (run/event_frequency.py)
     """
 
     ending: bool = True
@@ -58,4 +61,4 @@ class StoppingRules:
     events: bool = False
 
 
-FOR_ITS_ENDING = StoppingRules()
+DEFAULT_RULES = StoppingRules()

@@ -1,37 +1,46 @@
-"""A run that will take long says so, once, while it goes on: how long, and which body keeps its steps short."""
+"""Announce once, while it runs, that a run will take long: how long, and which body keeps its steps short."""
 
 from __future__ import annotations
 
 import time
 
-from heuncli.base.announcements import listener
-from heuncli.motion.integration.run.pace import seconds_left
-from heuncli.motion.integration.run.progress import Progress
+from heuncli.base.announcements import current_listener
+from heuncli.motion.integration.run.pace import estimate_seconds_left
+from heuncli.motion.integration.run.progress import RunProgress
 
-PATIENCE = 4.0  # [s] of work before the pace is looked at
-LONG = 20.0  # [s] that are left at this pace: shorter runs are waited for without a word
+PATIENCE = 4.0  # [s] of work before the first check
+LONG_RUN = 20.0  # [s] remaining at this pace, above which the run is announced
 
 
 class SlowRunWatch:
-    """Whether a run is slow; begun: time.monotonic() at its start. It is looked at again when it took twice as long."""
+    """Watches whether a run is slow. The next look is when it has taken twice as long.
 
-    def __init__(self, begun: float) -> None:
-        self.begun, self.next, self.is_told = begun, PATIENCE, False
+    start_time: time.monotonic() at the start
+    """
 
-    def look(self, progress: Progress) -> None:
+    def __init__(self, start_time: float) -> None:
+        self.start_time, self.next, self.is_reported = start_time, PATIENCE, False
+
+    def check(self, progress: RunProgress) -> None:
         """Announce a run that will take long at the pace of its last steps."""
-        if self.is_told or (took := time.monotonic() - self.begun) < self.next or (write := listener()) is None:
+        if (
+            self.is_reported
+            or (seconds := time.monotonic() - self.start_time) < self.next
+            or (report := current_listener()) is None
+        ):
             return
-        self.next = 2.0 * took
-        left = seconds_left(progress.steps.column("ends"), progress.last, took)
-        if not left > LONG:
+        self.next = 2.0 * seconds
+        remaining = estimate_seconds_left(progress.steps.copy_column("ends"), progress.last, seconds)
+        if not remaining > LONG_RUN:
             return
-        self.is_told = True
-        from heuncli.motion.integration.diagnosis.fast_body import why_steps_are_short  # few runs are slow
+        self.is_reported = True
+        from heuncli.motion.integration.diagnosis.fast_body import explain_short_steps  # few runs are slow
 
-        done = f"t = {progress.t:.3g} s of {progress.last:.6g} s after {took:.0f} s and {progress.steps.count} steps"
-        write("; ".join(filter(None, (
-            f"a long run: {done}, about {left:.1g} s more at this pace",
-            why_steps_are_short(progress.scene, progress.t, progress.state, *progress.pace),
+        done_text = (
+            f"t = {progress.t:.3g} s of {progress.last:.6g} s after {seconds:.0f} s and {progress.steps.count} steps"
+        )
+        report("; ".join(filter(None, (
+            f"a long run: {done_text}, about {remaining:.1g} s more at this pace",
+            explain_short_steps(progress.scene, progress.t, progress.state, *progress.pace),
             "--time-limit ends it",
         ))))  # fmt: skip

@@ -1,9 +1,9 @@
 """A run from its start to its end: the kernel's steps through one smooth segment of time after the other.
 
 Between two segments, and where contacts close or open within one, the motion is interrupted (run/interruptions.py) and
-goes on from the state behind. After each call of the kernel, of `chunk_of` (run/limits.py) steps at most, is looked at:
-whether the condition that ends the run became true, the limits, whether events end most steps, whether the motion is
-stiff.
+continues from the state after it. After each call of the kernel, which takes at most `find_chunk_size` (run/limits.py)
+steps, these are checked: whether the condition that ends the run became true, the limits, whether events end most
+steps, whether the motion is stiff.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.motion.integration.run.interruptions import Interruptions
 from heuncli.motion.integration.run.kernel_loop import (
     CHATTERING,
-    GOES_ON,
+    CONTINUE_CODES,
     LET_GO,
     MORE,
     REACHED,
@@ -29,14 +29,14 @@ from heuncli.motion.integration.run.kernel_loop import (
     STRUCK,
     TURNED,
     KernelLoop,
-    Start,
+    LoopStart,
 )
-from heuncli.motion.integration.run.limits import chunk_of, require_progress, require_time
-from heuncli.motion.integration.run.progress import Progress
+from heuncli.motion.integration.run.limits import find_chunk_size, require_progress, require_time
+from heuncli.motion.integration.run.progress import RunProgress
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
 from heuncli.motion.integration.run.slow_runs import SlowRunWatch
-from heuncli.motion.integration.run.step_records import GrowingRows, Steps
-from heuncli.motion.integration.segments import Segment, Segments, just_before, smooth_segments
+from heuncli.motion.integration.run.step_records import GrowingRows, StepRecorder
+from heuncli.motion.integration.segments import Segment, Segments, just_before, make_segments
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
@@ -45,204 +45,227 @@ if TYPE_CHECKING:  # loaded where they are watched
     from heuncli.motion.integration.run.ending import EndingCondition
     from heuncli.motion.integration.run.event_frequency import EventWatch
     from heuncli.motion.integration.run.stiffness import StiffnessWatch
-    from heuncli.motion.integration.run.triggers import Due, Triggers
+    from heuncli.motion.integration.run.triggers import DueTriggers, Triggers
 
 
-class Ending(NamedTuple):
-    """Where a run ends before its last instant: the last one that is told [s].
+class EarlyEnd(NamedTuple):
+    """Where a run ends before its last instant.
 
-    rope: the one that would have to push just behind it; None: the condition that ends the run became true.
+    last_time: the last reported instant [s]
+    rope: the rope that would have to push just after it; None if the condition that ends the run became true
     """
 
     told: float
     rope: str | None = None
 
 
-def begun(scene: Evaluator, moving: IntegratedScene, request: MotionTask, rules: StoppingRules) -> Progress:
-    """A run at its start. Raises LimitError where its method would have to solve too many equations."""
+def begin_run(
+    scene: Evaluator, integrated_scene: IntegratedScene, request: MotionTask, rules: StoppingRules
+) -> RunProgress:
+    """Return a run at its start. Raises LimitError if its method would have to solve too many equations."""
     last, start = request.last, request.start
     # at rest under a load like t**4 all rates and accelerations vanish at first: this rate then sets the scale
     rate = tolerances.LEAST_RATE / last if last > 0.0 else 0.0
-    state = moving.restrict(0.0, scene.layout.y0 if start is None else start)
-    begin = Start(state, request.local, rate, late=start is not None, watched=rules.stiffness)
-    most = chunk_of(moving.layout, request.method)
-    times, keeping = request.instants, request.keeping
-    kernel = KernelLoop(moving.layout, moving.workspace, request.method, times, most, begin, keeping=keeping)
-    return Progress(scene, moving, kernel, Steps(state, kernel.width), last)
+    state = integrated_scene.restrict(0.0, scene.layout.y0 if start is None else start)
+    loop_start = LoopStart(state, request.local, rate, late=start is not None, watch_stiffness=rules.stiffness)
+    max_steps = find_chunk_size(integrated_scene.layout, request.method)
+    times, stores_polynomials = request.instants, request.stores_polynomials
+    kernel = KernelLoop(
+        integrated_scene.layout,
+        integrated_scene.workspace,
+        request.method,
+        times,
+        max_steps,
+        loop_start,
+        stores_polynomials=stores_polynomials,
+    )
+    return RunProgress(scene, integrated_scene, kernel, StepRecorder(state, kernel.record_width), last)
 
 
 class Stepper:
-    """A run under way, with what interrupts it and what is looked at on its way. Changes with every step.
+    """A running integration with its interruptions and checks. Changes with every step.
 
-    pieces: the segments, cut where contacts close or open; rows as those of Segments.
+    pieces: the segments, cut where contacts close or open; rows as those of Segments
     """
 
-    def __init__(self, progress: Progress, request: MotionTask, rules: StoppingRules) -> None:
+    def __init__(self, progress: RunProgress, request: MotionTask, rules: StoppingRules) -> None:
         self.progress, self.request = progress, request
         self.interruptions = Interruptions(progress)
-        self.segments = smooth_segments(progress.last, request.discontinuities)
+        self.segments = make_segments(progress.last, request.discontinuities)
         self.pieces = GrowingRows(3)
-        self.until = until_of(progress.moving.layout) if rules.ending else None
-        self.triggers = triggers_of(progress.moving.layout, progress.last)
-        self.fresh = False  # whether a piece is to begin
-        self.events = event_watch(progress, self.segments) if rules.events else None
+        self.ending_condition = make_ending_condition(progress.integrated_scene.layout) if rules.ending else None
+        self.triggers = make_triggers(progress.integrated_scene.layout, progress.last)
+        self.begins_piece = False  # whether a piece has just begun
+        self.events = make_event_watch(progress, self.segments) if rules.events else None
         self.stiffness: StiffnessWatch | None = None
-        self.begun = time.monotonic()
-        self.slow = SlowRunWatch(self.begun)
+        self.start_time = time.monotonic()
+        self.slow_watch = SlowRunWatch(self.start_time)
 
-    def to_end(self) -> Ending | None:
-        """One segment after the other; where the run ends before its last instant, if it does.
+    def run_to_end(self) -> EarlyEnd | None:
+        """Take one segment after the other; return where the run ends before its last instant, if it does.
 
-        Where a rope is slack by a jump or a blow, what held before it is told.
+        Where a jump or an impulse makes a rope slack, the result ends just before it.
 
-        Raises SolveError where the motion cannot be continued, LimitError past a limit, Stiff and Eventful where
-        another method takes less.
+        Raises SolveError where the motion cannot be continued, LimitError past a limit, StiffRun and EventfulRun where
+        another method takes less work.
         """
-        reached = 0.0
+        reached_time = 0.0
         for segment in self.segments:
             if segment.begin > 0.0:
-                self.leave()
-            rope = self.interruptions.until(segment.begin, reached)
+                self.end_piece()
+            rope = self.interruptions.apply_until(segment.begin, reached_time)
             if rope is not None:
-                return Ending(just_before(reached), rope)
-            self.interruptions.settle(segment.begin)
-            ending = self.through(segment)
+                return EarlyEnd(just_before(reached_time), rope)
+            self.interruptions.handle_contacts(segment.begin)
+            ending = self.run_segment(segment)
             if ending is not None:
                 return ending
-            reached = segment.end
-        rope = self.interruptions.until(self.progress.last, reached)
-        return None if rope is None else Ending(just_before(reached), rope)
+            reached_time = segment.end
+        rope = self.interruptions.apply_until(self.progress.last, reached_time)
+        return None if rope is None else EarlyEnd(just_before(reached_time), rope)
 
-    def through(self, segment: Segment) -> Ending | None:
-        """Steps to the end of a segment, from one event of contacts to the next."""
+    def run_segment(self, segment: Segment) -> EarlyEnd | None:
+        """Take the steps to the end of a segment, from one contact event to the next."""
         code, begin = MORE, segment.begin
-        self.begin(segment)
-        while code in GOES_ON:
+        self.begin_piece(segment)
+        while code in CONTINUE_CODES:
             code = self.advance()
             if code == TURNED:
-                ends, due = self.ends_here(), self.due()
-                if due is not None:
-                    begin, rope = self.strike(begin, segment, due)
+                run_ends, due_triggers = self.has_ended(), self.find_due()
+                if due_triggers is not None:
+                    begin, rope = self.apply_due(begin, segment, due_triggers)
                     if rope is not None:
-                        return Ending(just_before(begin), rope)
-                if ends:
-                    if due is not None:
-                        self.advance()  # to the branches behind the blow; no step is taken
+                        return EarlyEnd(just_before(begin), rope)
+                if run_ends:
+                    if due_triggers is not None:
+                        self.advance()  # updates the branches after the impulse; takes no step
                     break
-            self.look(code, segment)
+            self.check_run(code, segment)
             if code in (STRUCK, LET_GO):
-                begin = self.meet_contact(begin, segment)
+                begin = self.handle_contact(begin, segment)
         self.pieces.add(np.array([[begin, segment.before_end, segment.end]]))
-        return None if code == REACHED else self.ended(code, begin)
+        return None if code == REACHED else self.find_early_end(code, begin)
 
     def advance(self) -> int:
-        """Some steps of the kernel, put down; the code with which it stopped."""
-        kernel, few = self.progress.kernel, self.progress.kernel.most
+        """Take some steps of the kernel and record them; return the code with which it stopped."""
+        kernel, max_steps = self.progress.kernel, self.progress.kernel.max_steps
         if self.events is not None:
-            few = min(few, self.events.due_in())
-        code = kernel.loop.advance(few, True, self.until is not None or self.triggers is not None)
+            max_steps = min(max_steps, self.events.steps_until_look())
+        code = kernel.loop.advance(max_steps, True, self.ending_condition is not None or self.triggers is not None)
         self.progress.steps.add(kernel)
-        if self.triggers is not None and self.fresh and code == TURNED:
-            self.triggers.begin(self.progress.t, self.progress.integrated_state)
-        self.fresh = False
+        if self.triggers is not None and self.begins_piece and code == TURNED:
+            self.triggers.begin_piece(self.progress.t, self.progress.integrated_state)
+        self.begins_piece = False
         return code
 
-    def begin(self, segment: Segment) -> None:
-        """A piece begins in the state reached."""
-        self.interruptions.begin(segment)
-        self.fresh = True
+    def begin_piece(self, segment: Segment) -> None:
+        """Begin a piece in the state reached."""
+        self.interruptions.begin_segment(segment)
+        self.begins_piece = True
 
-    def leave(self) -> None:
-        """A piece ends at the instant reached: what the triggers of blows say there is kept."""
+    def end_piece(self) -> None:
+        """End a piece at the instant reached, and record the branches of the triggers there."""
         if self.triggers is not None:
-            self.triggers.leave()
+            self.triggers.end_piece()
 
-    def due(self) -> Due | None:
-        """What conditions ask for at the instant reached, if they do."""
+    def find_due(self) -> DueTriggers | None:
+        """Return what conditions trigger at the instant reached, if anything."""
         if self.triggers is None:
             return None
-        return self.triggers.due(self.progress.t, self.progress.integrated_state)
+        return self.triggers.find_due(self.progress.t, self.progress.integrated_state)
 
-    def strike(self, begin: float, segment: Segment, due: Due) -> tuple[float, str | None]:
-        """Blows and latches at the instant reached, which end a piece; where the next one begins.
+    def apply_due(self, begin: float, segment: Segment, due_triggers: DueTriggers) -> tuple[float, str | None]:
+        """Apply impulses and latches at the instant reached, which end a piece; return where the next one begins.
 
-        And the rope, if there is one, that would have to push in them.
+        Also returns the rope, if there is one, that would have to push in them.
         """
         t = self.progress.t
         if t > begin:
             self.pieces.add(np.array([[begin, segment.before_end, t]]))
-        self.leave()
-        rope = self.interruptions.strike(t, due.blows, due.said)
+        self.end_piece()
+        rope = self.interruptions.apply_triggered(t, due_triggers.blows, due_triggers.latch_conditions)
         if rope is None:
-            self.begin(Segment(t, segment.before_end, segment.end))
+            self.begin_piece(Segment(t, segment.before_end, segment.end))
         return t, rope
 
-    def ends_here(self) -> bool:
-        """Whether the condition that ends the run became true at the instant reached."""
-        return self.until is not None and self.until.ends(self.progress.t, self.progress.integrated_state)
+    def has_ended(self) -> bool:
+        """Return whether the condition that ends the run became true at the instant reached."""
+        return self.ending_condition is not None and self.ending_condition.has_become_true(
+            self.progress.t, self.progress.integrated_state
+        )
 
-    def look(self, code: int, segment: Segment) -> None:
-        """What is watched after each call of the kernel."""
-        if code == REACHED or code in GOES_ON:
-            require_time(self.progress, self.request.deadline, self.begun)
-        if code in GOES_ON:
+    def check_run(self, code: int, segment: Segment) -> None:
+        """Check limits, events and stiffness after each call of the kernel."""
+        if code == REACHED or code in CONTINUE_CODES:
+            require_time(self.progress, self.request.deadline, self.start_time)
+        if code in CONTINUE_CODES:
             require_progress(self.progress, self.request.most_steps)
-            self.slow.look(self.progress)
+            self.slow_watch.check(self.progress)
             if self.events is not None:
-                self.events.require_as_before(self.pieces.count)
+                self.events.require_same_frequency(self.pieces.count)
         if code == STIFF:
             if self.stiffness is None:
                 from heuncli.motion.integration.run.stiffness import StiffnessWatch  # few scenes are
 
                 self.stiffness = StiffnessWatch(self.progress)
-            self.stiffness.require_easy(segment)
+            self.stiffness.require_not_stiff(segment)
 
-    def meet_contact(self, begin: float, segment: Segment) -> float:
-        """The contact that closed or opened at the instant reached, which ends a piece; where the next one begins."""
+    def handle_contact(self, begin: float, segment: Segment) -> float:
+        """Handle the contact that closed or opened at the instant reached, which ends a piece; return where the next
+        one begins.
+        """
         t = self.progress.t
         if t > begin:
             self.pieces.add(np.array([[begin, segment.before_end, t]]))
-        said = None if self.triggers is None else self.triggers.said_at_contact(t, self.progress.integrated_state)
-        self.leave()
-        self.interruptions.settle(t, self.progress.kernel.loop.contact, said)
-        self.begin(Segment(t, segment.before_end, segment.end))
+        latch_conditions = (
+            None
+            if self.triggers is None
+            else self.triggers.evaluate_latches_at_contact(t, self.progress.integrated_state)
+        )
+        self.end_piece()
+        self.interruptions.handle_contacts(t, self.progress.kernel.loop.contact, latch_conditions)
+        self.begin_piece(Segment(t, segment.before_end, segment.end))
         return t
 
-    def ended(self, code: int, begin: float) -> Ending:
-        """Where the run ends, short of a segment's end; begin: of its last piece. Raises SolveError if it fails."""
+    def find_early_end(self, code: int, begin: float) -> EarlyEnd:
+        """Return where the run ends before a segment's end; begin: of its last piece. Raises SolveError if it fails."""
         t = self.progress.t
         if code == TURNED:
-            return Ending(t)
+            return EarlyEnd(t)
         if code == ROPE_SLACK:
-            rope = self.progress.moving.rope(self.progress.kernel.loop.contact)
-            return Ending(just_before(t) if t == begin > 0.0 else t, rope)
-        if code == CHATTERING and self.triggers is not None and self.triggers.just_struck(t):
-            raise self.triggers.endless(t)
-        from heuncli.motion.integration.run.failure import failure  # only on the way to an error
+            rope = self.progress.integrated_scene.find_rope(self.progress.kernel.loop.contact)
+            return EarlyEnd(just_before(t) if t == begin > 0.0 else t, rope)
+        if code == CHATTERING and self.triggers is not None and self.triggers.has_just_struck(t):
+            raise self.triggers.endless_error(t)
+        from heuncli.motion.integration.run.failure import make_failure_error  # only on the way to an error
 
-        raise failure(self.progress, code)
+        raise make_failure_error(self.progress, code)
 
-    def trajectory(self, ending: Ending | None, seconds: float) -> Trajectory:
-        """What the run leaves when it came to its end, or to its ending."""
+    def make_trajectory(self, ending: EarlyEnd | None, seconds: float) -> Trajectory:
+        """Return the result of the run when it came to its end, or to an early end."""
         progress, kernel, steps = self.progress, self.progress.kernel, self.progress.steps
-        asked = self.request.instants
-        times, states = (asked, kernel.states()) if ending is None else cut_short(asked, kernel, ending.told)
+        requested = self.request.instants
+        times, states = (
+            (requested, kernel.read_states())
+            if ending is None
+            else truncate_samples(requested, kernel, ending.last_time)
+        )
         return Trajectory(
-            times=times, states=progress.moving.embed(times, states), ends=steps.column("ends"),
+            times=times, states=progress.integrated_scene.embed(times, states), ends=steps.copy_column("ends"),
             steps=kernel.loop.steps, evaluations=kernel.loop.evaluations, gap=kernel.loop.gap,
             local=kernel.start.local, method=kernel.method, seconds=seconds, segments=Segments(self.pieces.rows),
-            kept=steps.records(), courses=steps.kept_courses(),
-            pivots=steps.column("pivots"), settled=steps.column("settled"),
-            branches=steps.held_branches(), turned=steps.column("turned"), undecided=kernel.loop.undecided,
-            stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
-            behind=np.array(progress.moving.layout.pack.expressions.branches()),
-            blows=tuple(self.interruptions.done), holding=steps.holding(len(progress.scene.layout.all_open)),
+            records=steps.list_records(), polynomials=steps.collect_polynomials(),
+            pivots=steps.copy_column("pivots"), is_projected=steps.copy_column("settled"),
+            branches=steps.read_branches(), branch_changed=steps.copy_column("turned"), uncertain_count=kernel.loop.undecided_count,
+            pushing_rope=ending.rope if ending is not None else None, ended_by_condition=ending is not None and ending.rope is None,
+            final_branches=np.array(progress.integrated_scene.layout.pack.expressions.branches()),
+            impulse_events=tuple(self.interruptions.events), holding=steps.find_holding(len(progress.scene.layout.open_contacts)),
             notes=self.interruptions.notes + (self.triggers.notes if self.triggers is not None else ()),
         )  # fmt: skip
 
 
-def until_of(layout: Layout) -> EndingCondition | None:
-    """The condition that ends the runs of a scene, if there is one."""
+def make_ending_condition(layout: Layout) -> EndingCondition | None:
+    """Return the condition that ends the runs of a scene, if there is one."""
     if not any(condition.ends for condition in layout.mechanism.conditions):
         return None
     from heuncli.motion.integration.run.ending import EndingCondition  # few scenes have one
@@ -250,32 +273,35 @@ def until_of(layout: Layout) -> EndingCondition | None:
     return EndingCondition(layout)
 
 
-def triggers_of(layout: Layout, last: float) -> Triggers | None:
-    """The blows and latches of a scene that hang on conditions, where there are any."""
+def make_triggers(layout: Layout, last: float) -> Triggers | None:
+    """Return the impulses and latches of a scene that depend on conditions, if there are any."""
     mechanism = layout.mechanism
     latches = (stop.latch for stop in mechanism.stops if stop.latch is not None)
-    if all(blow.when is None for blow in mechanism.blows) and not any(latch.conditions for latch in latches):
+    if all(blow.when is None for blow in mechanism.impulses) and not any(latch.conditions for latch in latches):
         return None
     from heuncli.motion.integration.run.triggers import Triggers  # few scenes have any
 
     return Triggers(layout, last)
 
 
-def event_watch(progress: Progress, segments: Segments) -> EventWatch | None:
-    """What counts the steps that events end, where there may be any."""
-    if not (progress.kernel.held > 0 or len(progress.scene.layout.contacts) > 0 or len(segments) > 1):
+def make_event_watch(progress: RunProgress, segments: Segments) -> EventWatch | None:
+    """Return the watch that counts steps ended by events, if there may be any."""
+    if not (progress.kernel.branch_count > 0 or len(progress.scene.layout.contacts) > 0 or len(segments) > 1):
         return None
     from heuncli.motion.integration.run.event_frequency import EventWatch  # few scenes have any
 
     return EventWatch(progress)
 
 
-def cut_short(times: Array, kernel: KernelLoop, last: float) -> tuple[Array, Array]:
-    """The asked instants before the last one that is told, and that one, (n,); the states there (n, n').
-
-    States are those of what is integrated.
+def truncate_samples(times: Array, kernel: KernelLoop, last: float) -> tuple[Array, Array]:
+    """Return the requested instants before the last reported one, and that one, (n,), with the integrated states (n,
+    n').
     """
-    asked = times[: kernel.loop.sampled]
-    ts = np.append(asked[asked <= last], last)
-    states = np.vstack([kernel.states()[: len(ts) - 1], np.array(kernel.loop.state())])
-    return (ts[:-1], states[:-1]) if len(ts) > 1 and ts[-1] == ts[-2] else (ts, states)
+    requested = times[: kernel.loop.sampled_count]
+    sample_times = np.append(requested[requested <= last], last)
+    states = np.vstack([kernel.read_states()[: len(sample_times) - 1], np.array(kernel.loop.state())])
+    return (
+        (sample_times[:-1], states[:-1])
+        if len(sample_times) > 1 and sample_times[-1] == sample_times[-2]
+        else (sample_times, states)
+    )

@@ -1,9 +1,9 @@
-"""What an explicit method can only crawl through: noticed on the way, and begun anew with an implicit one.
+"""Notice where stability limits an explicit method, and restart with an implicit one.
 
-Where stability has kept the steps short for a while (kernel/stiffness.py) an implicit method is tried beside the run,
-for some steps from the state reached. If the whole motion, begun anew with it, costs less than what is left of this
-run, the run ends: `Stiff`. Measured and not supposed, for what swings fast and is worth following costs an implicit
-method as much. Counted in evaluations, not in seconds, so that a scene is always solved in the same way.
+Where stability has limited the steps for a while (kernel/stiffness.py), an implicit method is tried for some steps from
+the state reached. If the whole motion, restarted with it, costs less than the rest of this run, the run stops:
+`StiffRun`. The cost is measured, because fast oscillations that are worth following cost an implicit method as much. It
+is counted in evaluations, not in seconds, so that a scene is always solved in the same way.
 """
 
 from __future__ import annotations
@@ -14,82 +14,88 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import method_of
-from heuncli.motion.integration.run.errors import Stiff
-from heuncli.motion.integration.run.kernel_loop import MORE, REACHED, KernelLoop, Start
-from heuncli.motion.integration.run.progress import Progress
+from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.run.errors import StiffRun
+from heuncli.motion.integration.run.kernel_loop import MORE, REACHED, KernelLoop, LoopStart
+from heuncli.motion.integration.run.progress import RunProgress
 from heuncli.motion.integration.segments import Segment
-from heuncli.multibody.response import workspace_of
+from heuncli.multibody.response import make_workspace
 
-TRIED = (8, 8)  # steps of the implicit method: those in which it comes to its pace, and those that are counted
-MOST_TRIED = 0.125  # of what is left of the run: what the trial may take of it
-CORRECTIONS = 8  # of the stages in a step, seldom more
-STARTING = 4.0  # times the evaluations of the run so far: what the implicit method takes of them, which were not stiff
-RECENT = 8  # steps of the run whose mean tells its pace
-FACTORS = 0.02  # n^2 of a stage: what its factors take, in evaluations of n numbers of state
+TRIAL_STEPS = (8, 8)  # steps of the implicit method: those to reach its pace, and those that are measured
+MAX_TRIAL_SHARE = 0.125  # fraction of the remaining work that the trial may take
+CORRECTIONS = 8  # iterations of the stages in a step, rarely more
+START_COST = (
+    4.0  # cost of the part done with the implicit method, over its explicit evaluations: that part was not stiff
+)
+RECENT_STEPS = 8  # steps of the run whose mean is its pace
+FACTOR_COST = 0.02  # times n^2 per stage: cost of its factors, in evaluations of n numbers of state
 
-NOT_STOPPED = (REACHED, MORE)  # codes of a trial that came as far as it was asked to
+COMPLETED_CODES = (REACHED, MORE)  # codes of a completed trial
 
 
-def implicit_for(local: float) -> Method:
-    """The stiff method for a local tolerance."""
-    return method_of("Radau5" if local > tolerances.RADAU5 else "Radau9")
+def choose_implicit_method(local: float) -> Method:
+    """Return the stiff method for a local tolerance."""
+    return load_method_by_name("Radau5" if local > tolerances.RADAU5 else "Radau9")
 
 
 class StiffnessWatch:
-    """Whether a run is left because it crawls. Remembers after how many steps that was looked at last."""
+    """Watches whether a run should stop because it is stiff. Remembers the number of steps at the last look."""
 
-    def __init__(self, progress: Progress) -> None:
-        self.progress, self.looked = progress, 0
+    def __init__(self, progress: RunProgress) -> None:
+        self.progress, self.looked_at_step = progress, 0
 
-    def require_easy(self, segment: Segment) -> None:
-        """Raise Stiff where another method takes less than what is left of a run that crawls.
+    def require_not_stiff(self, segment: Segment) -> None:
+        """Raise StiffRun where another method takes less work than the rest of a stiff run.
 
-        Looked at again when the run has taken twice as many steps. segment: in which the run is.
+        The next look is when the run has taken twice as many steps. segment: the present segment of the run.
         """
         progress, kernel, steps = self.progress, self.progress.kernel, self.progress.steps
-        if steps.count < max(2 * self.looked, RECENT + 1):
+        if steps.count < max(2 * self.looked_at_step, RECENT_STEPS + 1):
             return
-        self.looked = steps.count
-        method, t, n = implicit_for(kernel.start.local), progress.t, progress.moving.layout.n_state
-        ends = steps.column("ends")
-        h = float(ends[-1] - ends[-1 - RECENT]) / RECENT
-        taken, left = kernel.loop.evaluations, progress.last - t
-        explicit = taken / kernel.loop.steps * left / h
+        self.looked_at_step = steps.count
+        method, t, n = choose_implicit_method(kernel.start.local), progress.t, progress.integrated_scene.layout.n_state
+        ends = steps.copy_column("ends")
+        h = float(ends[-1] - ends[-1 - RECENT_STEPS]) / RECENT_STEPS
+        evaluations_done, time_left = kernel.loop.evaluations, progress.last - t
+        explicit = evaluations_done / kernel.loop.steps * time_left / h
         # of a step: the tangent, counted as n evaluations, and its factors
-        beside = n + FACTORS * n * n * (len(method.nodes) - 1)
-        one = beside + CORRECTIONS * (len(method.nodes) - 1)
-        if sum(TRIED) * one > MOST_TRIED * explicit:
+        overhead = n + FACTOR_COST * n * n * (len(method.nodes) - 1)
+        step_cost = overhead + CORRECTIONS * (len(method.nodes) - 1)
+        if sum(TRIAL_STEPS) * step_cost > MAX_TRIAL_SHARE * explicit:
             return
-        a_second, trial = tried(progress, segment, method, beside)
-        if STARTING * taken + a_second * left < explicit:
-            from heuncli.motion.integration.run.fastest_motion import fastest  # only where a run is left
+        cost_per_second, trial = try_implicit_method(progress, segment, method, overhead)
+        if START_COST * evaluations_done + cost_per_second * time_left < explicit:
+            from heuncli.motion.integration.run.fastest_motion import (
+                describe_fastest_motion,  # only where a run is stopped
+            )
 
-            # where the trial is: coarse explicit steps may be driven to and fro beside the slow motion
-            beyond = progress.moving.state(trial.loop.t, np.array(trial.loop.state()))
-            raise Stiff(method, fastest(progress.scene, trial.loop.t, beyond, h))
+            # at the trial's end, because coarse explicit steps may oscillate about the slow motion
+            trial_state = progress.integrated_scene.embed_state(trial.loop.t, np.array(trial.loop.state()))
+            raise StiffRun(method, describe_fastest_motion(progress.scene, trial.loop.t, trial_state, h))
 
 
-def tried(progress: Progress, segment: Segment, method: Method, beside: float) -> tuple[float, KernelLoop]:
-    """Evaluations that an implicit method takes a second of motion, from the state that a run has reached; the trial.
+def try_implicit_method(
+    progress: RunProgress, segment: Segment, method: Method, overhead: float
+) -> tuple[float, KernelLoop]:
+    """Return the evaluations that an implicit method takes per second of motion, from the state reached, and the trial.
 
-    beside: what a step takes beside those of its stages.
+    overhead: cost of a step in addition to its stages
     """
-    layout, kernel, t = progress.moving.layout, progress.kernel, progress.t
-    workspace = workspace_of(layout)  # its own: the run goes on as if nothing had been tried
+    layout, kernel, t = progress.integrated_scene.layout, progress.kernel, progress.t
+    workspace = make_workspace(layout)  # separate, so that the trial leaves the run unchanged
     if progress.steps.holdings:
         workspace.hold(progress.steps.holdings[-1][1])
-    start = Start(progress.integrated_state, kernel.start.local, kernel.start.rate)
-    trial = KernelLoop(layout, workspace, method, np.zeros(0), sum(TRIED), start)
+    start = LoopStart(progress.integrated_state, kernel.start.local, kernel.start.rate)
+    trial = KernelLoop(layout, workspace, method, np.zeros(0), sum(TRIAL_STEPS), start)
     trial.loop.begin(t, segment.before_end, segment.end)
-    if trial.loop.advance(TRIED[0], False, False) not in NOT_STOPPED:
+    if trial.loop.advance(TRIAL_STEPS[0], False, False) not in COMPLETED_CODES:
         return math.inf, trial
-    begun, evaluations, steps = trial.loop.t, trial.loop.evaluations, trial.loop.steps
-    if begun == t:  # the segment ends here
+    trial_begin, evaluations, steps = trial.loop.t, trial.loop.evaluations, trial.loop.steps
+    if trial_begin == t:  # the segment ends here
         return math.inf, trial
-    if begun == segment.end:  # sooner than it comes to its pace
-        return float((evaluations + beside * steps) / (begun - t)), trial
-    if trial.loop.advance(TRIED[1], False, False) not in NOT_STOPPED:
+    if trial_begin == segment.end:  # before it reaches its pace
+        return float((evaluations + overhead * steps) / (trial_begin - t)), trial
+    if trial.loop.advance(TRIAL_STEPS[1], False, False) not in COMPLETED_CODES:
         return math.inf, trial
-    took = trial.loop.evaluations - evaluations + beside * (trial.loop.steps - steps)
-    return float(took / (trial.loop.t - begun)), trial
+    cost = trial.loop.evaluations - evaluations + overhead * (trial.loop.steps - steps)
+    return float(cost / (trial.loop.t - trial_begin)), trial

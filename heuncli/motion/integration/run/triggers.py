@@ -1,9 +1,9 @@
-"""Blows that strike, and latches that catch or let go, by conditions: which at an instant that a run has reached.
+"""Find the impulses and latches that conditions trigger at the instant that a run has reached.
 
-The kernel ends a step where a branch of a condition turns, and stops there and where a piece begins. A condition that
-was false, and is true as the branches stand, became true. A piece that begins takes its branches afresh from the state,
-by whose rounding a margin that was just passed may lie on either side: where rounding leaves a branch open it stays as
-it was held. If it goes the other way the kernel turns it at once.
+The kernel ends a step where a branch of a condition changes, and stops there and where a piece begins. A condition that
+was false and is true with the present branches became true. A piece takes its branches from its first state. Rounding
+of that state may put a margin that was just passed on either side; a branch that is uncertain by rounding keeps its
+value. If it goes the other way, the kernel changes it at once.
 """
 
 from __future__ import annotations
@@ -13,148 +13,175 @@ from collections.abc import Iterator
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.motion.integration.conditions import Conditions, Coordinates, coordinates_in
-from heuncli.motion.integration.contacts.latches import Bolts, bolts
+from heuncli.motion.integration.conditions import Conditions, Coordinates, read_coordinates
+from heuncli.motion.integration.contacts.latches import LatchConditions, evaluate_latches
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 
-AT_ONCE = 4  # blows of a condition at one instant: more follow each other without end
+MAX_SIMULTANEOUS = 4  # impulses of a condition at one instant; more count as endless
 
 
-class Due(NamedTuple):
-    """Blows that are due at an instant, and what the conditions of latches say there, where there are any."""
+class DueTriggers(NamedTuple):
+    """Impulses that are due at an instant, and the conditions of latches there, if there are any."""
 
     blows: tuple[int, ...]
-    said: Bolts | None
+    said: LatchConditions | None
 
 
 class Triggers:
-    """The blows and latches of a scene that hang on conditions. Remembers what was true, and which have struck.
+    """The impulses and latches of a scene that depend on conditions. Remembers what was true, and which were applied.
 
-    layout: of what is integrated. last: the end of the run [s].
+    layout: of the integrated scene
+    last: the end of the run [s]
     """
 
     def __init__(self, layout: Layout, last: float) -> None:
         self.layout, self.last = layout, last
         self.conditions = Conditions(layout)
         known = [id(condition) for condition in layout.mechanism.conditions]
-        self.blows = layout.mechanism.blows
+        self.blows = layout.mechanism.impulses
         self.numbers = {i: known.index(id(blow.when)) for i, blow in enumerate(self.blows) if blow.when is not None}
-        self.was: list[float] = []
-        self.begins: list[float] = []
-        self.struck: dict[int, int] = dict.fromkeys(self.numbers, 0)
-        self.latched = any(stop.latch is not None for stop in layout.mechanism.stops)
-        self.said: Bolts | None = None  # of the latches, when it was looked at last
-        self.left: list[float] | None = None  # the branches held at the end of the last piece
-        self.since, self.at_once = -1.0, 0
+        self.previous_truths: list[float] = []
+        self.truths_at_start: list[float] = []
+        self.strike_counts: dict[int, int] = dict.fromkeys(self.numbers, 0)
+        self.has_latches = any(stop.latch is not None for stop in layout.mechanism.stops)
+        self.latch_conditions: LatchConditions | None = None  # of the latches, at the last evaluation
+        self.branches_left: list[float] | None = None  # the branches held at the end of the last piece
+        self.last_event_time, self.simultaneous_count = -1.0, 0
 
-    def leave(self) -> None:
-        """A piece ends: the branches that are held there, between which and the next piece something may jump."""
+    def end_piece(self) -> None:
+        """Record the branches held at the end of a piece; before the next piece something may jump."""
         branches = self.layout.pack.expressions.branches()
-        self.left = [branches[place] for place in self.conditions.places]
+        self.branches_left = [branches[place] for place in self.conditions.places]
 
-    def begin(self, t: float, state: Array) -> None:
-        """A piece begins at t, in a state (n',) of what is integrated: what rounding leaves open stays as it was."""
-        if self.left is None:
+    def begin_piece(self, t: float, state: Array) -> None:
+        """Begin a piece at t, in an integrated state (n',): branches that are uncertain by rounding keep their
+        values.
+        """
+        if self.branches_left is None:
             return
-        held, self.left = self.left, None
-        there = coordinates_in(self.layout, t, state)
-        behind = self.conditions.taken(t, there)
-        beside = [self.conditions.taken(t, other) for other in self.beside(there)]
+        held_branches, self.branches_left = self.branches_left, None
+        coordinates = read_coordinates(self.layout, t, state)
+        present_branches = self.conditions.take_branches(t, coordinates)
+        perturbed_branches = [self.conditions.take_branches(t, other) for other in self.iter_perturbed(coordinates)]
         branches = self.layout.pack.expressions.branches()
         for k, place in enumerate(self.conditions.places):
-            branches[place] = behind[k] if all(other[k] == behind[k] for other in beside) else held[k]
+            branches[place] = (
+                present_branches[k]
+                if all(other[k] == present_branches[k] for other in perturbed_branches)
+                else held_branches[k]
+            )
         self.layout.pack.expressions.hold_branches(branches)
 
-    def beside(self, there: Coordinates) -> Iterator[Coordinates]:
-        """Coordinates as they may be but for rounding, one of those that conditions use moved at a time."""
+    def iter_perturbed(self, coordinates: Coordinates) -> Iterator[Coordinates]:
+        """Yield coordinates perturbed by rounding, one of those that conditions use at a time."""
         uses = {use for condition in self.conditions.conditions for use in condition.value.uses}
         least = tolerances.LEAST_RATE / self.last
-        rates = max((abs(there[use][0]) for use in uses if is_rate(use[1])), default=0.0)
+        rates = max((abs(coordinates[use][0]) for use in uses if is_rate(use[1])), default=0.0)
         for use in uses:
             length = 1.0 if use[1] in ("angle", "rate") else self.layout.size
-            scale = max(rates, least * length) if is_rate(use[1]) else max(abs(there[use][0]), length)
-            for way in (-tolerances.CONTACT_RATE * scale, tolerances.CONTACT_RATE * scale):
-                q, u, a = there[use]
-                yield {**there, use: (q + way, u, a)}
+            scale = max(rates, least * length) if is_rate(use[1]) else max(abs(coordinates[use][0]), length)
+            for change in (-tolerances.CONTACT_RATE * scale, tolerances.CONTACT_RATE * scale):
+                q, u, a = coordinates[use]
+                yield {**coordinates, use: (q + change, u, a)}
 
-    def due(self, t: float, state: Array) -> Due | None:
-        """The blows whose conditions became true at t; what is true at the start strikes nothing until it was false.
+    def find_due(self, t: float, state: Array) -> DueTriggers | None:
+        """Return the impulses whose conditions became true at t, or changed conditions of latches, or None.
 
-        Or what the conditions of latches say, where that is something else than before. Raises SolveError for too many
-        blows at one instant.
+        A condition that is true at the start triggers nothing until it was false. Raises SolveError for too many
+        impulses at one instant.
         """
         branches = self.layout.pack.expressions.branches()
-        now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))
-        was, self.was = self.was, now
-        said, before = bolts(self.layout, now, was), self.said
-        self.said = said
-        changed = self.latched and (before is None or any(said.passed) or before[:2] != said[:2])
-        blows = self.blows_due(t, was, now)
-        return Due(blows, said if self.latched else None) if blows or changed else None
+        truths = self.conditions.evaluate_held(t, branches, read_coordinates(self.layout, t, state))
+        previous_truths, self.previous_truths = self.previous_truths, truths
+        latch_conditions, previous_latch_conditions = (
+            evaluate_latches(self.layout, truths, previous_truths),
+            self.latch_conditions,
+        )
+        self.latch_conditions = latch_conditions
+        has_changed = self.has_latches and (
+            previous_latch_conditions is None
+            or any(latch_conditions.is_value_passed)
+            or previous_latch_conditions[:2] != latch_conditions[:2]
+        )
+        blows = self.find_due_impulses(t, previous_truths, truths)
+        return DueTriggers(blows, latch_conditions if self.has_latches else None) if blows or has_changed else None
 
-    def blows_due(self, t: float, was: list[float], now: list[float]) -> tuple[int, ...]:
-        """The blows whose conditions became true at t."""
-        if t <= tolerances.SIDE_BY_SIDE * self.last:  # what turns by rounding of the start was so before
-            self.begins = now
+    def find_due_impulses(self, t: float, previous_truths: list[float], truths: list[float]) -> tuple[int, ...]:
+        """Return the impulses whose conditions became true at t."""
+        if t <= tolerances.SIDE_BY_SIDE * self.last:  # a change within rounding of the start does not count
+            self.truths_at_start = truths
             return ()
         due = tuple(
             i
             for i, number in self.numbers.items()
-            if was[number] == 0.0 and now[number] == 1.0 and (self.blows[i].every or not self.struck[i])
+            if previous_truths[number] == 0.0
+            and truths[number] == 1.0
+            and (self.blows[i].every or not self.strike_counts[i])
         )
         if due:
-            self.count(t, due)
+            self.count_impulses(t, due)
         return due
 
-    def said_at_contact(self, t: float, state: Array) -> Bolts | None:
-        """What the conditions of latches say where a contact closes or opens.
+    def evaluate_latches_at_contact(self, t: float, state: Array) -> LatchConditions | None:
+        """Return the conditions of latches where a contact closes or opens.
 
-        One that becomes true by the rounding of the state is true there: so does one that names the stop's own limit.
+        A condition that rounding of the state makes true counts as true: such is one that names the stop's own limit.
         """
-        if not self.latched:
+        if not self.has_latches:
             return None
-        there = coordinates_in(self.layout, t, state)
-        held = self.conditions.held(t, self.layout.pack.expressions.branches(), there)
-        count = range(len(held))
-        beside = [[self.conditions.free(k, t, 0.0, other) for k in count] for other in (there, *self.beside(there))]
-        return bolts(self.layout, [max(truths) for truths in zip(held, *beside, strict=True)])
+        coordinates = read_coordinates(self.layout, t, state)
+        truths_held = self.conditions.evaluate_held(t, self.layout.pack.expressions.branches(), coordinates)
+        count = range(len(truths_held))
+        perturbed_truths = [
+            [self.conditions.evaluate_free(k, t, 0.0, other) for k in count]
+            for other in (coordinates, *self.iter_perturbed(coordinates))
+        ]
+        return evaluate_latches(
+            self.layout, [max(truths) for truths in zip(truths_held, *perturbed_truths, strict=True)]
+        )
 
-    def count(self, t: float, due: tuple[int, ...]) -> None:
-        """Blows at an instant. Raises SolveError for too many at one."""
-        self.at_once = self.at_once + 1 if t - self.since <= tolerances.KERNEL["least_step"] * self.last else 0
-        self.since = t
-        for i in due:
-            self.struck[i] += 1
-        if self.at_once > AT_ONCE * len(self.numbers):
-            raise self.endless(t)
+    def count_impulses(self, t: float, impulses: tuple[int, ...]) -> None:
+        """Count impulses at an instant. Raises SolveError for too many at one instant."""
+        self.simultaneous_count = (
+            self.simultaneous_count + 1
+            if t - self.last_event_time <= tolerances.KERNEL["least_step"] * self.last
+            else 0
+        )
+        self.last_event_time = t
+        for i in impulses:
+            self.strike_counts[i] += 1
+        if self.simultaneous_count > MAX_SIMULTANEOUS * len(self.numbers):
+            raise self.endless_error(t)
 
-    def endless(self, t: float) -> SolveError:
-        """The error of blows that follow each other at an instant, or ever faster up to it."""
-        struck = [self.blows[i].name for i in self.numbers if self.struck[i]]
-        names = " and ".join(f"impulses.{name}" for name in struck)
+    def endless_error(self, t: float) -> SolveError:
+        """Make the error of impulses that follow each other endlessly at an instant, or ever faster up to it."""
+        impulse_names = [self.blows[i].name for i in self.numbers if self.strike_counts[i]]
+        names = " and ".join(f"impulses.{name}" for name in impulse_names)
         message = f"at t = {t:.9g} s {names} strike without end: each blow makes a condition true again at once"
         hint = "leave room between conditions, as rate > 0.1 beside rate < -0.1; or let it strike the first time alone"
-        return SolveError(Problem("endless-blows", message, hint=hint, about=f"impulses.{struck[-1]}"))
+        return SolveError(Problem("endless-blows", message, hint=hint, entry_path=f"impulses.{impulse_names[-1]}"))
 
-    def just_struck(self, t: float) -> bool:
-        """Whether a blow is so near before t that others may follow it without end."""
-        return 0.0 <= t - self.since <= tolerances.KERNEL["flurry"] * self.last
+    def has_just_struck(self, t: float) -> bool:
+        """Return whether an impulse is so close before t that others may follow it endlessly."""
+        return 0.0 <= t - self.last_event_time <= tolerances.KERNEL["flurry"] * self.last
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Which blows did not strike, and why."""
-        told = []
+        """Sentences on which impulses were not applied, and why."""
+        sentences = []
         for i, number in self.numbers.items():
             when = self.blows[i].when
-            if self.struck[i] or when is None:
+            if self.strike_counts[i] or when is None:
                 continue
-            began = bool(self.begins) and self.begins[number] == 1.0
-            why = "is true at the start, which strikes nothing, and did not become true again" if began else ""
-            told.append(f"{self.blows[i].name} did not strike: {when.text} {why or 'did not become true'}")
-        return tuple(told)
+            is_true_at_start = bool(self.truths_at_start) and self.truths_at_start[number] == 1.0
+            why = (
+                "is true at the start, which strikes nothing, and did not become true again" if is_true_at_start else ""
+            )
+            sentences.append(f"{self.blows[i].name} did not strike: {when.text} {why or 'did not become true'}")
+        return tuple(sentences)
 
 
 def is_rate(quantity: str) -> bool:
-    """Whether it is a rate of a joint, or a velocity of a point, by its name in conditions."""
+    """Return whether a quantity in conditions is a rate of a joint, or a velocity of a point."""
     return quantity in ("rate", "speed") or quantity.startswith("v")

@@ -1,4 +1,4 @@
-"""One thing of a scene that leaves a plane."""
+"""A departure: one thing of a scene that leaves a plane."""
 
 from __future__ import annotations
 
@@ -6,21 +6,23 @@ from collections.abc import Iterator
 
 from heuncli.base import tolerances
 from heuncli.base.records import record
-from heuncli.multibody.reduction.plane.view import View
+from heuncli.multibody.reduction.plane.view import PlaneView
 from heuncli.results.results import Array
 
 
 @record
 class Departure:
-    """What leaves the plane, in words, and by how much, of the largest it could; acts: it is a load, blow or drive."""
+    """What leaves the plane, in words, and by how much relative to the largest possible; acts: it is a load, impulse or
+    drive.
+    """
 
     what: str
     size: float
     acts: bool = False
 
 
-def beside(seen: View, height: float, body: int, point: Array, what: str) -> Iterator[Departure]:
-    """A body's point, `what`, that should lie in the plane."""
-    off = abs(seen.height(body, point) - height)
-    if off > tolerances.FLAT * seen.reach:
-        yield Departure(f"{what} lies {off:.1g} m beside it", off / seen.reach)
+def height_departures(plane_view: PlaneView, height: float, body: int, point: Array, what: str) -> Iterator[Departure]:
+    """Yield a departure if a body's point, described by `what`, does not lie in the plane."""
+    distance = abs(plane_view.point_height(body, point) - height)
+    if distance > tolerances.FLAT * plane_view.reach:
+        yield Departure(f"{what} lies {distance:.1g} m beside it", distance / plane_view.reach)

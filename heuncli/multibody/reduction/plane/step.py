@@ -1,8 +1,8 @@
-"""The plane that a scene stays in: it moves as the flat scene in that plane does
+"""Find the plane in which a scene stays: it moves as the flat scene in that plane does
 (multibody/reduction/plane/mechanism.py).
 
-Either no joint leaves a body another motion than turns about the normal and shifts across it, or what could leave the
-plane does not, for the scene is its own mirror image in it (multibody/reduction/plane/departures.py).
+Either the joints leave bodies only rotations about the normal and shifts across it, or bodies that could leave the
+plane do not, because the scene is its own mirror image in it (multibody/reduction/plane/departures.py).
 """
 
 from __future__ import annotations
@@ -14,74 +14,84 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.multibody.reduction.model import Reduction
 from heuncli.multibody.reduction.plane.departure import Departure
-from heuncli.multibody.reduction.plane.departures import departures
-from heuncli.multibody.reduction.plane.frame import candidates
-from heuncli.multibody.reduction.plane.mechanism import NotTold, flat_scene
-from heuncli.multibody.reduction.plane.states import States
-from heuncli.multibody.reduction.plane.view import View, neighbours, view
+from heuncli.multibody.reduction.plane.departures import iter_departures
+from heuncli.multibody.reduction.plane.frame import iter_normals
+from heuncli.multibody.reduction.plane.mechanism import UnrepresentableLoadError, make_flat_scene
+from heuncli.multibody.reduction.plane.states import PlaneStateMap
+from heuncli.multibody.reduction.plane.view import PlaneView, find_neighbours, make_view
 from heuncli.multibody.tree.prepare import PreparedScene
 
-MOST_TOLD = 3  # what leaves a plane: of a scene that more leaves by much nobody expects that it is flat
+MAX_LISTED = 3  # departures from a plane: a scene with more large ones is not expected to be flat
 
 
 def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
-    """The flat scene; what keeps it from being flat, where that is little; nothing of a scene in space."""
-    nearest: tuple[View, list[Departure]] | None = None
-    near = neighbours(scene)
-    for n in candidates(scene):
-        seen = view(scene, n, near)
-        found = list(islice(departures(seen), MOST_TOLD + 1))
-        if not found:
-            return _reduction(seen)
-        if nearest is None or _worse(nearest[1]) > _worse(found):
-            nearest = seen, found
+    """Return the flat scene, or sentences on what keeps it from being flat where that is little; nothing for a scene in
+    space.
+    """
+    nearest: tuple[PlaneView, list[Departure]] | None = None
+    joint_neighbours = find_neighbours(scene)
+    for n in iter_normals(scene):
+        plane_view = make_view(scene, n, joint_neighbours)
+        leaving = list(islice(iter_departures(plane_view), MAX_LISTED + 1))
+        if not leaving:
+            return _make_reduction(plane_view)
+        if nearest is None or _severity(nearest[1]) > _severity(leaving):
+            nearest = plane_view, leaving
     if nearest is None:
         return ()
-    seen, found = nearest
-    found = found if _nearly(found) else _of_couplings(seen)
-    if not found:
+    plane_view, leaving = nearest
+    leaving = leaving if _is_nearly_flat(leaving) else _coupling_departures(plane_view)
+    if not leaving:
         return ()
-    what = "; ".join(departure.what for departure in found[:MOST_TOLD])
-    more = " and more" if len(found) > MOST_TOLD else ""
-    return (f"not solved in the plane across {_direction(seen)}: {what}{more}",)
+    what = "; ".join(departure.what for departure in leaving[:MAX_LISTED])
+    more = " and more" if len(leaving) > MAX_LISTED else ""
+    return (f"not solved in the plane across {_format_normal(plane_view)}: {what}{more}",)
 
 
-def _worse(found: list[Departure]) -> tuple[int, float]:
-    return len(found), max(departure.size for departure in found)
+def _severity(leaving: list[Departure]) -> tuple[int, float]:
+    return len(leaving), max(departure.size for departure in leaving)
 
 
-def _nearly(found: list[Departure]) -> bool:
-    """Whether a reader might expect that a scene is flat: one thing drives it out of the plane, or all by little."""
-    return (len(found) == 1 and found[0].acts) or all(departure.size < tolerances.NEARLY_FLAT for departure in found)
+def _is_nearly_flat(leaving: list[Departure]) -> bool:
+    """Whether a reader might expect the scene to be flat: one load or drive leaves the plane, or all departures are
+    small.
+    """
+    return (len(leaving) == 1 and leaving[0].acts) or all(
+        departure.size < tolerances.NEARLY_FLAT for departure in leaving
+    )
 
 
-def _of_couplings(seen: View) -> list[Departure]:
-    """What couplings count out of the plane, of a scene whose joints all stand along it or across: why it is none."""
-    if not seen.scene.mechanism.couplings or any(stance.off > tolerances.FLAT for stance in seen.stances):
+def _coupling_departures(plane_view: PlaneView) -> list[Departure]:
+    """Return the coordinates out of the plane that couplings contain, if all joints are along the normal or across
+    it.
+    """
+    if not plane_view.scene.mechanism.couplings or any(
+        stance.misalignment > tolerances.FLAT for stance in plane_view.orientations
+    ):
         return []
-    from heuncli.multibody.reduction.plane.coupled import leaving  # few scenes have them
+    from heuncli.multibody.reduction.plane.coupled import iter_coupling_departures  # few scenes have them
 
-    return list(leaving(seen, None))
+    return list(iter_coupling_departures(plane_view, None))
 
 
-def _reduction(seen: View) -> Reduction | tuple[str, ...]:
+def _make_reduction(plane_view: PlaneView) -> Reduction | tuple[str, ...]:
     try:
-        flat = flat_scene(seen)
-    except NotTold as missing:
-        return (f"not solved in the plane across {_direction(seen)}: {missing}",)
-    states = States(seen, flat)
-    where = f"solved in the plane across {_direction(seen)}: "
-    if all(seen.upright):
-        why = "the joints leave no other motion than turns about that direction and shifts across it"
-        return Reduction(flat, states.embed, states.restrict, (where + why,))
-    why = "the scene is its own mirror image in it, and so is its motion, were it stable against leaving it or not"
+        flat = make_flat_scene(plane_view)
+    except UnrepresentableLoadError as missing:
+        return (f"not solved in the plane across {_format_normal(plane_view)}: {missing}",)
+    states = PlaneStateMap(plane_view, flat)
+    where = f"solved in the plane across {_format_normal(plane_view)}: "
+    if all(plane_view.upright):
+        reason = "the joints leave no other motion than turns about that direction and shifts across it"
+        return Reduction(flat, states.embed, states.restrict, (where + reason,))
+    reason = "the scene is its own mirror image in it, and so is its motion, were it stable against leaving it or not"
     hidden = "whether the motion in the plane is stable against leaving it: what is integrated cannot leave it"
-    return Reduction(flat, states.embed, states.restrict, (where + why,), (hidden,))
+    return Reduction(flat, states.embed, states.restrict, (where + reason,), (hidden,))
 
 
-def _direction(seen: View) -> str:
-    """The normal in words."""
-    n = seen.n
+def _format_normal(plane_view: PlaneView) -> str:
+    """Format the normal."""
+    n = plane_view.n
     for k, name in enumerate("xyz"):
         if np.count_nonzero(n) == 1 and n[k] != 0.0:
             return name

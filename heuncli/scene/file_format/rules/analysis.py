@@ -1,22 +1,22 @@
-"""What is asked: instants in order, a type that fits them, a tolerance that can be met."""
+"""Rules about the analysis: output instants, a type that fits them, a tolerance that can be met."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.scene.file_format.methods import unfit_tolerance
+from heuncli.scene.file_format.methods import find_tolerance_problem
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
-from heuncli.scene.file_format.semantics import MOST_SAMPLES
+from heuncli.scene.file_format.semantics import MAX_SAMPLES
 
-START = "shift all times, and t in loads with them"
-SMALLEST = "2 are the start and the end; for the start alone: {type: state}"
-LONGEST = 1e15  # seconds: thirty million years, in which no run counts a second any more
-ASCEND = "sort them, and give each once"
+START_HINT = "shift all times, and t in loads with them"
+FEWEST_SAMPLES_HINT = "2 are the start and the end; for the start alone: {type: state}"
+MAX_DURATION = 1e15  # [s] thirty million years
+ASCENDING_HINT = "sort them, and give each once"
 
 
 @rule("times")
-def times(draft: DraftDocument) -> Iterator[Violation]:
-    """Instants are given once, ascend, and do not lie before the start."""
+def check_times(draft: DraftDocument) -> Iterator[Violation]:
+    """Output instants are given in one way, ascend, and do not lie before the start."""
     analysis = draft.document.analysis
     path = ("analysis",)
     if analysis.times is not None:
@@ -27,10 +27,10 @@ def times(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "times"), "times is an empty list", "list the instants: [0, 0.5, 1]")
         for i, t in enumerate(analysis.times):
             if t < 0.0:
-                yield Violation((*path, "times", i), f"the run starts at 0; {t:g} s lies before it", START)
+                yield Violation((*path, "times", i), f"the run starts at 0; {t:g} s lies before it", START_HINT)
             elif i and t <= analysis.times[i - 1]:
                 message = f"times ascend, but {t:g} follows {analysis.times[i - 1]:g}"
-                yield Violation((*path, "times", i), message, ASCEND)
+                yield Violation((*path, "times", i), message, ASCENDING_HINT)
         if analysis.times == [0.0] and analysis.type in (None, "motion"):
             yield Violation((*path, "times"), "a motion that ends when it starts",
                             "for the start alone: analysis: {type: state}")  # fmt: skip
@@ -39,26 +39,26 @@ def times(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "samples"), "samples without a duration", "analysis: {duration: 2, samples: 201}", key=True
             )
-        if not 2 <= analysis.samples <= MOST_SAMPLES:
-            message = f"samples counts both ends: 2 to {MOST_SAMPLES}, not {analysis.samples}"
-            hint = "extremes are searched between the samples, too" if analysis.samples > 2 else SMALLEST
+        if not 2 <= analysis.samples <= MAX_SAMPLES:
+            message = f"samples counts both ends: 2 to {MAX_SAMPLES}, not {analysis.samples}"
+            hint = "extremes are searched between the samples, too" if analysis.samples > 2 else FEWEST_SAMPLES_HINT
             yield Violation((*path, "samples"), message, hint)
     last = max([analysis.duration or 0.0, *(analysis.times or [])])
-    if last > LONGEST:
+    if last > MAX_DURATION:
         key = "duration" if analysis.times is None else "times"
-        message = f"a run of {last:g} s; at most {LONGEST:g} s are run"
+        message = f"a run of {last:g} s; at most {MAX_DURATION:g} s are run"
         yield Violation((*path, key), message, "is its unit right? what goes on as it is needs no run: type: state")
 
 
 @rule("analysis-type")
-def analysis_type(draft: DraftDocument) -> Iterator[Violation]:
-    """The type fits the rest."""
+def check_analysis_type(draft: DraftDocument) -> Iterator[Violation]:
+    """The type fits the other keys of the spec."""
     analysis = draft.document.analysis
     path = ("analysis", "type")
-    timed = analysis.duration is not None or analysis.times is not None
-    if analysis.type == "motion" and not timed:
+    has_duration = analysis.duration is not None or analysis.times is not None
+    if analysis.type == "motion" and not has_duration:
         yield Violation(path, "a motion needs a duration or times", "analysis: {duration: 2, samples: 201}")
-    if analysis.type in ("state", "impulse", "rest") and timed:
+    if analysis.type in ("state", "impulse", "rest") and has_duration:
         yield Violation(
             path,
             f"type: {analysis.type} is one instant and takes no duration or times",
@@ -72,30 +72,30 @@ def analysis_type(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("rest-start")
-def rest_start(draft: DraftDocument) -> Iterator[Violation]:
-    """What is looked for at rest has no start velocities; those of what is driven are the drives' own."""
+def check_rest_start(draft: DraftDocument) -> Iterator[Violation]:
+    """A search for a rest pose has no start velocities; driven joints take theirs from the drives."""
     document = draft.document
     if document.analysis.type != "rest":
         return
     hint = "leave it out, or ask for a motion"
     driven = {drive.joint for drive in document.drives.values()}
     for name, joint in document.joints.items():
-        given = getattr(joint, "initial", None)
+        initial = getattr(joint, "initial", None)
         for key in ("rate", "speed"):
-            if name not in driven and getattr(given, key, None):
+            if name not in driven and getattr(initial, key, None):
                 yield Violation(("joints", name, "initial", key), f"a rest has no start {key}", hint, key=True)
     for name, body in document.bodies.items():
         for key in ("velocity", "angular_velocity"):
             value = getattr(body, key)
             if value is not None and any(getattr(value, "vector", value)):
-                what = key.replace("_", " ")
-                yield Violation(("bodies", name, key), f"a rest has no start {what}", hint, key=True)
+                quantity = key.replace("_", " ")
+                yield Violation(("bodies", name, key), f"a rest has no start {quantity}", hint, key=True)
 
 
 @rule("tolerance")
-def tolerance(draft: DraftDocument) -> Iterator[Violation]:
-    """A tolerance is between rounding and the whole."""
+def check_tolerance(draft: DraftDocument) -> Iterator[Violation]:
+    """A tolerance lies between rounding error and 1."""
     value = draft.document.analysis.tolerance
-    found = unfit_tolerance(value) if value is not None else None
-    if found is not None:
-        yield Violation(("analysis", found.key), found.message, found.hint)
+    problem = find_tolerance_problem(value) if value is not None else None
+    if problem is not None:
+        yield Violation(("analysis", problem.key), problem.message, problem.hint)

@@ -1,4 +1,4 @@
-"""Bodies: mass properties that a rigid body can have, given once."""
+"""Rules about bodies: mass properties that a rigid body can have, each given once."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.scene.file_format.semantics import body_axes, tensor
-from heuncli.scene.file_format.turns import principal
+from heuncli.scene.file_format.semantics import inertia_tensor, orientation_matrix
+from heuncli.scene.file_format.turns import symmetric_eigenvalues
 
-# what to do about numbers that are too small
-SIZES = "give it above 0, in SI or with its unit"
-EDGES = "its three edges, in m"
-FULL = "the rate at which friction is nearly full, small beside those of the motion: 0.01"
-LEAST = {
+# hints for numbers that are too small
+SIZES_HINT = "give it above 0, in SI or with its unit"
+EDGES_HINT = "its three edges, in m"
+FULL_FRICTION_HINT = "the rate at which friction is nearly full, small beside those of the motion: 0.01"
+POSITIVE_HINTS = {
     "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
     "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
     "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
     "scale": "the length of one unit of the file: 1 mm",
     "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
-TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
+NEGATIVE_HINTS = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
 
 
 @rule("no-bodies")
-def no_bodies(draft: DraftDocument) -> Iterator[Violation]:
+def check_has_bodies(draft: DraftDocument) -> Iterator[Violation]:
     """A scene has bodies."""
     if not draft.names.entries["bodies"] and "bodies" not in draft.unread:
         yield Violation(
@@ -37,13 +37,13 @@ def no_bodies(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("mass-or-shapes")
-def mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
-    """Either mass, center and inertia, or shapes."""
+def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
+    """A body has either mass, center and inertia, or shapes."""
     for name, body in draft.document.bodies.items():
-        given = [key for key in ("mass", "center", "inertia") if getattr(body, key) is not None]
+        given_keys = [key for key in ("mass", "center", "inertia") if getattr(body, key) is not None]
         path = ("bodies", name)
         if body.shapes is not None:
-            extra = [*given, *(["deviation"] if body.deviation is not None else [])]
+            extra = [*given_keys, *(["deviation"] if body.deviation is not None else [])]
             if extra:
                 yield Violation(
                     (*path, extra[0]), f"{' and '.join(extra)} beside shapes", "shapes give all of them", key=True
@@ -52,35 +52,37 @@ def mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(
                     (*path, "shapes"), "shapes is an empty list", "without shapes give mass, center and inertia"
                 )
-        elif len(given) < 3:
-            missing = [key for key in ("mass", "center", "inertia") if key not in given]
+        elif len(given_keys) < 3:
+            missing = [key for key in ("mass", "center", "inertia") if key not in given_keys]
             hint = "inertia: [0, 0, 0] makes a point mass" if missing == ["inertia"] else "or give shapes instead"
             yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
 
 
 @rule("not-positive")
-def not_positive(draft: DraftDocument) -> Iterator[Violation]:
-    """Masses, sizes, stiffnesses are more than 0."""
+def check_positive(draft: DraftDocument) -> Iterator[Violation]:
+    """Masses, sizes and stiffnesses are more than 0."""
     for name, body in draft.document.bodies.items():
         path: Path_ = ("bodies", name)
-        yield from positive(path, body, "mass")
+        yield from require_positive(path, body, "mass")
         if body.piece is not None:
-            yield from positive((*path, "piece"), body.piece, "mass")
+            yield from require_positive((*path, "piece"), body.piece, "mass")
         for i, shape in enumerate(body.shapes or []):
-            at = (*path, "shapes", i)
-            yield from positive(at, shape, "mass", "density", "line_density", "scale")
+            shape_path = (*path, "shapes", i)
+            yield from require_positive(shape_path, shape, "mass", "density", "line_density", "scale")
             if not isinstance(shape, fs.ConeShape):
-                yield from positive(at, shape, "radius", "inner_radius")
+                yield from require_positive(shape_path, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
                 message = "a cone's radii must not be negative, nor both 0"
-                yield Violation((*at, "radius"), message, "to_radius: 0 is a tip")
+                yield Violation((*shape_path, "radius"), message, "to_radius: 0 is a tip")
             if isinstance(shape, fs.BoxShape) and min(shape.size) <= 0.0:
-                yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES)
+                yield Violation(
+                    (*shape_path, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES_HINT
+                )
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
-        yield from positive(path, joint, "length", "radius")
+        yield from require_positive(path, joint, "length", "radius")
         if isinstance(joint, f.Bearing) and joint.bearing is not None:
-            yield from positive((*path, "bearing"), joint.bearing, "diameter", "width")
+            yield from require_positive((*path, "bearing"), joint.bearing, "diameter", "width")
         if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
             message = f"a stiffness must be more than 0, not {joint.stiffness:g}"
             yield Violation((*path, "stiffness"), message, "{moment: 0} gives way to what others hold; {force: 0}, too")
@@ -92,40 +94,48 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
     for name, load in draft.document.forces.items():
         path = ("forces", name)
         if isinstance(load, f.FrictionEntry):
-            yield from positive(path, load, "radius", "length")
+            yield from require_positive(path, load, "radius", "length")
         if isinstance(load, f.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
-            yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL)
+            yield Violation(
+                (*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL_FRICTION_HINT
+            )
     for name, section in draft.document.sections.items():
         path = ("sections", name)
-        yield from positive(path, section, "strength")
+        yield from require_positive(path, section, "strength")
         if section.piece is not None:
-            yield from positive((*path, "piece"), section.piece, "mass")
+            yield from require_positive((*path, "piece"), section.piece, "mass")
         for kind in ("circle", "tube", "rectangle"):
-            shape_of = getattr(section.properties, kind, None)
-            if shape_of is not None:
-                yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
+            cross_section = getattr(section.properties, kind, None)
+            if cross_section is not None:
+                yield from require_positive(
+                    (*path, "properties", kind), cross_section, "radius", "inner_radius", "width", "height"
+                )
         if section.properties is not None:
-            yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+            yield from require_positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
     for name, wheel in draft.document.rolling.items():
-        yield from positive(("rolling", name), wheel, "radius")
-    yield from positive(("analysis",), draft.document.analysis, "duration", "step")
+        yield from require_positive(("rolling", name), wheel, "radius")
+    yield from require_positive(("analysis",), draft.document.analysis, "duration", "step")
 
 
-def positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
-    """The values given are more than 0."""
+def require_positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
+    """Yield a violation for each given value that is not more than 0."""
     for key in keys:
         value = getattr(owner, key, None)
         if isinstance(value, float) and value <= 0.0:
-            yield Violation((*path, key), f"{key} must be more than 0, not {value:g}", LEAST.get(key, SIZES))
+            yield Violation(
+                (*path, key), f"{key} must be more than 0, not {value:g}", POSITIVE_HINTS.get(key, SIZES_HINT)
+            )
 
 
 @rule("negative")
-def negative(draft: DraftDocument) -> Iterator[Violation]:
+def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
     """Coefficients of springs, dampers and friction, and tolerances of expectations, are not negative."""
     for name, load in draft.document.forces.items():
-        for key, value in resisting(load):
+        for key, value in iter_resistances(load):
             if isinstance(value, float) and value < 0.0:
-                hint = TURN_ROUND.get(key, "it resists with a number above 0; what drives is a torque, force or drive")
+                hint = NEGATIVE_HINTS.get(
+                    key, "it resists with a number above 0; what drives is a torque, force or drive"
+                )
                 yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
     for i, item in draft.document.expect.items():
         for key in ("rel", "abs"):
@@ -136,8 +146,8 @@ def negative(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
 
 
-def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
-    """Every number that tells how much a load resists; of a law of its own what it does is not told by a sign."""
+def iter_resistances(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
+    """Yield every number that says how strongly a load resists; laws are left out, because their sign says nothing."""
     keys = ["stiffness", "length", "damping", "sliding", "coefficient", "turning", "turning_damping", "limit"]
     if isinstance(load, f.FrictionEntry):
         keys += ["torque", "force"]
@@ -150,17 +160,17 @@ def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
 
 
 @rule("shape-form")
-def shape_form(draft: DraftDocument) -> Iterator[Violation]:
+def check_shape_form(draft: DraftDocument) -> Iterator[Violation]:
     """A shape has one of mass and density, and an extent."""
     for name, body in draft.document.bodies.items():
         for i, shape in enumerate(body.shapes or []):
             path = ("bodies", name, "shapes", i)
             density = "line_density" if isinstance(shape, fs.RodShape) else "density"
             if not isinstance(shape, fs.PointShape):
-                given = [key for key in ("mass", density) if getattr(shape, key) is not None]
-                if len(given) != 1:
-                    what = "both mass and" if given else "neither mass nor"
-                    yield Violation(path, f"{what} {density}", "give one of the two")
+                given_keys = [key for key in ("mass", density) if getattr(shape, key) is not None]
+                if len(given_keys) != 1:
+                    description = "both mass and" if given_keys else "neither mass nor"
+                    yield Violation(path, f"{description} {density}", "give one of the two")
             if isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape) and shape.from_ == shape.to:
                 yield Violation((*path, "to"), "from and to are the same point", "without a length it is type: point")
             if (
@@ -172,8 +182,8 @@ def shape_form(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation((*path, "inner_radius"), message, "a full one has no inner_radius")
 
 
-def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.PieceEntry]]:
-    """Every body and piece with an inertia."""
+def iter_inertia_owners(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.PieceEntry]]:
+    """Yield every body and piece with an inertia."""
     for name, body in draft.document.bodies.items():
         if body.inertia is not None:
             yield ("bodies", name), body
@@ -185,10 +195,10 @@ def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.Piece
 
 
 @rule("inertia-form")
-def inertia_form(draft: DraftDocument) -> Iterator[Violation]:
-    """One number in the plane only; deviation beside a list only; a tensor is symmetric."""
+def check_inertia_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A single number is for planar scenes only, deviation goes with a list only, a tensor is symmetric."""
     planar = draft.document.head.space == "planar"
-    for path, owner in tensors(draft):
+    for path, owner in iter_inertia_owners(draft):
         inertia = owner.inertia
         if isinstance(inertia, float) and not planar:
             yield Violation(
@@ -210,32 +220,36 @@ def inertia_form(draft: DraftDocument) -> Iterator[Violation]:
                     break
 
 
-def triangle(draft: DraftDocument) -> Iterator[tuple[Path_, str, float]]:
-    """Bodies whose principal moments no body has: path, the moments, by how much of the largest the rule is broken."""
-    for path, owner in tensors(draft):
+def iter_impossible_moments(draft: DraftDocument) -> Iterator[tuple[Path_, str, float]]:
+    """Yield principal moments that no body can have: path, moments as text, and the excess relative to the largest
+    moment.
+    """
+    for path, owner in iter_inertia_owners(draft):
         if isinstance(owner.inertia, float):
             moments: tuple[float, ...] = (owner.inertia,)
-            broken = 1.0 if owner.inertia < 0.0 else 0.0
+            excess = 1.0 if owner.inertia < 0.0 else 0.0
         else:
-            matrix = tensor(owner)
+            matrix = inertia_tensor(owner)
             a, b, c = moments = (
-                principal(matrix) if off_diagonal(matrix) else tuple(sorted(matrix[i][i] for i in range(3)))
+                symmetric_eigenvalues(matrix)
+                if has_off_diagonal(matrix)
+                else tuple(sorted(matrix[i][i] for i in range(3)))
             )
             scale = max(abs(a), abs(c))
-            broken = max(-a, c - a - b) / scale if scale > 0.0 else 0.0
-        if broken > tolerances.INERTIA_TYPED:
-            yield (*path, "inertia"), ", ".join(f"{m:g}" for m in moments), broken
+            excess = max(-a, c - a - b) / scale if scale > 0.0 else 0.0
+        if excess > tolerances.INERTIA_TYPED:
+            yield (*path, "inertia"), ", ".join(f"{m:g}" for m in moments), excess
 
 
-def off_diagonal(m: tuple[tuple[float, ...], ...]) -> bool:
-    return any(m[i][j] != 0.0 for i, j in ((0, 1), (0, 2), (1, 2)))
+def has_off_diagonal(matrix: tuple[tuple[float, ...], ...]) -> bool:
+    return any(matrix[i][j] != 0.0 for i, j in ((0, 1), (0, 2), (1, 2)))
 
 
 @rule("inertia-not-physical")
-def inertia_not_physical(draft: DraftDocument) -> Iterator[Violation]:
+def check_inertia_physical(draft: DraftDocument) -> Iterator[Violation]:
     """No principal moment is negative, or greater than the sum of the others."""
-    for path, moments, broken in triangle(draft):
-        if broken > tolerances.INERTIA_REFUSED:
+    for path, moments, excess in iter_impossible_moments(draft):
+        if excess > tolerances.INERTIA_REFUSED:
             message = f"no body has the principal moments {moments}: each is at most the sum of the other two"
             yield Violation(
                 path, message, "is it about the centre of mass? is the sign of the deviation right (element = -D)?"
@@ -243,28 +257,28 @@ def inertia_not_physical(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("inertia-rounded", is_warning=True)
-def inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
-    """Moments that break the rule by less than 1e-3 are taken for rounded."""
-    for path, moments, broken in triangle(draft):
-        if broken <= tolerances.INERTIA_REFUSED:
+def check_inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
+    """Moments that break the triangle rule by less than 1e-3 are assumed to be rounded."""
+    for path, moments, excess in iter_impossible_moments(draft):
+        if excess <= tolerances.INERTIA_REFUSED:
             yield Violation(
-                path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are",
+                path, f"the principal moments {moments} break A1 + A2 >= A3 by {excess:.1e}; taken as they are",
                 "give them with more digits",
             )  # fmt: skip
 
 
 @rule("orientation")
-def orientation(draft: DraftDocument) -> Iterator[Violation]:
+def check_orientation(draft: DraftDocument) -> Iterator[Violation]:
     """An orientation has one form, and is a rotation."""
-    for path, value in orientations(draft):
+    for path, value in iter_orientations(draft):
         try:
-            body_axes(value)
+            orientation_matrix(value)
         except Finding as finding:
             yield Violation(path, finding.message, finding.hint)
 
 
-def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]:
-    """Every orientation in the document."""
+def iter_orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]:
+    """Yield every orientation in the document."""
     for name, body in draft.document.bodies.items():
         if body.orientation is not None:
             yield ("bodies", name, "orientation"), body.orientation
@@ -280,8 +294,8 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
 
 
 @rule("piece-form")
-def piece_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A piece is for the one cut of a body without shapes."""
+def check_piece_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A piece is for the only cut of a body without shapes."""
     cuts: dict[str, list[str]] = {}
     for name, section in draft.document.sections.items():
         cuts.setdefault(section.body, []).append(name)

@@ -1,4 +1,6 @@
-"""Cams: a disc on a pin and a follower on a slide or a pin of the same body, its lift periodic, all across one axis."""
+"""Rules about cams: a disc on a pin, a follower on a slide or pin of the same body, axes that fit, and a periodic
+lift.
+"""
 
 from __future__ import annotations
 
@@ -17,17 +19,19 @@ CONTACTS = {
 }
 
 
-def cams(draft: DraftDocument) -> Iterator[tuple[str, CamEntry]]:
-    """Every cam."""
+def iter_cams(draft: DraftDocument) -> Iterator[tuple[str, CamEntry]]:
+    """Yield every cam with its name."""
     for name, coupling in draft.document.couplings.items():
         if isinstance(coupling, CamEntry):
             yield name, coupling
 
 
 @rule("cam-joints")
-def cam_joints(draft: DraftDocument) -> Iterator[Violation]:
-    """A cam is of a pin and of a slide or pin whose `from` is the same body, the follower's point is on it."""
-    for name, cam in cams(draft):
+def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
+    """A cam couples a pin with a slide or pin whose `from` is the same body; the follower's point is on the
+    follower.
+    """
+    for name, cam in iter_cams(draft):
         path = ("couplings", name, "of")
         if len(cam.of) != 2:
             yield Violation(path, f"{len(cam.of)} joints", "of: [the disc's pin, the follower's slide or pin]")
@@ -47,34 +51,38 @@ def cam_joints(draft: DraftDocument) -> Iterator[Violation]:
             )
         elif shaft.to.body == follower.to.body:
             yield Violation(path, f"disc and follower are both {shaft.to.body}", "a cam moves another body")
-        elif not stands(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
-            how = "along" if isinstance(follower, f.PinJoint) else "across"
-            message = f"the axis of {cam.of[1]} is not {how} that of {cam.of[0]}"
+        elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
+            relation = "along" if isinstance(follower, f.PinJoint) else "across"
+            message = f"the axis of {cam.of[1]} is not {relation} that of {cam.of[0]}"
             yield Violation(path, message, "a follower moves across the disc's axis")
         if cam.at.body != follower.to.body:
             message = f"the point is on {cam.at.body}, but the follower is {follower.to.body}"
             yield Violation(("couplings", name, "at"), message, "the roller's centre, or a point of the face")
 
 
-def stands(a: tuple[float, float, float], b: tuple[float, float, float], along: bool) -> bool:
-    """Whether two directions are parallel, or else perpendicular."""
-    size = math.hypot(*a) * math.hypot(*b)
-    dot = sum(x * y for x, y in zip(a, b, strict=True))
-    cross = math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-    return (cross if along else abs(dot)) <= tolerances.TYPED_AXES * size
+def are_aligned(first: tuple[float, float, float], second: tuple[float, float, float], parallel: bool) -> bool:
+    """Whether two directions are parallel or, with parallel=False, perpendicular."""
+    size = math.hypot(*first) * math.hypot(*second)
+    inner = sum(x * y for x, y in zip(first, second, strict=True))
+    cross = math.hypot(
+        first[1] * second[2] - first[2] * second[1],
+        first[2] * second[0] - first[0] * second[2],
+        first[0] * second[1] - first[1] * second[0],
+    )
+    return (cross if parallel else abs(inner)) <= tolerances.TYPED_AXES * size
 
 
 @rule("cam-contact")
-def cam_contact(draft: DraftDocument) -> Iterator[Violation]:
-    """A roller has a radius, a flat face a normal, a point neither; and what is guided on both sides never lifts."""
-    for name, cam in cams(draft):
+def check_cam_contact(draft: DraftDocument) -> Iterator[Violation]:
+    """A roller has a radius, a flat face a normal, a point neither; a follower guided on both sides never lifts."""
+    for name, cam in iter_cams(draft):
         path = ("couplings", name)
-        for contact, (key, what) in CONTACTS.items():
-            given = getattr(cam, key) is not None
-            if given and contact != cam.contact:
+        for contact, (key, meaning) in CONTACTS.items():
+            is_given = getattr(cam, key) is not None
+            if is_given and contact != cam.contact:
                 yield Violation((*path, key), f"a {cam.contact} has no {key}", f"leave it out, or contact: {contact}")
-            elif not given and contact == cam.contact:
-                yield Violation((*path, "contact"), f"a {contact} without {key}", f"{key}: {what}")
+            elif not is_given and contact == cam.contact:
+                yield Violation((*path, "contact"), f"a {contact} without {key}", f"{key}: {meaning}")
         if cam.radius is not None and cam.radius <= 0.0:
             yield Violation((*path, "radius"), f"radius {cam.radius:g}", "a roller has one; without it, contact: point")
         if cam.normal == (0.0, 0.0, 0.0):
@@ -87,11 +95,13 @@ def cam_contact(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("cam-lift")
-def cam_lift(draft: DraftDocument) -> Iterator[Violation]:
-    """The lift goes on smoothly as the disc turns round: its period is one turn, or a whole part of one; or it ends."""
-    for name, cam in cams(draft):
+def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
+    """The lift continues smoothly over a turn: its period is one turn or a whole part of one; or it covers part of a
+    turn.
+    """
+    for name, cam in iter_cams(draft):
         if cam.lift.kind != PERIODIC:
-            yield from open_lift(draft, name, cam)
+            yield from check_partial_lift(draft, name, cam)
             continue
         period = cam.lift.numbers[0]
         turns = math.tau / period if period > 0.0 else 0.0
@@ -100,17 +110,19 @@ def cam_lift(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or a whole part of it")
 
 
-def open_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
-    """What is wrong with a lift over a part of a turn: it is of a disc that swings, and begins on it."""
+def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
+    """Yield what is wrong with a lift over part of a turn: at most one turn, and a prescribed start angle lies within
+    it.
+    """
     first, last = cam.lift.x[0], cam.lift.x[-1]
     if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
         message = f"the lift {cam.lift.name} covers {math.degrees(last - first):.6g} deg: a disc has a turn and no more"
         yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
         return
     shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
-    held = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
-    if held is not None and not first + cam.phase <= held <= last + cam.phase:
+    start_angle = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
+    if start_angle is not None and not first + cam.phase <= start_angle <= last + cam.phase:
         covered = f"{math.degrees(first + cam.phase):.6g} to {math.degrees(last + cam.phase):.6g} deg"
-        message = f"angle {math.degrees(held):.6g} deg is off the lift of cam {name}, which covers {covered}"
+        message = f"angle {math.degrees(start_angle):.6g} deg is off the lift of cam {name}, which covers {covered}"
         hint = "hold the disc where it has a lift, or give the lift a period"
         yield Violation(("joints", cam.of[0], "initial", "angle"), message, hint)

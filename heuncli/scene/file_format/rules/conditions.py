@@ -1,41 +1,45 @@
-"""Conditions that end a motion or are watched in it: of motions alone, on numbers that the results will have."""
+"""Rules about conditions that end a motion or are monitored in it: only in motions, on numbers that the results
+have.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from heuncli.results.results_schema import AFTER_THE_RUN, beside_magnitudes, spelled_first
+from heuncli.results.results_schema import AFTER_THE_RUN, first_element_suffix, independent_axes
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.names import UNTIL, is_name
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.scene.file_format.semantics import type_of
+from heuncli.scene.file_format.semantics import find_analysis_type
 
 if TYPE_CHECKING:
-    from heuncli.scene.file_format.rules.outcome import Result
+    from heuncli.scene.file_format.rules.outcome import PathTarget
 
 
-def conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
-    """All conditions with their paths."""
+def iter_conditions(draft: DraftDocument) -> Iterator[tuple[Path_, object]]:
+    """Yield all conditions with their paths."""
     analysis = draft.document.analysis
     if analysis.until is not None:
         yield ("analysis", UNTIL), analysis.until
-    for name, given in analysis.events.items():
-        yield ("analysis", "events", name), given
+    for name, condition in analysis.events.items():
+        yield ("analysis", "events", name), condition
 
 
-def on_results(draft: DraftDocument) -> Iterator[tuple[Path_, f.ResultConditionEntry, Result]]:
-    """Those on numbers of the results, with what their paths lead to; None where only the run can tell."""
-    on_paths = [(path, given) for path, given in conditions(draft) if isinstance(given, f.ResultConditionEntry)]
-    if on_paths:
-        from heuncli.scene.file_format.rules.outcome import reached_in  # a run without any starts faster
+def iter_result_conditions(draft: DraftDocument) -> Iterator[tuple[Path_, f.ResultConditionEntry, PathTarget]]:
+    """Yield the conditions on results, with the targets of their paths; None where only the run can tell."""
+    result_conditions = [
+        (path, condition) for path, condition in iter_conditions(draft) if isinstance(condition, f.ResultConditionEntry)
+    ]
+    if result_conditions:
+        from heuncli.scene.file_format.rules.outcome import find_path_target  # a run without any starts faster
 
-        yield from ((path, given, reached_in(draft, given.of)) for path, given in on_paths)
+        yield from ((path, condition, find_path_target(draft, condition.of)) for path, condition in result_conditions)
 
 
 @rule("event-name")
-def event_name(draft: DraftDocument) -> Iterator[Violation]:
-    """Events have names of their own."""
+def check_event_name(draft: DraftDocument) -> Iterator[Violation]:
+    """Events have valid names of their own."""
     for name in draft.document.analysis.events:
         path = ("analysis", "events", name)
         if not is_name(name):
@@ -46,50 +50,52 @@ def event_name(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("event-motion")
-def event_motion(draft: DraftDocument) -> Iterator[Violation]:
-    """Only in a motion does anything become true."""
-    kind = type_of(draft.document)
+def check_event_motion(draft: DraftDocument) -> Iterator[Violation]:
+    """A condition needs a motion in which it can become true."""
+    kind = find_analysis_type(draft.document)
     if kind == "motion" or "analysis" in draft.unread:
         return
-    for path, _ in conditions(draft):
+    for path, _ in iter_conditions(draft):
         message = f"{path[-1]}: type: {kind} is one instant, at which nothing changes"
         yield Violation(path, message, "give analysis a duration, the longest that is to be waited", key=True)
 
 
 @rule("event-path")
-def event_path(draft: DraftDocument) -> Iterator[Violation]:
-    """`of` leads to a number at each instant: of a vector its magnitude counts, of a run of cuts its whole stretch."""
+def check_event_path(draft: DraftDocument) -> Iterator[Violation]:
+    """`of` leads to one number per instant: of a vector the magnitude, of a run of cuts the whole run."""
     runs: dict[str, bool] | None = None
-    for path, given, found in on_results(draft):
-        from heuncli.scene.file_format.rules.outcome import NumberKind, runs_of, wrong_path
+    for path, condition, target in iter_result_conditions(draft):
+        from heuncli.scene.file_format.rules.outcome import NumberKind, find_cut_runs, find_path_error
 
-        where = (*path, "of")
-        runs = runs if runs is not None else runs_of(draft)
-        if (wrong := wrong_path(given.of, draft.names, runs)) is not None:
-            yield Violation(where, *wrong)
-        elif not isinstance(found, NumberKind) or not found.known or given.of.split(".")[0] in AFTER_THE_RUN:
-            if given.of.split(".")[0] not in draft.unread:
-                message = f"'{given.of}': only the run can tell what that is"
-                yield Violation(where, message, "name a number of joints, sections, coordinates, energy, ...")
-        elif not found.timed:
-            yield Violation(where, f"'{given.of}' does not run over the instants", "name a number that changes in time")
-        elif beside_magnitudes(found.axes):
-            hint = f"name one of them, as {given.of}{spelled_first(found.axes)}"
-            yield Violation(where, f"'{given.of}' is several numbers", hint)
+        of_path = (*path, "of")
+        runs = runs if runs is not None else find_cut_runs(draft)
+        if (wrong := find_path_error(condition.of, draft.names, runs)) is not None:
+            yield Violation(of_path, *wrong)
+        elif not isinstance(target, NumberKind) or not target.is_known or condition.of.split(".")[0] in AFTER_THE_RUN:
+            if condition.of.split(".")[0] not in draft.unread:
+                message = f"'{condition.of}': only the run can tell what that is"
+                yield Violation(of_path, message, "name a number of joints, sections, coordinates, energy, ...")
+        elif not target.is_timed:
+            yield Violation(
+                of_path, f"'{condition.of}' does not run over the instants", "name a number that changes in time"
+            )
+        elif independent_axes(target.axes):
+            hint = f"name one of them, as {condition.of}{first_element_suffix(target.axes)}"
+            yield Violation(of_path, f"'{condition.of}' is several numbers", hint)
 
 
 @rule("event-limit")
-def event_limit(draft: DraftDocument) -> Iterator[Violation]:
-    """A number is below one limit or above one, in its dimension."""
-    for path, given, found in on_results(draft):
-        limits = [key for key in ("below", "above") if getattr(given, key) is not None]
+def check_event_limit(draft: DraftDocument) -> Iterator[Violation]:
+    """A condition has either a lower or an upper limit, in the dimension of the result."""
+    for path, condition, target in iter_result_conditions(draft):
+        limits = [key for key in ("below", "above") if getattr(condition, key) is not None]
         if len(limits) != 1:
             message = "both below and above" if limits else "neither below nor above"
             hint = "one event a limit" if limits else "{of: joints.wall.force.x, below: 0}"
             yield Violation(path, message, hint)
         else:
-            from heuncli.scene.file_format.rules.expect import dimensions
+            from heuncli.scene.file_format.rules.expect import check_dimensions
             from heuncli.scene.file_format.rules.outcome import NumberKind
 
-            known = found.dimensions if isinstance(found, NumberKind) else ()
-            yield from dimensions((*path, limits[0]), getattr(given, limits[0]), known)
+            allowed = target.dimensions if isinstance(target, NumberKind) else ()
+            yield from check_dimensions((*path, limits[0]), getattr(condition, limits[0]), allowed)

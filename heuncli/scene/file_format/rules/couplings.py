@@ -1,12 +1,12 @@
-"""Couplings: of joints that there are and that have the coordinates which are coupled."""
+"""Rules about couplings: of joints that exist and have the coordinates that are coupled."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
-from heuncli.base.joint_kinds import TYPES, named
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.joint_kinds import TYPES, format_kind_names
+from heuncli.base.nearest import suggest
 from heuncli.scene.file_format import format_couplings as f
 from heuncli.scene.file_format.format import FrictionEntry
 from heuncli.scene.file_format.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
@@ -16,46 +16,50 @@ COUNTS = {"gear": (2,), "belt": (2,), "screw": (1, 2), "differential": (3,)}  # 
 
 
 @rule("coupled-joint")
-def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
-    """What is coupled are joints with coordinates, each once."""
+def check_coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
+    """Couplings name joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        of = [] if isinstance(coupling, f.RopeEntry) else coupling.of
-        for i, word in enumerate(of):
+        coupled_words = [] if isinstance(coupling, f.RopeEntry) else coupling.of
+        for i, word in enumerate(coupled_words):
             path = ("couplings", name, "of", i)
             joint, _, quantity = word.partition(".")
             if joint not in joints:
-                yield Violation(path, f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints") or "")
+                yield Violation(path, f"'{joint}' is not a joint", suggest(joint, joints, "joints") or "")
                 continue
             kind = TYPES.get(joints[joint])
             if kind is not None and (not kind.coordinates or kind.follows_path):
-                able = named([kind for kind in TYPES.values() if kind.coordinates and not kind.follows_path], "and")
+                kinds_text = format_kind_names(
+                    [kind for kind in TYPES.values() if kind.coordinates and not kind.follows_path], "and"
+                )
                 if kind.follows_path:
-                    yield Violation(path, f"the travel of a {kind.name} cannot be coupled", f"couplings are of {able}")
+                    yield Violation(
+                        path, f"the travel of a {kind.name} cannot be coupled", f"couplings are of {kinds_text}"
+                    )
                     continue
-                yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
+                yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {kinds_text}")
             elif kind is not None and quantity and quantity not in kind.coordinates:
                 yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")
-            if word in of[:i]:
+            if word in coupled_words[:i]:
                 yield Violation(path, f"{word} is coupled to itself", "name another joint")
 
 
 @rule("coupling-count")
-def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
-    """Every type is of so many joints."""
+def check_coupling_count(draft: DraftDocument) -> Iterator[Violation]:
+    """Every type of coupling has its number of joints."""
     for name, coupling in draft.document.couplings.items():
         if not isinstance(coupling, GearEntry | BeltEntry | ScrewEntry | DifferentialEntry):
             continue
-        counts, of = COUNTS[coupling.type], coupling.of
-        if len(of) not in counts:
-            some = " or ".join(map(str, counts))
-            message = f"{', '.join(of) or 'nothing'} is named"
-            yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
+        counts, coupled_joints = COUNTS[coupling.type], coupling.of
+        if len(coupled_joints) not in counts:
+            counts_text = " or ".join(map(str, counts))
+            message = f"{', '.join(coupled_joints) or 'nothing'} is named"
+            yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {counts_text}")
 
 
 @rule("gear-ratio")
-def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
-    """Gears have a ratio, or teeth, none of them zero, and angles that teeth have."""
+def check_gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
+    """Gears have a ratio or teeth, none of them zero, and angles that teeth can have."""
     for name, gear in draft.document.couplings.items():
         if not isinstance(gear, GearEntry):
             continue
@@ -66,23 +70,23 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
         if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
             hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
-            told = ", ".join(f"{z:g}" for z in gear.teeth)
-            yield Violation((*path, "teeth"), f"teeth {told} are no pair of gears", hint)
+            teeth_text = ", ".join(f"{z:g}" for z in gear.teeth)
+            yield Violation((*path, "teeth"), f"teeth {teeth_text} are no pair of gears", hint)
         if gear.internal and gear.teeth is None and gear.ratio is None:
             yield Violation(
                 (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
             )
-        for key, most in (("pressure_angle", 60.0), ("helix", 80.0)):
+        for key, limit in (("pressure_angle", 60.0), ("helix", 80.0)):
             angle = math.degrees(getattr(gear, key))
-            if not (0.0 if key == "pressure_angle" else -most) <= angle <= most:
-                yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {most:g} deg")
+            if not (0.0 if key == "pressure_angle" else -limit) <= angle <= limit:
+                yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {limit:g} deg")
 
 
 @rule("flanks-rub")
-def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
-    """Friction by what presses knows no radial part of tooth forces, which presses, too."""
+def check_friction_with_teeth(draft: DraftDocument) -> Iterator[Violation]:
+    """Friction by a coefficient needs gears without a pressure angle: it ignores the radial part of tooth forces."""
     forces = draft.document.forces.values()
-    if not any(isinstance(own, FrictionEntry) and own.coefficient is not None for own in forces):
+    if not any(isinstance(load, FrictionEntry) and load.coefficient is not None for load in forces):
         return
     for name, gear in draft.document.couplings.items():
         if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
@@ -92,8 +96,8 @@ def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("belt-name")
-def belt_name(draft: DraftDocument) -> Iterator[Violation]:
-    """The pretension of a belt is a load by the belt's name, and where it would push an event."""
+def check_belt_name(draft: DraftDocument) -> Iterator[Violation]:
+    """A belt's name is free for the load of its pretension, and the name of its slack event is free."""
     for name, belt in draft.document.couplings.items():
         if not isinstance(belt, BeltEntry):
             continue
@@ -107,26 +111,28 @@ def belt_name(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("coupling-sizes")
-def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
-    """Leads that are not zero, radii above zero, no pretension below it; differentials that move all three shafts."""
-    for name, own in draft.document.couplings.items():
+def check_coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
+    """Leads are not zero, radii are positive, pretensions are not negative, differentials move all three shafts."""
+    for name, coupling in draft.document.couplings.items():
         path = ("couplings", name)
-        if isinstance(own, ScrewEntry) and own.lead == 0.0:
+        if isinstance(coupling, ScrewEntry) and coupling.lead == 0.0:
             yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
-        if isinstance(own, BeltEntry):
-            if len(own.radii) != 2 or any(r <= 0.0 for r in own.radii):
-                told = ", ".join(f"{r:g}" for r in own.radii)
-                yield Violation((*path, "radii"), f"{told} m are no radii of two pulleys", "two lengths above zero")
-            if own.pretension < 0.0:
+        if isinstance(coupling, BeltEntry):
+            if len(coupling.radii) != 2 or any(r <= 0.0 for r in coupling.radii):
+                radii_text = ", ".join(f"{r:g}" for r in coupling.radii)
+                yield Violation(
+                    (*path, "radii"), f"{radii_text} m are no radii of two pulleys", "two lengths above zero"
+                )
+            if coupling.pretension < 0.0:
                 yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
-        if isinstance(own, DifferentialEntry) and own.ratio in (0.0, 1.0):
-            message = f"a ratio of {own.ratio:g} leaves one of the three alone"
+        if isinstance(coupling, DifferentialEntry) and coupling.ratio in (0.0, 1.0):
+            message = f"a ratio of {coupling.ratio:g} leaves one of the three alone"
             yield Violation((*path, "ratio"), message, "of equal wheels it is -1; with type: ratio any relation goes")
 
 
 @rule("coupling-terms")
-def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
-    """A linear relation has a factor for each joint, none of them zero, and two joints at least."""
+def check_coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
+    """A linear relation has two joints at least, and a factor for each, none of them zero."""
     for name, coupling in draft.document.couplings.items():
         if not isinstance(coupling, RatioEntry):
             continue
@@ -140,7 +146,7 @@ def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("rope-way")
-def rope_way(draft: DraftDocument) -> Iterator[Violation]:
+def check_rope_places(draft: DraftDocument) -> Iterator[Violation]:
     """A rope has two places at least; each is a point, or a sheave with a radius and perhaps an axis and a side."""
     for name, rope in draft.document.couplings.items():
         if not isinstance(rope, f.RopeEntry):
@@ -149,12 +155,12 @@ def rope_way(draft: DraftDocument) -> Iterator[Violation]:
         if len(rope.through) < 2:
             yield Violation(path, f"a rope through {len(rope.through)} places", "name two at least: its ends")
         for i, place in enumerate(rope.through):
-            for message, hint in wrong_places(place):
+            for message, hint in find_place_errors(place):
                 yield Violation((*path, i), message, hint)
 
 
-def wrong_places(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
-    """What is wrong with one place of a rope, each with a hint."""
+def find_place_errors(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
+    """Yield what is wrong with one place of a rope: message and hint."""
     if (place.point is None) == (place.sheave is None):
         yield "neither a point nor a sheave, or both", "body.point, or {sheave: body.point, radius: 0.3}"
     elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
@@ -166,8 +172,8 @@ def wrong_places(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
 
 
 @rule("rope-bounds")
-def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
-    """A rope's length is positive and known; what catches pulls alone, with a restitution from 0 to 1."""
+def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope has a positive length in time alone; restitution is for one that only pulls, from 0 to 1."""
     for name, rope in draft.document.couplings.items():
         if not isinstance(rope, f.RopeEntry):
             continue
@@ -185,7 +191,7 @@ def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
                 message,
                 "leave it out: what is wound on the sheave is not told, either; a drive of a drum's pin winds it",
             )
-        yield from stretching(name, rope)
+        yield from check_rope_elasticity(name, rope)
         if rope.restitution is None:
             continue
         if not 0.0 <= rope.restitution <= 1.0:
@@ -196,8 +202,8 @@ def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "restitution"), message, "tension_only: true")
 
 
-def stretching(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
-    """What is wrong with how a rope stretches."""
+def check_rope_elasticity(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
+    """Yield what is wrong with the elasticity of a rope."""
     path = ("couplings", name)
     if rope.stiffness is None:
         if rope.damping is not None:

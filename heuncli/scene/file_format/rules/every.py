@@ -26,7 +26,7 @@ from heuncli.scene.file_format.rules import (
     stops,
     threads,
 )
-from heuncli.scene.file_format.rules.registry import RULES, DraftDocument, Rule, Violation, violations
+from heuncli.scene.file_format.rules.registry import RULES, DraftDocument, Rule, Violation, iter_violations
 
 MODULES = (
     naming, references, bodies, products, joints, paths, plane, loads, motors, stops, latches, couplings, threads,
@@ -34,4 +34,4 @@ MODULES = (
     analysis, methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 
-__all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]
+__all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "iter_violations"]

@@ -1,4 +1,4 @@
-"""Expectations: of results that there are, in their dimension and shape, at instants of the output."""
+"""Rules about expectations: of results that exist, in their dimension and shape, at output instants."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from heuncli.base import tolerances
 from heuncli.base import units as u
-from heuncli.results.results_schema import INDEX, INSTANT, beside_magnitudes, spelled_first
+from heuncli.results.results_schema import INDEX, INSTANT, first_element_suffix, independent_axes
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.scene.file_format.semantics import instants_of, type_of
+from heuncli.scene.file_format.semantics import find_analysis_type, list_instants
 
 if TYPE_CHECKING:
     from heuncli.results.results_schema import Shape
@@ -22,171 +22,182 @@ RAGGED = -1  # the length of a list whose members have different ones
 Lengths = tuple[int | None, ...]  # of nested lists, the outer first; None: not known before the run
 
 
-def outcomes(draft: DraftDocument) -> Iterator[tuple[Path_, f.ExpectEntry, NumberKind | None]]:
-    """Every expectation with the quantity at its path; None where there is none."""
+def iter_expected_quantities(draft: DraftDocument) -> Iterator[tuple[Path_, f.ExpectEntry, NumberKind | None]]:
+    """Yield every expectation with the quantity at its path, or None."""
     if draft.document.expect:
         from heuncli.scene.file_format.rules.outcome import (  # a run without expectations starts faster
             NumberKind,
-            reached_in,
+            find_path_target,
         )
 
         for i, item in draft.document.expect.items():
-            found = reached_in(draft, item.of)
-            yield ("expect", i), item, found if isinstance(found, NumberKind) else None
+            target = find_path_target(draft, item.of)
+            yield ("expect", i), item, target if isinstance(target, NumberKind) else None
 
 
 @rule("expect-path")
-def expect_path(draft: DraftDocument) -> Iterator[Violation]:
+def check_expected_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a result."""
     if draft.document.expect:
-        from heuncli.scene.file_format.rules.outcome import runs_of, wrong_path  # as in outcomes
+        from heuncli.scene.file_format.rules.outcome import find_cut_runs, find_path_error  # as in outcomes
 
-        runs = runs_of(draft)
+        runs = find_cut_runs(draft)
         for i, item in draft.document.expect.items():
-            if (wrong := wrong_path(item.of, draft.names, runs)) is not None:
+            if (wrong := find_path_error(item.of, draft.names, runs)) is not None:
                 yield Violation(("expect", i, "of"), *wrong)
 
 
 @rule("expect-form")
-def expect_form(draft: DraftDocument) -> Iterator[Violation]:
+def check_expected_form(draft: DraftDocument) -> Iterator[Violation]:
     """An expectation is at an instant or at a peak, a number or a list, in the dimension of the result."""
-    for path, item, quantity in outcomes(draft):
+    for path, item, quantity in iter_expected_quantities(draft):
         if item.at is not None and item.peak is not None:
             yield Violation(
                 (*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True
             )
-        if RAGGED in lengths_of(item.is_):
+        if RAGGED in list_lengths(item.is_):
             yield Violation((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
         if item.rel is not None and item.rel >= 1.0:
             message = f"rel {item.rel:g} is not below 1: 0 would pass for anything"
             yield Violation((*path, "rel"), message, "it is a share of the number expected: rel: 1e-6; or give abs")
-        yield from bounds(path, item)
+        yield from check_bounds(path, item)
         if quantity is not None:
-            yield from over_instants(path, item, quantity)
-            yield from dimensions((*path, "is"), item.is_, quantity.dimensions)
+            yield from check_time_keys(path, item, quantity)
+            yield from check_dimensions((*path, "is"), item.is_, quantity.dimensions)
             for key in ("abs", "below", "above"):
-                yield from dimensions((*path, key), getattr(item, key), quantity.dimensions)
+                yield from check_dimensions((*path, key), getattr(item, key), quantity.dimensions)
 
 
-def over_instants(path: Path_, item: f.ExpectEntry, quantity: NumberKind) -> Iterator[Violation]:
-    """Only what runs over the instants is one at one of them or has a peak, and only one number has an extreme."""
-    for key in ("at", "peak") if not quantity.timed else ():
+def check_time_keys(path: Path_, item: f.ExpectEntry, quantity: NumberKind) -> Iterator[Violation]:
+    """Only a result over time has a value at an instant or a peak, and only a single number has an extreme."""
+    for key in ("at", "peak") if not quantity.is_timed else ():
         if getattr(item, key) is not None:
             yield Violation((*path, key), f"{item.of} does not run over the instants", f"leave {key} out", key=True)
     if item.peak is not None or item.is_bounded:
-        several = beside_magnitudes(quantity.axes)
-        if several and several != (INDEX,):  # of a list all its numbers are bounded
-            hint = f"name one of its numbers, as {item.of}{spelled_first(quantity.axes)}"
-            yield Violation((*path, "of"), f"{item.of} is {described(tuple(x.size for x in quantity.axes))}", hint)
+        other_axes = independent_axes(quantity.axes)
+        if other_axes and other_axes != (INDEX,):  # bounds of a list apply to all its numbers
+            hint = f"name one of its numbers, as {item.of}{first_element_suffix(quantity.axes)}"
+            yield Violation(
+                (*path, "of"), f"{item.of} is {describe_lengths(tuple(x.size for x in quantity.axes))}", hint
+            )
 
 
-def bounds(path: Path_, item: f.ExpectEntry) -> Iterator[Violation]:
-    """Bounds stand alone and leave room between them."""
+def check_bounds(path: Path_, item: f.ExpectEntry) -> Iterator[Violation]:
+    """Bounds stand alone, and the lower one is below the upper one."""
     if not item.is_bounded:
         return
-    first = "below" if item.below is not None else "above"
+    bound_key = "below" if item.below is not None else "above"
     for key in ("is", "rel", "abs"):
         if (key if key != "is" else "is_") in item.model_fields_set:
             hint = "is: beside rel: and abs:, or below: and above: alone" if key == "is" else "put it into the bound"
-            yield Violation((*path, key), f"'{key}' beside '{first}'", hint, key=True)
+            yield Violation((*path, key), f"'{key}' beside '{bound_key}'", hint, key=True)
     low, high = (None if x is None else x.constant for x in (item.above, item.below))
     if low is not None and high is not None and low >= high:
         hint = "what lies between two numbers is above the lower and below the higher one"
         yield Violation((*path, "above"), f"nothing is above {low:g} and below {high:g}", hint, key=True)
 
 
-def dimensions(path: Path_, value: Any, known: tuple[u.Dimension, ...]) -> Iterator[Violation]:
-    """Numbers written with a unit of another dimension."""
+def check_dimensions(path: Path_, value: Any, allowed: tuple[u.Dimension, ...]) -> Iterator[Violation]:
+    """Yield a violation for each number with a unit of another dimension."""
     if isinstance(value, tuple):
         for i, member in enumerate(value):
-            yield from dimensions((*path, i), member, known)
-    elif isinstance(value, Expression) and value.dimension is not None and known and value.dimension not in known:
-        expected = " or ".join(u.describe(dimension) for dimension in known)
+            yield from check_dimensions((*path, i), member, allowed)
+    elif isinstance(value, Expression) and value.dimension is not None and allowed and value.dimension not in allowed:
+        expected = " or ".join(u.describe(dimension) for dimension in allowed)
         message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {expected}"
-        units = " or ".join(u.si_unit(dimension) for dimension in known)
+        units = " or ".join(u.si_unit(dimension) for dimension in allowed)
         yield Violation(path, message, f"a number without a unit is taken in {units}")
 
 
 @rule("expect-instants", for_check=True)
-def expect_instants(draft: DraftDocument) -> Iterator[Violation]:
-    """An expectation fits the instants of the output: `at` is one of them, `is` has as many numbers as the result."""
+def check_expected_instants(draft: DraftDocument) -> Iterator[Violation]:
+    """An expectation fits the output instants: `at` is one of them, `is` has as many numbers as the result."""
     document = draft.document
-    instants = instants_of(document) if type_of(document) == "motion" else (0.0,)
+    instants = list_instants(document) if find_analysis_type(document) == "motion" else (0.0,)
     if not instants or document.analysis.type == "impulse" or "analysis" in draft.unread:
         return
-    count, ascending = output_instants(draft, len(instants)), sorted(instants)
-    for path, item, quantity in outcomes(draft):
-        if quantity is None or not quantity.known:
+    count, ascending = count_output_instants(draft, len(instants)), sorted(instants)
+    for path, item, quantity in iter_expected_quantities(draft):
+        if quantity is None or not quantity.is_known:
             continue
         if quantity.instant is not None and quantity.instant >= len(instants):
-            message = f"{item.of} is of instant {quantity.instant}, but the output has {count_of(len(instants))}"
+            message = f"{item.of} is of instant {quantity.instant}, but the output has {format_count(len(instants))}"
             yield Violation((*path, "of"), message, "they count from 0; or leave the number out, and give at: a time")
             continue
-        if item.at is not None and quantity.timed:
-            nearest = nearest_of(ascending, item.at)
-            may_end_there = count is None and 0.0 < item.at < ascending[-1]  # where a run ends is known after it
-            if not may_end_there and abs(nearest - item.at) > tolerances.SAME_INSTANT * max(instants[-1], abs(item.at)):
-                message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest:.10g} s"
+        if item.at is not None and quantity.is_timed:
+            nearest_instant = find_nearest(ascending, item.at)
+            may_end_before = count is None and 0.0 < item.at < ascending[-1]  # the run may end earlier
+            if not may_end_before and abs(nearest_instant - item.at) > tolerances.SAME_INSTANT * max(
+                instants[-1], abs(item.at)
+            ):
+                message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest_instant:.10g} s"
                 yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
                 continue
         if item.is_ is not None and not item.is_bounded:
-            yield from sizes((*path, "is"), item, quantity, count)
+            yield from check_sizes((*path, "is"), item, quantity, count)
 
 
-def nearest_of(ascending: list[float], t: float) -> float:
-    """The instant nearest to a time, of those in ascending order; the earlier of two as near."""
-    place = bisect_left(ascending, t)
-    return min(ascending[max(place - 1, 0) : place + 1], key=lambda instant: abs(instant - t))
+def find_nearest(ascending: list[float], time: float) -> float:
+    """Return the instant nearest to a time, from an ascending list; the earlier of two at the same distance."""
+    index = bisect_left(ascending, time)
+    return min(ascending[max(index - 1, 0) : index + 1], key=lambda instant: abs(instant - time))
 
 
-def count_of(instants: int) -> str:
-    """A number of instants in words."""
+def format_count(instants: int) -> str:
+    """Format a number of instants with the range of their indices."""
     return "one alone, 0" if instants == 1 else f"{instants}, 0 to {instants - 1}"
 
 
-def output_instants(draft: DraftDocument, asked: int) -> int | None:
-    """How many instants the output will have; None where a rope or a condition may end the run before."""
+def count_output_instants(draft: DraftDocument, requested: int) -> int | None:
+    """Return how many instants the output will have; None if a rope, a path or a condition may end the run earlier."""
     rods = [joint for joint in draft.document.joints.values() if isinstance(joint, f.RodJoint)]
     may_stop = any(rod.tension_only and rod.restitution is None for rod in rods)
     curves = [joint for joint in draft.document.joints.values() if isinstance(joint, f.CurveJoint)]
     may_stop |= any(curve.one_sided and curve.restitution is None for curve in curves)
     may_stop |= draft.document.analysis.until is not None
-    return None if may_stop and asked > 1 else asked
+    return None if may_stop and requested > 1 else requested
 
 
-def sizes(path: Path_, item: f.ExpectEntry, quantity: NumberKind, instants: int | None) -> Iterator[Violation]:
-    """As many numbers as the result has there, in the same lists."""
-    over_instants = quantity.timed and item.at is None and item.peak is None and instants != 1
+def check_sizes(path: Path_, item: f.ExpectEntry, quantity: NumberKind, instants: int | None) -> Iterator[Violation]:
+    """An expectation has as many numbers as the result, in the same nested lists."""
+    is_over_time = quantity.is_timed and item.at is None and item.peak is None and instants != 1
     axes: Shape = () if item.peak is not None else quantity.axes
-    at_one = tuple(axis.size for axis in axes)
-    lengths: Lengths = (instants, *at_one) if over_instants else at_one
-    given = lengths_of(item.is_)
-    if RAGGED in given or fits(given, lengths):
+    instant_lengths = tuple(axis.size for axis in axes)
+    lengths: Lengths = (instants, *instant_lengths) if is_over_time else instant_lengths
+    given_lengths = list_lengths(item.is_)
+    if RAGGED in given_lengths or matches_lengths(given_lengths, lengths):
         return
-    if over_instants and fits(given, at_one):
-        yield Violation(path, f"{described(given)} for {item.of} at all instants", "give at: an instant, or peak: max")
+    if is_over_time and matches_lengths(given_lengths, instant_lengths):
+        yield Violation(
+            path,
+            f"{describe_lengths(given_lengths)} for {item.of} at all instants",
+            "give at: an instant, or peak: max",
+        )
     else:
-        one = spelled_first((INSTANT, *axes) if over_instants else axes)
-        hint = f"name one of its numbers, as {item.of}{one}" if lengths else None
-        message = f"{described(given)} for {item.of}, which is {described(lengths)}"
+        example_words = first_element_suffix((INSTANT, *axes) if is_over_time else axes)
+        hint = f"name one of its numbers, as {item.of}{example_words}" if lengths else None
+        message = f"{describe_lengths(given_lengths)} for {item.of}, which is {describe_lengths(lengths)}"
         yield Violation(path, message, hint or "give one number")
 
 
-def fits(given: Lengths, expected: Lengths) -> bool:
+def matches_lengths(lengths: Lengths, expected_lengths: Lengths) -> bool:
     """Whether the lists have the expected lengths, where these are known."""
-    return len(given) == len(expected) and all(b is None or a == b for a, b in zip(given, expected, strict=True))
+    return len(lengths) == len(expected_lengths) and all(
+        expected_length is None or length == expected_length
+        for length, expected_length in zip(lengths, expected_lengths, strict=True)
+    )
 
 
-def lengths_of(value: Any) -> Lengths:
-    """Lengths of the lists in which numbers are given, the outer first."""
+def list_lengths(value: Any) -> Lengths:
+    """Return the lengths of nested lists of numbers, the outer one first."""
     if not isinstance(value, tuple):
         return ()
-    inner = {lengths_of(member) for member in value}
+    inner = {list_lengths(member) for member in value}
     return (len(value), *inner.pop()) if len(inner) == 1 else (RAGGED,)
 
 
-def described(lengths: Lengths) -> str:
-    """Lengths of lists in words."""
+def describe_lengths(lengths: Lengths) -> str:
+    """Describe the lengths of lists in words."""
     if not lengths:
         return "one number"
     return "a list of " + " lists of ".join("some" if length is None else str(length) for length in lengths)

@@ -1,4 +1,4 @@
-"""Joints and drives: between two bodies, along directions that are directions, driven without contradiction."""
+"""Rules about joints and drives: between two bodies, along valid directions, driven without contradiction."""
 
 from __future__ import annotations
 
@@ -6,21 +6,28 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
-from heuncli.base.joint_kinds import RATES, TYPES, named
-from heuncli.scene.expressions.discontinuities import first_not_positive, jumps
+from heuncli.base.joint_kinds import RATES, TYPES, format_kind_names
+from heuncli.scene.expressions.discontinuities import find_first_not_positive, find_jumps
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.scene.file_format.semantics import DRIVEN, Driven, drive_of, driven_keys, point_in, span_of
+from heuncli.scene.file_format.semantics import (
+    DRIVE_KEYS,
+    DrivenCoordinate,
+    find_driven_coordinate,
+    find_point,
+    list_drive_keys,
+    run_duration,
+)
 
-ONCE = "one drive a joint: add the two up in one expression"
+ONE_DRIVE_HINT = "one drive a joint: add the two up in one expression"
 
 
-def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
-    """Every direction in the document."""
+def iter_directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
+    """Yield every direction in the document."""
     document = draft.document
     for name, joint in document.joints.items():
         for key in ("axis", "to_axis", "normal"):
@@ -37,16 +44,16 @@ def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float
 
 
 @rule("zero-direction")
-def zero_direction(draft: DraftDocument) -> Iterator[Violation]:
+def check_zero_direction(draft: DraftDocument) -> Iterator[Violation]:
     """A direction is not [0, 0, 0]."""
-    for path, direction in directions(draft):
+    for path, direction in iter_directions(draft):
         if direction == (0.0, 0.0, 0.0):
             yield Violation(path, f"{path[-1]} is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
 
 
 @rule("same-body")
-def same_body(draft: DraftDocument) -> Iterator[Violation]:
-    """A joint stands between two bodies."""
+def check_same_body(draft: DraftDocument) -> Iterator[Violation]:
+    """A joint connects two different bodies."""
     for name, joint in draft.document.joints.items():
         if joint.from_.body == joint.to.body:
             message, hint = f"from and to are both on {joint.to.body}", "what moves as one needs no joint within it"
@@ -54,16 +61,16 @@ def same_body(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("same-point")
-def same_point(draft: DraftDocument) -> Iterator[Violation]:
-    """A spring or actuator stands between two points, and not within the ground; a distributed load has a length.
+def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
+    """A spring or actuator acts between two points, not both on the ground; a distributed load has a length.
 
-    Within one body a spring moves nothing, but the cuts between its points carry it.
+    A spring within one body moves nothing, but the sections between its points carry its force.
     """
     for name, load in draft.document.forces.items():
         if isinstance(load, f.DistributedEntry):
             owner = draft.document.bodies.get(load.on)
-            start = None if owner is None else point_in(owner, load.from_)
-            if owner is not None and start is not None and start == point_in(owner, load.to):
+            start = None if owner is None else find_point(owner, load.from_)
+            if owner is not None and start is not None and start == find_point(owner, load.to):
                 message = "from and to are the same point"
                 yield Violation(("forces", name, "to"), message, "a force at one point is type: force, in N")
         if isinstance(load, fe.BushingEntry) and load.from_.body == load.to.body:
@@ -74,20 +81,24 @@ def same_point(draft: DraftDocument) -> Iterator[Violation]:
         path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)
         if load.to.body == "ground":
             yield Violation(path, "from and to are both on ground", "what stands within the ground moves nothing")
-        elif body is not None and (at := point_in(body, load.to.at)) and at == point_in(body, load.from_.at):
+        elif (
+            body is not None
+            and (end_point := find_point(body, load.to.at))
+            and end_point == find_point(body, load.from_.at)
+        ):
             yield Violation(path, "from and to are the same point", "its force has no direction")
 
 
-def end_key(end: EndEntry) -> tuple[str, object]:
+def make_end_key(end: EndEntry) -> tuple[str, object]:
     return end.body, end.at
 
 
 @rule("duplicate-joint", is_warning=True)
-def duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
-    """The same joint twice holds nothing more, and leaves its reactions open."""
+def check_duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
+    """The same joint twice adds no constraint and makes its reactions indeterminate."""
     seen: dict[object, str] = {}
     for name, joint in draft.document.joints.items():
-        ends = frozenset((end_key(joint.from_), end_key(joint.to)))
+        ends = frozenset((make_end_key(joint.from_), make_end_key(joint.to)))
         key = joint.type, ends, getattr(joint, "axis", None), getattr(joint, "normal", None)
         if key in seen:
             message = f"the same joint as {seen[key]}: their reactions are open"
@@ -96,24 +107,28 @@ def duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("drive-form")
-def drive_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A drive prescribes one coordinate, which its joint has, in time alone, and no other drive does."""
+def check_drive_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A drive prescribes one coordinate that its joint has, as a function of time alone, and no other drive does."""
     driven: dict[str, str] = {}
     for name, drive in draft.document.drives.items():
         path = ("drives", name)
-        quantities = [key for key in DRIVEN if getattr(drive, key) is not None]
+        quantities = [key for key in DRIVE_KEYS if getattr(drive, key) is not None]
         kind = TYPES.get(draft.names.joints.get(drive.joint, ""))
-        fitting = driven_keys(kind) if kind is not None else ()
+        allowed_keys = list_drive_keys(kind) if kind is not None else ()
         if len(quantities) != 1:
-            what = " and ".join(quantities) if quantities else "nothing"
-            hint = may_have(kind.name, fitting) if kind is not None and fitting else f"one of {', '.join(DRIVEN)}"
-            yield Violation(path, f"the drive prescribes {what}", hint, key=True)
+            description = " and ".join(quantities) if quantities else "nothing"
+            hint = (
+                drive_keys_hint(kind.name, allowed_keys)
+                if kind is not None and allowed_keys
+                else f"one of {', '.join(DRIVE_KEYS)}"
+            )
+            yield Violation(path, f"the drive prescribes {description}", hint, key=True)
             continue
         quantity = quantities[0]
         if kind is not None:
-            if quantity not in fitting:
-                driven_kinds = named([kind for kind in TYPES.values() if kind.drives], "and")
-                hint = may_have(kind.name, fitting) if fitting else f"drives act on {driven_kinds}"
+            if quantity not in allowed_keys:
+                driven_kinds = format_kind_names([kind for kind in TYPES.values() if kind.drives], "and")
+                hint = drive_keys_hint(kind.name, allowed_keys) if allowed_keys else f"drives act on {driven_kinds}"
                 yield Violation((*path, quantity), f"a {kind.name} has no {quantity} to be driven", hint, key=True)
             elif kind.keeps_distance and drive.zero is not None:
                 yield Violation(
@@ -125,27 +140,27 @@ def drive_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, quantity), f"a drive follows time alone, not {joint}.{coordinate}", "use t")
         if drive.joint in driven:
             message = f"the joint {drive.joint} is driven by {driven[drive.joint]} already"
-            yield Violation((*path, "joint"), message, ONCE)
+            yield Violation((*path, "joint"), message, ONE_DRIVE_HINT)
         driven.setdefault(drive.joint, name)
 
 
-def may_have(kind: str, keys: tuple[str, ...]) -> str:
-    """What a joint of this kind may be driven by, in words."""
+def drive_keys_hint(kind: str, keys: tuple[str, ...]) -> str:
+    """Return a hint on the keys by which a joint of this kind may be driven."""
     return f"a {kind} has {' or '.join(keys)}"
 
 
-def drives(draft: DraftDocument) -> Iterator[tuple[str, str, Driven]]:
-    """Drives of one coordinate in time: name, joint, what they prescribe."""
+def iter_drives(draft: DraftDocument) -> Iterator[tuple[str, str, DrivenCoordinate]]:
+    """Yield the drives of one coordinate in time: name, joint, and what they prescribe."""
     for name, drive in draft.document.drives.items():
-        driven = drive_of(drive, draft.names.joints.get(drive.joint))
+        driven = find_driven_coordinate(drive, draft.names.joints.get(drive.joint))
         if driven is not None and not driven.value.uses:
             yield name, drive.joint, driven
 
 
 @rule("drive-contradicts")
-def drive_contradicts(draft: DraftDocument) -> Iterator[Violation]:
-    """A held start value is the drive's own at t = 0."""
-    for name, joint_name, driven in drives(draft):
+def check_drive_contradiction(draft: DraftDocument) -> Iterator[Violation]:
+    """A prescribed start value agrees with the drive at t = 0."""
+    for name, joint_name, driven in iter_drives(draft):
         joint = draft.document.joints.get(joint_name)
         initial = getattr(joint, "initial", None)
         if initial is None:
@@ -157,17 +172,17 @@ def drive_contradicts(draft: DraftDocument) -> Iterator[Violation]:
             (quantity, None if relative or driven.by_rate else start),
             (RATES.get(quantity, ""), start if driven.by_rate else rate),
         ):
-            held = getattr(initial, key, None)
-            if held is None or expected is None:
+            start_value = getattr(initial, key, None)
+            if start_value is None or expected is None:
                 continue
-            if abs(held - expected) > tolerances.SAME_VALUE * max(abs(held), abs(expected), 1.0):
-                message = f"{key} is held at {held:g}, but the drive {name} prescribes {expected:g} at t = 0"
+            if abs(start_value - expected) > tolerances.SAME_VALUE * max(abs(start_value), abs(expected), 1.0):
+                message = f"{key} is held at {start_value:g}, but the drive {name} prescribes {expected:g} at t = 0"
                 yield Violation(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
-def prescribed(draft: DraftDocument) -> Iterator[tuple[Path_, Expression, bool, str]]:
-    """What drives and ropes prescribe in time: path, value, whether it is a rate, and what it is of."""
-    for name, joint, driven in drives(draft):
+def iter_prescribed_values(draft: DraftDocument) -> Iterator[tuple[Path_, Expression, bool, str]]:
+    """Yield what drives and ropes prescribe in time: path, value, whether it is a rate, and its owner."""
+    for name, joint, driven in iter_drives(draft):
         yield ("drives", name, driven.key), driven.value, driven.by_rate, f"rod {joint}"
     for name, rope in draft.document.couplings.items():
         if isinstance(rope, fc.RopeEntry) and rope.length is not None and not rope.length.uses:
@@ -175,31 +190,29 @@ def prescribed(draft: DraftDocument) -> Iterator[tuple[Path_, Expression, bool, 
 
 
 @rule("drive-jumps")
-def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
-    """A driven coordinate or length does not jump, its rate may; it is a number all along the run."""
-    duration = span_of(draft.document.analysis)
-    for path, value, by_rate, _ in prescribed(draft):
-        what = "drive" if path[0] == "drives" else path[-1]
+def check_drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
+    """A driven coordinate or length does not jump, though its rate may; it has a value at the start."""
+    duration = run_duration(draft.document.analysis)
+    for path, value, by_rate, _ in iter_prescribed_values(draft):
+        key = "drive" if path[0] == "drives" else path[-1]
         if math.isnan(value.value(0.0)):
-            yield Violation(
-                path, f"the {what} has no value at t = 0", "look at the domains of its functions and tables"
-            )
+            yield Violation(path, f"the {key} has no value at t = 0", "look at the domains of its functions and tables")
             continue
-        for _, t, before, after in jumps(value, duration)[:1] if not by_rate else ():
-            message = f"the {what} jumps from {before:g} to {after:g} at t = {t:g} s"
+        for _, t, before, after in find_jumps(value, duration)[:1] if not by_rate else ():
+            message = f"the {key} jumps from {before:g} to {after:g} at t = {t:g} s"
             yield Violation(path, message, "a body cannot jump: let the value run over a short time")
 
 
 @rule("drive-length")
-def drive_length(draft: DraftDocument) -> Iterator[Violation]:
-    """A driven rod or rope keeps a positive length: at length 0 its direction is undefined."""
-    duration = span_of(draft.document.analysis)
-    for path, value, _, what in prescribed(draft):
+def check_drive_length(draft: DraftDocument) -> Iterator[Violation]:
+    """A driven rod or rope keeps a positive length, because at length 0 its direction is undefined."""
+    duration = run_duration(draft.document.analysis)
+    for path, value, _, owner in iter_prescribed_values(draft):
         if path[-1] != "length" or (path[0] == "couplings" and value.constant is not None):
-            continue  # a length that stays is judged with the rope's other numbers
+            continue  # a constant length is checked in rules/couplings.py
         if path[0] == "drives" and draft.document.drives[str(path[1])].zero == "assembled":
             continue
-        gone = first_not_positive(value, duration)
-        if gone is not None:
-            message = f"the {what} has no length left at t = {gone:.4g} s"
+        vanishing_time = find_first_not_positive(value, duration)
+        if vanishing_time is not None:
+            message = f"the {owner} has no length left at t = {vanishing_time:.4g} s"
             yield Violation(path, message, "let the run end before, or the length stay above 0")

@@ -1,4 +1,4 @@
-"""Forces and impulses: on joints and bodies that can take them, of the right dimension, in one form."""
+"""Rules about forces and impulses: on joints and bodies that can take them, of the right dimension, in one form."""
 
 from __future__ import annotations
 
@@ -6,39 +6,42 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base import units as u
-from heuncli.base.joint_kinds import FREE, POINT, TYPES, Kind, named, taking
-from heuncli.scene.expressions.discontinuities import first_negative
-from heuncli.scene.expressions.programs import Expression, outside
+from heuncli.base.joint_kinds import FREE, POINT, TYPES, JointKind, format_kind_names, kinds_accepting_load
+from heuncli.scene.expressions.discontinuities import find_first_negative
+from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
-from heuncli.scene.file_format.semantics import span_of, type_of
-from heuncli.scene.file_format.words import MISSING
+from heuncli.scene.file_format.semantics import find_analysis_type, run_duration
+from heuncli.scene.file_format.words import MISSING_KEY_HINTS
 
-ON_MOTION = {"turning": "about a", "sliding": "along a"}
-FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
-
-
-InJoint = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry | fe.MotorEntry
-LAW = {"turning": "torque", "sliding": "force"}  # the key of a law of a damper
+TORQUE_WORDS = {"turning": "about a", "sliding": "along a"}
+FRICTION_KEYS = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-def loads(draft: DraftDocument) -> Iterator[tuple[str, InJoint, Kind]]:
-    """Loads in joints that exist, with the kind of the joint; one whose type is in error takes no load."""
+JointLoadEntry = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry | fe.MotorEntry
+DAMPER_LAW_KEYS = {"turning": "torque", "sliding": "force"}  # the key of a law of a damper
+
+
+def iter_joint_loads(draft: DraftDocument) -> Iterator[tuple[str, JointLoadEntry, JointKind]]:
+    """Yield the loads in joints that exist, with the kind of the joint; an unknown kind takes no load."""
     for name, load in draft.document.forces.items():
-        if isinstance(load, InJoint) and load.joint in draft.names.joints:
-            written = draft.names.joints[load.joint]
-            yield name, load, TYPES.get(written, Kind(written, POINT, FREE))
+        if isinstance(load, JointLoadEntry) and load.joint in draft.names.joints:
+            joint_type = draft.names.joints[load.joint]
+            yield name, load, TYPES.get(joint_type, JointKind(joint_type, POINT, FREE))
 
 
 @rule("load-joint")
-def load_joint(draft: DraftDocument) -> Iterator[Violation]:
-    """A joint moves in the way that the load drives or resists."""
-    for name, load, kind in loads(draft):
+def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
+    """A joint has the motion that the load drives or resists."""
+    for name, load, kind in iter_joint_loads(draft):
         path = ("forces", name)
         if isinstance(load, f.TorqueEntry):
-            if not kind.takes("torque"):
-                where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
+            if not kind.accepts_load("torque"):
+                where = " or ".join(
+                    f"{TORQUE_WORDS[allowed_kind.motions[0]]} {allowed_kind.name}"
+                    for allowed_kind in kinds_accepting_load("torque")
+                )
                 hint = "between two points use actuator, on a body couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, fe.MotorEntry):
@@ -49,56 +52,66 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
             if load.torque is not None and kind.coordinates != ("angle",):
                 message = f"the torque of a turn_spring by a law acts about a pin, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "its angle is told by a pin alone; else give a stiffness")
-            elif not kind.takes("turn_spring"):
-                message = f"a turn_spring acts about a {named(taking('turn_spring'), 'or')}, not in a {kind.name}"
+            elif not kind.accepts_load("turn_spring"):
+                message = f"a turn_spring acts about a {format_kind_names(kinds_accepting_load('turn_spring'), 'or')}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring")
         elif isinstance(load, f.DamperEntry):
-            of_both = [fit for fit in taking("damper") if len(fit.motions) == 2]
-            if not kind.takes("damper"):
+            two_motion_kinds = [
+                allowed_kind for allowed_kind in kinds_accepting_load("damper") if len(allowed_kind.motions) == 2
+            ]
+            if not kind.accepts_load("damper"):
                 hint = "between two points use a spring with damping"
                 yield Violation((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
             if load.torque is not None or load.force is not None:
-                yield from damper_law(name, load, kind)
+                yield from check_damper_law(name, load, kind)
             elif load.coefficient is None and load.sliding is None:
-                known = "coefficient (of turning), sliding, or both" if kind in of_both else "coefficient"
-                yield Violation(path, "a damper that resists nothing", f"give {known}", key=True)
-            if load.sliding is not None and kind not in of_both:
-                message = f"sliding is for a {named(of_both, 'or')}, not for a {kind.name}"
+                allowed_coefficients = (
+                    "coefficient (of turning), sliding, or both" if kind in two_motion_kinds else "coefficient"
+                )
+                yield Violation(path, "a damper that resists nothing", f"give {allowed_coefficients}", key=True)
+            if load.sliding is not None and kind not in two_motion_kinds:
+                message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
         else:
-            given = [key for key in (*FRICTION.values(), "coefficient") if getattr(load, key) is not None]
-            fitting = [FRICTION[motion] for motion in kind.motions]
-            if not kind.takes("friction"):
-                message = f"friction acts in a {named(taking('friction'), 'or')}, not in a {kind.name}"
+            given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
+            allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
+            if not kind.accepts_load("friction"):
+                message = f"friction acts in a {format_kind_names(kinds_accepting_load('friction'), 'or')}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring with damping")
-            elif len(given) != 1:
-                what = f"both {' and '.join(given[-2:])}" if given else "neither torque nor force nor coefficient"
-                hint = f"a {kind.name} takes {' or '.join([*fitting, 'coefficient'])}"
-                yield Violation(path, f"friction of {what}", hint, key=True)
-            elif given[0] == "coefficient":
-                yield from by_coefficient(name, load, kind)
+            elif len(given_keys) != 1:
+                description = (
+                    f"both {' and '.join(given_keys[-2:])}"
+                    if given_keys
+                    else "neither torque nor force nor coefficient"
+                )
+                hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
+                yield Violation(path, f"friction of {description}", hint, key=True)
+            elif given_keys[0] == "coefficient":
+                yield from check_friction_coefficient(name, load, kind)
             elif load.radius is not None or load.length is not None:
                 key = "radius" if load.radius is not None else "length"
-                message = f"{key} is for friction with a coefficient, not with a {given[0]}"
+                message = f"{key} is for friction with a coefficient, not with a {given_keys[0]}"
                 yield Violation((*path, key), message, "leave it out, or write coefficient", key=True)
-            elif given[0] not in fitting:
-                message = f"friction of a {kind.name} is a {fitting[0]}"
-                yield Violation((*path, given[0]), message, f"write {fitting[0]}", key=True)
+            elif given_keys[0] not in allowed_keys:
+                message = f"friction of a {kind.name} is a {allowed_keys[0]}"
+                yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
 
 
-def damper_law(name: str, load: f.DamperEntry, kind: Kind) -> Iterator[Violation]:
-    """A damper by a law of the rate: in a pin a torque, in a slide a force."""
+def check_damper_law(name: str, load: f.DamperEntry, kind: JointKind) -> Iterator[Violation]:
+    """A damper by a law of the rate has a torque in a pin, a force in a slide."""
     path = ("forces", name)
-    given = "torque" if load.torque is not None else "force"
-    fitting = LAW[kind.motions[0]] if kind.has_one_axis and len(kind.motions) == 1 else None
-    if fitting is None:
+    given_key = "torque" if load.torque is not None else "force"
+    allowed_key = DAMPER_LAW_KEYS[kind.motions[0]] if kind.has_one_axis and len(kind.motions) == 1 else None
+    if allowed_key is None:
         message = f"a damper by a law of its rate acts in a pin or slide, not in a {kind.name}"
         yield Violation((*path, "joint"), message, "give a coefficient")
-    elif given != fitting:
-        yield Violation((*path, given), f"a damper of a {kind.name} has a {fitting}", f"write {fitting}", key=True)
+    elif given_key != allowed_key:
+        yield Violation(
+            (*path, given_key), f"a damper of a {kind.name} has a {allowed_key}", f"write {allowed_key}", key=True
+        )
 
 
-TWO_WAYS = {  # of loads that are told by numbers, or by a law: its key, and the numbers
+LAW_AND_NUMBER_KEYS = {  # loads given by a law or by numbers: keys of the law, keys of the numbers
     "spring": (("force",), ("stiffness", "length", "damping")),
     "turn_spring": (("torque",), ("stiffness", "angle", "damping")),
     "damper": (("torque", "force"), ("coefficient", "sliding")),
@@ -106,16 +119,20 @@ TWO_WAYS = {  # of loads that are told by numbers, or by a law: its key, and the
 
 
 @rule("load-form")
-def load_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A spring or damper is told by numbers or by a law; a bushing resists something."""
+def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A spring or damper is given by numbers or by a law; a bushing resists some motion."""
     for name, load in draft.document.forces.items():
         path = ("forces", name)
-        laws, numbers = TWO_WAYS.get(load.type, ((), ()))
-        law = [key for key in laws if getattr(load, key) is not None]
-        beside = [key for key in (*laws[1:], *numbers) if getattr(load, key) is not None and key not in law[:1]]
-        if law and beside:
-            message = f"a {load.type} by {law[0]} and by {beside[0]}"
-            yield Violation((*path, beside[0]), message, f"put all of it into {law[0]}, or leave that out", key=True)
+        laws, numbers = LAW_AND_NUMBER_KEYS.get(load.type, ((), ()))
+        law_keys = [key for key in laws if getattr(load, key) is not None]
+        extra_keys = [
+            key for key in (*laws[1:], *numbers) if getattr(load, key) is not None and key not in law_keys[:1]
+        ]
+        if law_keys and extra_keys:
+            message = f"a {load.type} by {law_keys[0]} and by {extra_keys[0]}"
+            yield Violation(
+                (*path, extra_keys[0]), message, f"put all of it into {law_keys[0]}, or leave that out", key=True
+            )
         if isinstance(load, fe.BushingEntry) and all(
             getattr(load, key) is None
             for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
@@ -123,26 +140,29 @@ def load_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
 
 
-NUMBERS = {"spring": ("stiffness", "length"), "turn_spring": ("stiffness",)}  # that one without a law has to have
+REQUIRED_NUMBERS = {
+    "spring": ("stiffness", "length"),
+    "turn_spring": ("stiffness",),
+}  # required keys of a load without a law
 
 
 @rule("missing-key")
-def missing_numbers(draft: DraftDocument) -> Iterator[Violation]:
+def check_missing_numbers(draft: DraftDocument) -> Iterator[Violation]:
     """A spring without a law has its numbers."""
     for name, load in draft.document.forces.items():
-        laws, _ = TWO_WAYS.get(load.type, ((), ()))
-        for key in NUMBERS.get(load.type, ()):
+        laws, _ = LAW_AND_NUMBER_KEYS.get(load.type, ((), ()))
+        for key in REQUIRED_NUMBERS.get(load.type, ()):
             if getattr(load, key) is None and not any(getattr(load, law) is not None for law in laws):
-                hint = f"{MISSING[key]}; or {laws[0]}: a law of its own"
+                hint = f"{MISSING_KEY_HINTS[key]}; or {laws[0]}: a law of its own"
                 yield Violation(("forces", name), f"'{key}' is missing", hint, key=True)
 
 
 @rule("brake")
-def brake(draft: DraftDocument) -> Iterator[Violation]:
-    """The size of friction follows time alone and is never negative."""
-    duration = span_of(draft.document.analysis)
+def check_brake(draft: DraftDocument) -> Iterator[Violation]:
+    """Friction of given size depends on time alone and is never negative."""
+    duration = run_duration(draft.document.analysis)
     for name, load in draft.document.forces.items():
-        for key in FRICTION.values() if isinstance(load, f.FrictionEntry) else ():
+        for key in FRICTION_KEYS.values() if isinstance(load, f.FrictionEntry) else ():
             value = getattr(load, key)
             if value is None or value.constant is not None:
                 continue
@@ -150,27 +170,27 @@ def brake(draft: DraftDocument) -> Iterator[Violation]:
             if value.uses:
                 message = f"the size of friction follows time alone, not {'.'.join(value.uses[0])}"
                 yield Violation(path, message, "what hangs on a coordinate is a torque: -size*tanh(shaft.rate/0.01)")
-            elif (t := first_negative(value, duration)) is not None:
+            elif (t := find_first_negative(value, duration)) is not None:
                 message = f"{key} must not be negative, but is {value.value(t):g} at t = {t:.4g} s"
                 yield Violation(path, message, "it resists either way: give its size")
 
 
 @rule("bushing-table")
-def bushing_table(draft: DraftDocument) -> Iterator[Violation]:
-    """The tables of a bushing have a value where it is not deflected."""
+def check_bushing_table(draft: DraftDocument) -> Iterator[Violation]:
+    """The tables of a bushing have a value at zero deflection."""
     for name, load in draft.document.forces.items():
         for key in ("stiffness", "turning") if isinstance(load, fe.BushingEntry) else ():
             laws = getattr(load, key)
             parts = (laws.x, laws.y, laws.z) if isinstance(laws, fe.ShiftLaws | fe.TurnLaws) else laws
             for law in parts if isinstance(parts, tuple) else (parts,):
                 if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
-                    message, hint = outside(law.tables[0])
-                    what = f"{key} has no value where the bushing is not deflected: {message}"
-                    yield Violation(("forces", name, key), what, hint)
+                    message, hint = out_of_range_texts(law.tables[0])
+                    full_message = f"{key} has no value where the bushing is not deflected: {message}"
+                    yield Violation(("forces", name, key), full_message, hint)
 
 
-def by_coefficient(name: str, load: f.FrictionEntry, kind: Kind) -> Iterator[Violation]:
-    """Friction by a coefficient: about a pin at a radius, along a slide between two ends or none."""
+def check_friction_coefficient(name: str, load: f.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
+    """Friction by a coefficient acts in a pin, which needs a radius, or in a slide, which may have a length."""
     path = ("forces", name)
     if len(kind.motions) != 1:
         message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
@@ -192,20 +212,20 @@ def by_coefficient(name: str, load: f.FrictionEntry, kind: Kind) -> Iterator[Vio
 
 
 @rule("dimension")
-def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
+def check_load_dimension(draft: DraftDocument) -> Iterator[Violation]:
     """Where the joint decides between turning and sliding, the unit fits."""
-    for name, load, kind in loads(draft):
+    for name, load, kind in iter_joint_loads(draft):
         sliding = kind.motions == ("sliding",)
         if isinstance(load, f.TorqueEntry):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
         elif isinstance(load, f.TurnSpringEntry | fe.MotorEntry):
             checks = []
         elif isinstance(load, f.DamperEntry):
-            given = [load.coefficient] if load.coefficient is not None else []
-            checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in given]
+            coefficients = [load.coefficient] if load.coefficient is not None else []
+            checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in coefficients]
         else:
-            by_way = load.force is not None or (load.coefficient is not None and sliding)
-            checks = [("speed", load.speed, u.VELOCITY if by_way else u.RATE)]
+            is_sliding = load.force is not None or (load.coefficient is not None and sliding)
+            checks = [("speed", load.speed, u.VELOCITY if is_sliding else u.RATE)]
         for key, value, dimension in checks:
             if value.dimension is not None and value.dimension != dimension:
                 message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"
@@ -214,9 +234,9 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("couple-point")
-def couple_point(draft: DraftDocument) -> Iterator[Violation]:
+def check_couple_point(draft: DraftDocument) -> Iterator[Violation]:
     """A couple on a body with sections has a point of application, which decides on which side of a cut it acts."""
-    cut = {section.body for section in draft.document.sections.values()}
+    cut_bodies = {section.body for section in draft.document.sections.values()}
     on_bodies = [
         (("forces", name, "on"), load.on.body)
         for name, load in draft.document.forces.items()
@@ -228,63 +248,63 @@ def couple_point(draft: DraftDocument) -> Iterator[Violation]:
         elif blow.couple is not None and blow.on is not None and blow.on.at is None:
             on_bodies.append((("impulses", name, "on"), blow.on.body))
     for path, body in on_bodies:
-        if body in cut:
+        if body in cut_bodies:
             message = f"the couple acts on {body}, which has sections, but not at a point"
             hint = f"write on: {body}.point: it decides on which side of the cut the couple acts"
             yield Violation(path, message, hint)
 
 
 @rule("impulse-form")
-def impulse_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A blow is on a point with a vector, or with a couple on a body or on a point of it."""
-    for name, blow in draft.document.impulses.items():
-        given = {key for key in ("on", "vector", "body", "couple") if getattr(blow, key) is not None}
-        if given not in ({"on", "vector"}, {"on", "couple"}, {"body", "couple"}):
+def check_impulse_form(draft: DraftDocument) -> Iterator[Violation]:
+    """An impulse is a vector at a point, or a couple on a body or at a point of it."""
+    for name, impulse in draft.document.impulses.items():
+        given_keys = {key for key in ("on", "vector", "body", "couple") if getattr(impulse, key) is not None}
+        if given_keys not in ({"on", "vector"}, {"on", "couple"}, {"body", "couple"}):
             message = "a blow is {on: body.point, vector}, {on: body.point, couple} or {body, couple}"
             yield Violation(("impulses", name), message, "two blows at once: two entries", key=True)
 
 
 @rule("zero-impulse", is_warning=True)
-def zero_impulse(draft: DraftDocument) -> Iterator[Violation]:
-    """A blow of nothing changes nothing."""
-    for name, blow in draft.document.impulses.items():
+def check_zero_impulse(draft: DraftDocument) -> Iterator[Violation]:
+    """An impulse of size zero changes nothing."""
+    for name, impulse in draft.document.impulses.items():
         for key in ("vector", "couple"):
-            if getattr(blow, key) == (0.0, 0.0, 0.0):
+            if getattr(impulse, key) == (0.0, 0.0, 0.0):
                 message = f"{key} is [0, 0, 0]: the blow changes nothing"
                 yield Violation(("impulses", name, key), message, "leave it out")
 
 
 @rule("impulse-time")
-def impulse_time(draft: DraftDocument) -> Iterator[Violation]:
-    """A blow falls within the run."""
+def check_impulse_time(draft: DraftDocument) -> Iterator[Violation]:
+    """An impulse falls within the run."""
     analysis = draft.document.analysis
-    duration = span_of(analysis)
-    for name, blow in draft.document.impulses.items():
+    duration = run_duration(analysis)
+    for name, impulse in draft.document.impulses.items():
         path = ("impulses", name, "time")
-        if blow.when is not None:
+        if impulse.when is not None:
             continue
-        if blow.time < 0.0:
-            yield Violation(path, f"a blow before the start, at {blow.time:g} s", "the run starts at 0")
-        elif blow.time > duration and "analysis" not in draft.unread:
+        if impulse.time < 0.0:
+            yield Violation(path, f"a blow before the start, at {impulse.time:g} s", "the run starts at 0")
+        elif impulse.time > duration and "analysis" not in draft.unread:
             hint = (
                 "give analysis a longer duration"
                 if duration > 0.0
                 else "without a duration only the jump at time 0 is computed"
             )
-            yield Violation(path, f"a blow at {blow.time:g} s, after the end of the run at {duration:g} s", hint)
+            yield Violation(path, f"a blow at {impulse.time:g} s, after the end of the run at {duration:g} s", hint)
 
 
 @rule("impulse-when")
-def impulse_when(draft: DraftDocument) -> Iterator[Violation]:
-    """A blow strikes at a time or when something becomes true, and that only in a motion."""
-    kind = type_of(draft.document)
-    for name, blow in draft.document.impulses.items():
+def check_impulse_when(draft: DraftDocument) -> Iterator[Violation]:
+    """An impulse acts at a time or when a condition becomes true, the latter only in a motion."""
+    kind = find_analysis_type(draft.document)
+    for name, impulse in draft.document.impulses.items():
         path = ("impulses", name)
-        if blow.when is None:
-            if blow.every and "when" not in draft.names.entries["impulses"][name]:
+        if impulse.when is None:
+            if impulse.every and "when" not in draft.names.entries["impulses"][name]:
                 hint = "when: a condition, as shaft.angle < 0; at instants known before: an entry each"
                 yield Violation((*path, "every"), "'every' without 'when'", hint, key=True)
-        elif "time" in blow.model_fields_set:
+        elif "time" in impulse.model_fields_set:
             hint = "leave one of them out; not before an instant: when: t > 0.1 and shaft.angle < 0"
             yield Violation((*path, "when"), "both 'time' and 'when'", hint, key=True)
         elif kind != "motion" and "analysis" not in draft.unread:

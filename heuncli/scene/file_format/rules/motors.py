@@ -1,30 +1,30 @@
-"""Motors: told by a curve or by two numbers, which agree; and rotors of their own names."""
+"""Rules about motors: given by a curve or by two consistent numbers; their rotors have names of their own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from heuncli.scene.file_format import format_elastic as fe
-from heuncli.scene.file_format.motors import rotor_of, with_rotors
+from heuncli.scene.file_format.motors import iter_rotor_motors, rotor_name
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 
-CURVE = "curve: its torque over its speed; or stall and idle, the torque at standstill and the speed without load"
+CURVE_HINT = "curve: its torque over its speed; or stall and idle, the torque at standstill and the speed without load"
 
 
 @rule("motor")
-def motor_form(draft: DraftDocument) -> Iterator[Violation]:
-    """One curve, with a torque that falls towards the speed without load; sizes above zero."""
+def check_motor_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A motor has one curve, or a torque that falls towards the no-load speed; its sizes are above zero."""
     for name, motor in draft.document.forces.items():
         if not isinstance(motor, fe.MotorEntry):
             continue
         path = ("forces", name)
-        line = [key for key in ("stall", "idle") if getattr(motor, key) is not None]
-        if motor.curve is not None and line:
-            message = f"a motor by curve and by {line[0]}"
-            yield Violation((*path, line[0]), message, "leave one of them out", key=True)
-        elif motor.curve is None and len(line) < 2:
-            missing = "curve" if not line else next(key for key in ("stall", "idle") if key not in line)
-            yield Violation(path, f"'{missing}' is missing", CURVE, key=True)
+        line_keys = [key for key in ("stall", "idle") if getattr(motor, key) is not None]
+        if motor.curve is not None and line_keys:
+            message = f"a motor by curve and by {line_keys[0]}"
+            yield Violation((*path, line_keys[0]), message, "leave one of them out", key=True)
+        elif motor.curve is None and len(line_keys) < 2:
+            missing = "curve" if not line_keys else next(key for key in ("stall", "idle") if key not in line_keys)
+            yield Violation(path, f"'{missing}' is missing", CURVE_HINT, key=True)
         elif motor.stall is not None and motor.idle is not None and not motor.stall * motor.idle > 0.0:
             message = f"a motor that stands with {motor.stall:g} N m and idles at {motor.idle:g} rad/s"
             hint = "neither is zero, and both have one sign: it drives towards the speed at which it idles"
@@ -41,10 +41,10 @@ def motor_form(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("motor-rotor")
-def motor_rotor(draft: DraftDocument) -> Iterator[Violation]:
-    """A rotor is a body, a joint and a coupling, whose names nothing else has; what it stands in turns about a pin."""
-    for motor, _ in with_rotors(draft.document):
-        name = rotor_of(motor)
+def check_motor_rotor(draft: DraftDocument) -> Iterator[Violation]:
+    """The names of a rotor's body, joint and coupling are not used by anything else."""
+    for motor, _ in iter_rotor_motors(draft.document):
+        name = rotor_name(motor)
         for block in ("bodies", "joints", "couplings"):
             if name in getattr(draft.document, block):
                 message = f"{name} is what the rotor of {motor} is called, which is a body of its own"

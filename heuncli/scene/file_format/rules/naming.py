@@ -1,18 +1,18 @@
-"""Names: what they may look like, and those that are taken."""
+"""Rules about names: their form, and reserved names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.scene.file_format.names import NAMED, RESERVED_FOR, is_name
+from heuncli.scene.file_format.names import NAMED_BLOCKS, RESERVED_NAMES, is_name
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 
 
 @rule("bad-name")
-def bad_name(draft: DraftDocument) -> Iterator[Violation]:
+def check_name_form(draft: DraftDocument) -> Iterator[Violation]:
     """A name is a letter, then letters, digits and _."""
     hint = "a name is a letter, then letters, digits and _"
-    for block in NAMED:
+    for block in NAMED_BLOCKS:
         for name in draft.names.entries[block]:
             if not is_name(name):
                 yield Violation((block, name), f"'{name}' is not a name", hint, key=True)
@@ -24,16 +24,18 @@ def bad_name(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("reserved-name")
-def reserved_name(draft: DraftDocument) -> Iterator[Violation]:
-    """Some names mean something already."""
-    for block, taken in RESERVED_FOR.items():
+def check_reserved_name(draft: DraftDocument) -> Iterator[Violation]:
+    """Names with a meaning of their own are not used for entries."""
+    for block, reserved in RESERVED_NAMES.items():
         for name in draft.names.entries[block]:
-            if name in taken:
-                what = (
+            if name in reserved:
+                meaning = (
                     "the ground"
                     if name == "ground"
                     else "a word of expressions"
                     if block != "forces"
                     else "a cause of its own"
                 )
-                yield Violation((block, name), f"'{name}' is taken: it is {what}", f"call it {name}_1, say", key=True)
+                yield Violation(
+                    (block, name), f"'{name}' is taken: it is {meaning}", f"call it {name}_1, say", key=True
+                )

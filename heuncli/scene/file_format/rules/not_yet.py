@@ -1,6 +1,6 @@
-"""What the format knows and this version does not solve yet: an error with its location, never ignored.
+"""Refuse, with a location, what the format knows but this version does not solve.
 
-One row a feature; to lift a refusal, delete its row.
+One row per feature; to lift a refusal, delete its row.
 """
 
 from __future__ import annotations
@@ -9,22 +9,22 @@ from collections.abc import Callable, Iterable, Iterator
 
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
-Where = Callable[[DraftDocument], Iterable[Path_]]
+PathFinder = Callable[[DraftDocument], Iterable[Path_]]
 
 
-def rubbing(draft: DraftDocument) -> Iterator[Path_]:
-    """Stops that rub where they are struck."""
+def iter_stop_friction(draft: DraftDocument) -> Iterator[Path_]:
+    """Yield the friction of stops at impacts."""
     for name, stop in draft.document.stops.items():
         if stop.friction is not None:
             yield "stops", name, "friction"
 
 
-NOT_YET: tuple[tuple[str, Where], ...] = (("friction at strikes", rubbing),)
+NOT_YET: tuple[tuple[str, PathFinder], ...] = (("friction at strikes", iter_stop_friction),)
 
 
-@rule("not-yet", follows=False)
-def not_yet(draft: DraftDocument) -> Iterator[Violation]:
-    """Refuse what stands in the table."""
-    for feature, where in NOT_YET:
-        for path in where(draft):
+@rule("not-yet", may_be_consequence=False)
+def check_not_yet(draft: DraftDocument) -> Iterator[Violation]:
+    """Refuse the features of the table."""
+    for feature, find_paths in NOT_YET:
+        for path in find_paths(draft):
             yield Violation(path, f"not yet: {feature}", "leave it out: a later version has it", key=path[-1] != "type")

@@ -1,4 +1,4 @@
-"""What the results will hold, as the paths of expectations name it: dimension and shape of every quantity."""
+"""Predict what the results will hold, as result paths name it: dimension and shape of every quantity."""
 
 from __future__ import annotations
 
@@ -9,33 +9,37 @@ from heuncli.base import units as u
 from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import RATES, TYPES
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean, listed, nearest
+from heuncli.base.nearest import find_similar, list_words, suggest
 from heuncli.results.results_schema import (
-    BLOWS,
     CUT,
+    IMPULSES,
     INSTANT,
     TREE,
     Node,
     Quantity,
     Shape,
-    below,
-    counted,
-    leading_key,
+    find_child,
+    parse_index,
+    split_leading_key,
 )  # fmt: skip
-from heuncli.results.run_places import NO_RUN, marked, names_a_cut, words_of
-from heuncli.scene.file_format.names import GROUND, Names
+from heuncli.results.run_places import NO_RUN, find_position_word, is_cut_word, split_path
+from heuncli.scene.file_format.names import GROUND, SceneNames
 from heuncli.scene.file_format.rules.registry import DraftDocument
 from heuncli.scene.file_format.rules.sections import is_run
-from heuncli.scene.file_format.semantics import limitable
+from heuncli.scene.file_format.semantics import limitable_coordinates
 
 NUMBER = "NUMBER"
-IN_TWO_WORDS, EVERYWHERE = ".", ".."  # places of keys that no path has
+TWO_WORD_KEYS, ALL_NAMES = ".", ".."  # keys of the cache that no path can have
 
 
 class NumberKind(NamedTuple):
-    """Numbers: the dimensions they may have, the axes of one instant, and whether they run over the instants.
+    """Numbers in the results.
 
-    instant: the number of the instant that the path names. known: whether dimensions and axes are, before the run.
+    dimensions: those they may have
+    axes: of one instant
+    is_timed: whether there is one per instant
+    instant: index of the instant that the path names, or None
+    is_known: whether dimensions and axes are known before the run
     """
 
     dimensions: tuple[u.Dimension, ...]
@@ -46,204 +50,233 @@ class NumberKind(NamedTuple):
 
 
 class UnknownWord(NamedTuple):
-    """The word of a path that leads nowhere (empty: it ends too early), with those that would lead on."""
+    """The word of a path that leads nowhere (empty: the path ends too early), and the words that would be valid
+    there.
+    """
 
     word: str
     known: Collection[str]
 
 
-class InWords(NamedTuple):
-    """What stands there is text, or names: no number."""
+class TextResult(NamedTuple):
+    """The path leads to text or names, not to a number."""
 
 
-# a Finding tells what is wrong with the place along a run of cuts; None: of what could not be read
-Result: TypeAlias = NumberKind | UnknownWord | InWords | Finding | None
-ONLY_THE_RUN_TELLS = NumberKind((), (), timed=False, known=False)
+# a Finding: an invalid place along a run of cuts; None: the entry could not be read
+PathTarget: TypeAlias = NumberKind | UnknownWord | TextResult | Finding | None
+UNKNOWN_NUMBER = NumberKind((), (), is_timed=False, is_known=False)
 
 
-class Reached(NamedTuple):
-    """A quantity, the keys that lead to it, and the words that say which of its numbers are meant."""
+class ResolvedPath(NamedTuple):
+    """A quantity, the keys that lead to it, and the remaining words, which select some of its numbers."""
 
     quantity: Quantity
     keys: list[str]
     rest: list[str]
 
 
-def runs_of(draft: DraftDocument) -> dict[str, bool]:
-    """Whether the sections that could be read are runs of cuts."""
+def find_cut_runs(draft: DraftDocument) -> dict[str, bool]:
+    """Return, for each section that could be read, whether it is a run of cuts."""
     return {name: is_run(section) for name, section in draft.document.sections.items()}
 
 
-def reached_in(draft: DraftDocument, path: str) -> Result:
-    """What a path leads to in a document."""
-    if path not in draft.reached:
-        draft.reached[path] = result(words_of(path), draft.names, runs_of(draft))
-    found: Result = draft.reached[path]
-    return found
+def find_path_target(draft: DraftDocument, path: str) -> PathTarget:
+    """Return what a path leads to in a document; cached."""
+    if path not in draft.path_targets:
+        draft.path_targets[path] = resolve_path(split_path(path), draft.names, find_cut_runs(draft))
+    target: PathTarget = draft.path_targets[path]
+    return target
 
 
-def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
-    """What the words of a path lead to; runs: of the sections, whether they are runs of cuts."""
-    reached = follow(path, names)
-    if not isinstance(reached, Reached):
-        return reached
-    if not reached.quantity.units:
-        return InWords() if reached.quantity.is_words else ONLY_THE_RUN_TELLS
-    run, at_a_blow = False, reached.keys[0] == BLOWS
-    keys = reached.keys[2:] if at_a_blow else reached.keys
+def resolve_path(path: list[str], names: SceneNames, runs: Mapping[str, bool]) -> PathTarget:
+    """Return what the words of a path lead to.
+
+    runs: of each section, whether it is a run of cuts
+    """
+    resolved = follow_path(path, names)
+    if not isinstance(resolved, ResolvedPath):
+        return resolved
+    if not resolved.quantity.units:
+        return TextResult() if resolved.quantity.is_words else UNKNOWN_NUMBER
+    is_run_of_cuts, is_at_impact = False, resolved.keys[0] == IMPULSES
+    keys = resolved.keys[2:] if is_at_impact else resolved.keys
     if keys[0] == "sections":
         if keys[1] not in runs:
             return None
-        run = runs[keys[1]]
-    dimensions = tuple(u.parse_unit(unit)[1] for unit in reached.quantity.units)
-    timed = reached.quantity.timed and not at_a_blow
-    whole = NumberKind(dimensions, reached.quantity.axes(run), timed)
+        is_run_of_cuts = runs[keys[1]]
+    dimensions = tuple(u.parse_unit(unit)[1] for unit in resolved.quantity.units)
+    is_timed = resolved.quantity.is_timed and not is_at_impact
+    whole = NumberKind(dimensions, resolved.quantity.instant_axes(is_run_of_cuts), is_timed)
     try:
-        return part(*at_a_cut(whole, reached.rest))
+        return select_component(*select_cut(whole, resolved.selectors))
     except Finding as finding:
         return finding
 
 
-def follow(path: list[str], names: Names) -> Reached | UnknownWord | None:
-    """The quantity that the first words of a path lead to."""
+def follow_path(path: list[str], names: SceneNames) -> ResolvedPath | UnknownWord | None:
+    """Return the quantity that the first words of a path lead to."""
     node: Node | Quantity | None = TREE
     keys: list[str] = []
-    rest = path
+    remaining = path
     while isinstance(node, dict):
-        known = keys_in(node, keys, names)
-        key, behind = leading_key(known, rest)
-        if NUMBER in node and rest[:1] and counted(rest[0]) is not None:  # how many there are, only the run tells
-            key, behind = rest[0], rest[1:]
+        valid_keys = list_keys(node, keys, names)
+        key, remainder = split_leading_key(valid_keys, remaining)
+        if (
+            NUMBER in node and remaining[:1] and parse_index(remaining[0]) is not None
+        ):  # their number is known only after the run
+            key, remainder = remaining[0], remaining[1:]
         if key is None:
-            return UnknownWord(unknown_word(rest, keys, names) if rest else "", known)
-        node, rest = below(node, key), behind
+            return UnknownWord(join_unknown_words(remaining, keys, names) if remaining else "", valid_keys)
+        node, remaining = find_child(node, key), remainder
         keys.append(key)
-    return Reached(node, keys, rest) if node is not None else None
+    return ResolvedPath(node, keys, remaining) if node is not None else None
 
 
-def keys_in(node: Node, above: list[str], names: Names) -> Collection[str]:
-    """The keys that the results will have there: words of the schema, and names of the scene; above: where it is.
+def list_keys(node: Node, parent_keys: list[str], names: SceneNames) -> Collection[str]:
+    """List the keys that the results will have below `parent_keys`: words of the schema, and names of the scene.
 
-    They are gathered once: thousands of expectations ask for those of thousands of bodies.
+    The list is cached, because thousands of expectations look up those of thousands of bodies.
     """
-    place = tuple(above)
-    if place not in names.keys:
-        struck = above[:1] == [BLOWS]
-        known = [key for word in node for key in named(word, names, struck)]
-        if above[:1] == ["coordinates"]:
-            known = [key for key in known if has_coordinate(above[1:], key, names)]
-        if len(own := above[2:] if struck else above) == 2 and own[0] == "stops":
-            known = [key for key in known if key in loads_of_stop(stop_meant(above[-1], names))]
-        names.keys[place] = dict.fromkeys(known)
-    return names.keys[place]
+    cache_key = tuple(parent_keys)
+    if cache_key not in names.keys:
+        is_impact = parent_keys[:1] == [IMPULSES]
+        valid_keys = [key for word in node for key in expand_schema_word(word, names, is_impact)]
+        if parent_keys[:1] == ["coordinates"]:
+            valid_keys = [key for key in valid_keys if has_coordinate(parent_keys[1:], key, names)]
+        if len(object_keys := parent_keys[2:] if is_impact else parent_keys) == 2 and object_keys[0] == "stops":
+            valid_keys = [key for key in valid_keys if key in find_stop_loads(find_stop(parent_keys[-1], names))]
+        names.keys[cache_key] = dict.fromkeys(valid_keys)
+    return names.keys[cache_key]
 
 
-def unknown_word(path: list[str], above: list[str], names: Names) -> str:
-    """The leading words of a path that spell no key: two of them where keys in two words begin with the first."""
-    place = (*above, IN_TWO_WORDS)
-    if place not in names.keys:
-        names.keys[place] = dict.fromkeys(key.partition(".")[0] for key in names.keys[tuple(above)] if "." in key)
-    return ".".join(path[: 2 if path[0] in names.keys[place] else 1])
+def join_unknown_words(path: list[str], parent_keys: list[str], names: SceneNames) -> str:
+    """Return the leading words of a path that are no key: two of them if some two-word key begins with the first."""
+    cache_key = (*parent_keys, TWO_WORD_KEYS)
+    if cache_key not in names.keys:
+        names.keys[cache_key] = dict.fromkeys(
+            key.partition(".")[0] for key in names.keys[tuple(parent_keys)] if "." in key
+        )
+    return ".".join(path[: 2 if path[0] in names.keys[cache_key] else 1])
 
 
-def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
-    """Whether a joint, the key or the one given, has coordinates, or this one."""
-    kind = TYPES.get(names.joints[joint[0] if joint else key])
+def has_coordinate(joint_words: list[str], key: str, names: SceneNames) -> bool:
+    """Whether a joint has coordinates or, if the joint is given, whether it has the coordinate `key`."""
+    kind = TYPES.get(names.joints[joint_words[0] if joint_words else key])
     if kind is None:
         return True
-    own = {*kind.coordinates, *(TYPES[kind.planar].coordinates if kind.planar in TYPES else ())}
-    if not joint or len(own) == 2:
-        return bool(own)
-    return key in {word for quantity in own for word in (quantity, RATES[quantity], "acceleration")}
+    coordinates = {*kind.coordinates, *(TYPES[kind.planar].coordinates if kind.planar in TYPES else ())}
+    if not joint_words or len(coordinates) == 2:
+        return bool(coordinates)
+    return key in {word for quantity in coordinates for word in (quantity, RATES[quantity], "acceleration")}
 
 
-EXERTED = {"moment": "an angle", "force": "a travel or length"}
+STOP_LOADS = {"moment": "an angle", "force": "a travel or length"}
 
 
-def stop_meant(name: str, names: Names) -> Any:
-    """The stop of a name, or what a latch of that name holds; of a spec, or as plain data that may be in error."""
-    own = names.entries["latches"].get(name, names.entries["stops"].get(name))
-    if name not in names.entries["latches"] or not isinstance(own, dict):
-        return own
-    if "stop" in own:
-        return names.entries["stops"].get(str(own["stop"]))
-    kind = TYPES.get(names.joints.get(str(own.get("joint")), ""))
-    return dict.fromkeys(limitable(kind)) if kind is not None else None
+def find_stop(name: str, names: SceneNames) -> Any:
+    """Return the stop of a name, or what a latch of that name holds; of a spec, or as plain data that may have
+    errors.
+    """
+    entry = names.entries["latches"].get(name, names.entries["stops"].get(name))
+    if name not in names.entries["latches"] or not isinstance(entry, dict):
+        return entry
+    if "stop" in entry:
+        return names.entries["stops"].get(str(entry["stop"]))
+    kind = TYPES.get(names.joints.get(str(entry.get("joint")), ""))
+    return dict.fromkeys(limitable_coordinates(kind)) if kind is not None else None
 
 
-def loads_of_stop(stop: Any) -> set[str]:
-    """What a stop exerts, by the coordinate that it limits; stop: of a spec, or as plain data that may be in error."""
+def find_stop_loads(stop: Any) -> set[str]:
+    """Return what a stop exerts, by the coordinate that it limits; the stop is from a spec, or plain data with
+    errors.
+    """
     words = stop if isinstance(stop, dict) else {getattr(stop, "quantity", "")}
-    found = {
+    loads = {
         "moment" if quantity == "angle" else "force" for quantity in ("angle", "travel", "length") if quantity in words
     }
-    return found or set(EXERTED)
+    return loads or set(STOP_LOADS)
 
 
-def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, str] | None:
-    """What is wrong with a path into the results, and a hint; None: nothing, or only the run can tell."""
-    reached = result(words_of(path), names, runs)
-    if isinstance(reached, Finding):
-        return f"'{path}': {reached.message}", reached.hint
-    if isinstance(reached, InWords):
+def find_path_error(path: str, names: SceneNames, runs: Mapping[str, bool]) -> tuple[str, str] | None:
+    """Return what is wrong with a path into the results, and a hint; None if nothing is wrong or only the run can
+    tell.
+    """
+    target = resolve_path(split_path(path), names, runs)
+    if isinstance(target, Finding):
+        return f"'{path}': {target.message}", target.hint
+    if isinstance(target, TextResult):
         return f"'{path}' is words, not a number", words_hint(path)
-    if not isinstance(reached, UnknownWord):
+    if not isinstance(target, UnknownWord):
         return None
-    for own, limited in EXERTED.items():
-        if reached.word in EXERTED and list(reached.known) == [own]:
-            return f"'{path}': '{reached.word}' is not a result", f"a stop of {limited} exerts a {own}: write {own}"
-    from heuncli.results.path_hints import meant  # only on the way to an error
+    for load, coordinate_text in STOP_LOADS.items():
+        if target.word in STOP_LOADS and list(target.valid_words) == [load]:
+            return (
+                f"'{path}': '{target.word}' is not a result",
+                f"a stop of {coordinate_text} exerts a {load}: write {load}",
+            )
+    from heuncli.results.path_hints import find_similar_path  # only needed for an error
 
-    likely = meant(path, lambda words: isinstance(found := result(words, names, runs), NumberKind) and found.known)
-    what = f"'{path}': '{reached.word}' is not a result" if reached.word else f"'{path}' is not a number"
-    if likely is not None:
-        return what, f"did you mean {likely}?"
-    return what, names_hint(words_of(path), reached, names)
+    suggestion = find_similar_path(
+        path, lambda words: isinstance(found := resolve_path(words, names, runs), NumberKind) and found.is_known
+    )
+    message = f"'{path}': '{target.word}' is not a result" if target.word else f"'{path}' is not a number"
+    if suggestion is not None:
+        return message, f"did you mean {suggestion}?"
+    return message, names_hint(split_path(path), target, names)
 
 
 def words_hint(path: str) -> str:
-    """What to name in place of words: of those that tell what is open, a component."""
+    """Return a hint on what to name instead of text: for the text about indeterminate components, a component."""
     block, _, last = path.rpartition(".")
     if last == "open":
         return f"that a component is open is expected of itself: {{of: {block}.force.z, is: null}}"
     return "name a number: joints.NAME.force.z, sections.NAME.N, energy.kinetic, ..."
 
 
-def names_hint(path: list[str], reached: UnknownWord, names: Names) -> str:
-    """What may stand at the place where a path leads nowhere."""
-    block, *rest = path
-    if not reached.word:
-        return f"it goes on with one of {listed(reached.known)}"
-    if reached.word.startswith("@"):
+def names_hint(path: list[str], unknown: UnknownWord, names: SceneNames) -> str:
+    """Return a hint on what may stand where a path leads nowhere."""
+    block, *further_words = path
+    if not unknown.word:
+        return f"it goes on with one of {list_words(unknown.valid_words)}"
+    if unknown.word.startswith("@"):
         return NO_RUN
-    if not reached.known:
-        of_scene = block in names.entries and not names.entries[block]
-        return f"the scene has no {block}" if of_scene and rest else "leave it out: the path ends before it"
-    if reached.word.startswith("-"):
-        return f"places are counted from 0, from the first on: {', '.join(reached.known)}"
-    if reached.word == block and nearest(block, reached.known) is None:
-        kinds = [kind for kind, own in names.entries.items() if kind in TREE and block in own]
+    if not unknown.valid_words:
+        is_empty_block = block in names.entries and not names.entries[block]
+        return (
+            f"the scene has no {block}" if is_empty_block and further_words else "leave it out: the path ends before it"
+        )
+    if unknown.word.startswith("-"):
+        return f"places are counted from 0, from the first on: {', '.join(unknown.valid_words)}"
+    if unknown.word == block and find_similar(block, unknown.valid_words) is None:
+        kinds = [kind for kind, block_entries in names.entries.items() if kind in TREE and block in block_entries]
         if kinds:
             whole = f"{kinds[-1]}.{block}"
-            return f"{block} is one of the {kinds[-1]}; {whole} has {', '.join(keys_behind(whole, names))}"
-        if (EVERYWHERE,) not in names.keys:
-            every = (own for kind, own in names.entries.items() if kind in TREE)
-            names.keys[EVERYWHERE,] = dict.fromkeys(name for own in every for name in own)
-        known = names.keys[EVERYWHERE,]
-        told = did_you_mean(block, known, "names") or ""
-        begin = [key for key, row in TREE.items() if not (isinstance(row, Quantity) and row.is_words)]
-        return told if nearest(block, known) else f"{told}; a path begins with one of {', '.join(begin)}"
-    return did_you_mean(reached.word, reached.known, "words here") or ""
+            return f"{block} is one of the {kinds[-1]}; {whole} has {', '.join(list_continuations(whole, names))}"
+        if (ALL_NAMES,) not in names.keys:
+            all_entries = (block_entries for kind, block_entries in names.entries.items() if kind in TREE)
+            names.keys[ALL_NAMES,] = dict.fromkeys(name for block_entries in all_entries for name in block_entries)
+        all_names = names.keys[ALL_NAMES,]
+        suggestion = suggest(block, all_names, "names") or ""
+        first_words = [key for key, row in TREE.items() if not (isinstance(row, Quantity) and row.is_words)]
+        return (
+            suggestion
+            if find_similar(block, all_names)
+            else f"{suggestion}; a path begins with one of {', '.join(first_words)}"
+        )
+    return suggest(unknown.word, unknown.valid_words, "words here") or ""
 
 
-def keys_behind(path: str, names: Names) -> list[str]:
-    """The keys with which a path that is too short goes on."""
-    reached = follow(path.split("."), names)
-    return list(reached.known) if isinstance(reached, UnknownWord) else []
+def list_continuations(path: str, names: SceneNames) -> list[str]:
+    """List the keys with which a path that is too short continues."""
+    resolved = follow_path(path.split("."), names)
+    return list(resolved.valid_words) if isinstance(resolved, UnknownWord) else []
 
 
-def named(word: str, names: Names, struck: bool = False) -> list[str]:
-    """What stands in the results where the schema has this word; struck: in those of a blow."""
+def expand_schema_word(word: str, names: SceneNames, is_impact: bool = False) -> list[str]:
+    """Return the keys of the results for a word of the schema.
+
+    is_impact: in the results of an impact
+    """
     entries = names.entries
     match word:
         case "POINT":
@@ -252,8 +285,8 @@ def named(word: str, names: Names, struck: bool = False) -> list[str]:
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
             earlier = {name for block in ("forces", "drives", "stops", "latches") for name in entries[block]}
             shared += [f"couplings.{name}" for name in entries["couplings"] if name in earlier]
-            own = ("forces", "drives", "stops", "latches", "couplings", "rolling")
-            return [*(name for block in own for name in entries[block]), *shared]
+            blocks_of_elements = ("forces", "drives", "stops", "latches", "couplings", "rolling")
+            return [*(name for block in blocks_of_elements for name in entries[block]), *shared]
         case "BODY":
             return list(entries["bodies"])
         case "JOINT":
@@ -273,36 +306,36 @@ def named(word: str, names: Names, struck: bool = False) -> list[str]:
         case "EVENT":
             return [*entries["events"], *entries["latches"]]
         case "CAUSE":
-            if struck:  # what may strike: blows, drives, and what closes
+            if is_impact:  # causes of impacts: impulses, drives, and joints, stops and couplings that close
                 blocks = ("impulses", "joints", "stops", "latches", "couplings")
                 return [*(name for block in blocks for name in entries[block]), "drives"]
             return ["gravity", *entries["forces"], *entries["couplings"], "drives", "motion"]
     return [word]
 
 
-def at_a_cut(whole: NumberKind, words: list[str]) -> tuple[NumberKind, list[str]]:
-    """What is left of a quantity along a run of cuts, and of the words, where one names a place. Raises Finding."""
-    word = marked(words)
-    if CUT not in whole.axes or not words:
-        return whole, words
-    left = words.copy()
-    k = words.index(word) if word is not None else int(whole.timed and len(words) > len(whole.axes))
-    if not names_a_cut(words[k]):
-        return whole, words
-    from heuncli.results.cut_rows import place_of  # few paths name one
+def select_cut(run_kind: NumberKind, words: list[str]) -> tuple[NumberKind, list[str]]:
+    """Remove the place along a run of cuts from a quantity and its words, if the words name one. Raises Finding."""
+    word = find_position_word(words)
+    if CUT not in run_kind.axes or not words:
+        return run_kind, words
+    remaining = words.copy()
+    index = words.index(word) if word is not None else int(run_kind.is_timed and len(words) > len(run_kind.axes))
+    if not is_cut_word(words[index]):
+        return run_kind, words
+    from heuncli.results.cut_rows import parse_cut  # few paths name one
 
-    place_of(left.pop(k))
-    return whole._replace(axes=tuple(axis for axis in whole.axes if axis is not CUT)), left
+    parse_cut(remaining.pop(index))
+    return run_kind._replace(axes=tuple(axis for axis in run_kind.axes if axis is not CUT)), remaining
 
 
-def part(whole: NumberKind, words: list[str]) -> NumberKind | UnknownWord:
-    """What is left of a quantity where indices are given: along its axes, or along the instants first."""
-    axes, timed, instant = whole.axes, whole.timed, None
-    if timed and len(words) == len(axes) + 1:
-        axes, timed, instant = (INSTANT, *axes), False, counted(words[0])
+def select_component(whole: NumberKind, words: list[str]) -> NumberKind | UnknownWord:
+    """Apply the remaining words as indices: along the axes, or along the instants first."""
+    axes, is_timed, instant = whole.axes, whole.is_timed, None
+    if is_timed and len(words) == len(axes) + 1:
+        axes, is_timed, instant = (INSTANT, *axes), False, parse_index(words[0])
     if len(words) > len(axes):
         return UnknownWord(words[len(axes)], [])
     for word, axis in zip(words, axes, strict=False):
-        if axis.index_of(word) is None:
+        if axis.find_index(word) is None:
             return UnknownWord(word, list(axis.letters) or ["0, 1, 2, ..."])
-    return whole._replace(axes=axes[len(words) :], timed=timed, instant=instant)
+    return whole._replace(axes=axes[len(words) :], is_timed=is_timed, instant=instant)

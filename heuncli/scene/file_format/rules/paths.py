@@ -1,4 +1,4 @@
-"""Joints along a path: that it is one, smooth all along, and that what is held at the start lies on it."""
+"""Rules about joints along a path: it is a smooth curve, and a prescribed start lies on it."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ PERIODIC = 2  # a table's kind (scene/expressions/programs.py)
 
 
 @rule("path-form")
-def path_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A path is a table at least, its tables share a range, or a period; it never stands still; a start is on it."""
+def check_path_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A path has a table at least; its tables share a range or a period; it has a direction everywhere; a start is on
+    it.
+    """
     for name, joint in draft.document.joints.items():
         if isinstance(joint, f.CurveJoint):
-            yield from faults(name, joint, draft.document.head.space == "planar")
+            yield from check_path(name, joint, draft.document.head.space == "planar")
 
 
-def faults(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violation]:
-    """What keeps a joint's tables from being a path."""
+def check_path(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violation]:
+    """Yield what prevents a joint's tables from forming a path."""
     path = ("joints", name)
     tables = {axis: table for axis in AXES if isinstance(table := getattr(joint, axis), TableFunction)}
     if not tables:
@@ -37,71 +39,83 @@ def faults(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violation]:
     if planar and "z" in tables:
         yield Violation((*path, "z"), "a planar scene has no path along z", "z: a number")
         return
-    if (violation := ranges(name, tables)) is not None:
+    if (violation := find_range_error(name, tables)) is not None:
         yield violation
         return
-    from heuncli.scene.expressions.paths import cusp, path_of  # with NumPy, which few specs need
+    from heuncli.scene.expressions.paths import find_cusp, make_path  # with NumPy, which few specs need
 
-    found = path_of((joint.x, joint.y, joint.z))
-    still = cusp(found)
-    if still is not None:
+    curve = make_path((joint.x, joint.y, joint.z))
+    cusp_travel = find_cusp(curve)
+    if cusp_travel is not None:
         hint = "a path goes on everywhere: a corner is rounded, an end is cut off before it"
-        yield Violation(path, f"the path stands still at travel {still:.6g}: it has no direction there", hint, key=True)
+        yield Violation(
+            path, f"the path stands still at travel {cusp_travel:.6g}: it has no direction there", hint, key=True
+        )
         return
     if joint.radius is not None or joint.normal is not None or joint.one_sided:
-        yield from faults_of_side(name, joint, planar, found)
-    held = joint.initial.travel if joint.initial is not None else None
-    if held is not None and not found.period and not found.first <= held <= found.last:
-        message = f"travel {held:g} is off the path, which covers {found.first:.6g} to {found.last:.6g} m"
+        yield from check_path_side(name, joint, planar, curve)
+    start_travel = joint.initial.travel if joint.initial is not None else None
+    if start_travel is not None and not curve.period and not curve.first <= start_travel <= curve.last:
+        message = f"travel {start_travel:g} is off the path, which covers {curve.first:.6g} to {curve.last:.6g} m"
         yield Violation((*path, "initial", "travel"), message, "hold it on the path, or leave it out")
 
 
-def faults_of_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
-    """What keeps a path from having sides, of one of which a roller is, or what it pushes: it lies in no plane."""
-    at, key = ("joints", name), "radius" if joint.radius is not None else "one_sided"
+def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
+    """Yield what prevents a path from having a left and a right side, for a roller or a one-sided path: it must be
+    plane.
+    """
+    joint_path, key = ("joints", name), "radius" if joint.radius is not None else "one_sided"
     if joint.radius is None and not joint.one_sided:
         hint = "it tells on which side a roller is, or what a one_sided path pushes"
-        yield Violation((*at, "normal"), "'normal' without 'radius'", hint, key=True)
+        yield Violation((*joint_path, "normal"), "'normal' without 'radius'", hint, key=True)
         return
     normal = joint.normal or ((0.0, 0.0, 1.0) if planar else None)
     if normal is None:
         hint = "normal: [0, 0, 1], say: of the path's plane; where it points to the eye, the roller is on the left"
-        what = "a roller beside a path" if joint.radius is not None else "a path that pushes to one side"
-        yield Violation((*at, key), f"{what} needs its 'normal'", hint, key=True)
+        subject = "a roller beside a path" if joint.radius is not None else "a path that pushes to one side"
+        yield Violation((*joint_path, key), f"{subject} needs its 'normal'", hint, key=True)
         return
-    if normal == (0.0, 0.0, 0.0) or (planar and normal[:2] != (0.0, 0.0)):  # told of any joint
+    if normal == (0.0, 0.0, 0.0) or (planar and normal[:2] != (0.0, 0.0)):  # reported by another rule
         return
     from heuncli.scene.expressions.beside import leaves_plane
 
     if leaves_plane(path, normal):
-        where = (*at, "normal" if joint.normal is not None else key)
+        normal_path = (*joint_path, "normal" if joint.normal is not None else key)
         hint = "only a path in one plane has a left: z: a number, and normal: [0, 0, 1]"
-        yield Violation(where, "the path does not lie in a plane across its normal", hint)
-    elif joint.radius is not None and joint.radius > 0.0:  # else told of any radius
-        yield from faults_of_roller(at, joint, path, normal)
+        yield Violation(normal_path, "the path does not lie in a plane across its normal", hint)
+    elif joint.radius is not None and joint.radius > 0.0:  # else reported by another rule
+        yield from check_roller(joint_path, joint, path, normal)
 
 
-def faults_of_roller(at: Path_, joint: f.CurveJoint, path: Path, normal: Direction) -> Iterator[Violation]:
-    """What keeps a roller from a path: it curves more than the roller can follow, or comes back too near."""
-    from heuncli.scene.expressions.beside import meets, tightest
-    from heuncli.scene.expressions.paths import path_beside
+def check_roller(joint_path: Path_, joint: f.CurveJoint, path: Path, normal: Direction) -> Iterator[Violation]:
+    """Yield what prevents a roller from following a path: too high a curvature, or another part of the path too
+    close.
+    """
+    from heuncli.scene.expressions.beside import find_interference, find_max_curvature
+    from heuncli.scene.expressions.paths import make_roller_path
 
     assert joint.radius is not None
-    roller = path_beside(path, joint.radius, normal)
-    s, share = tightest(roller)
+    roller = make_roller_path(path, joint.radius, normal)
+    tightest_travel, share = find_max_curvature(roller)
     if share > 1.0 - tolerances.STANDS_STILL:
-        s = s if abs(s) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0  # else it is rounding
-        curved = f"the path curves with {joint.radius / share:.4g} m at travel {s:.6g}, where the roller has "
+        tightest_travel = (
+            tightest_travel if abs(tightest_travel) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0
+        )  # a smaller value is rounding error
+        curved = (
+            f"the path curves with {joint.radius / share:.4g} m at travel {tightest_travel:.6g}, where the roller has "
+        )
         hint = "a smaller roller, a path that bends less, or the other side of it: the opposite normal"
-        yield Violation((*at, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow", hint)
-    elif (met := meets(roller)) is not None:
-        message = f"at travel {met[0]:.6g} the roller would meet the path at travel {met[1]:.6g}, too"
+        yield Violation((*joint_path, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow", hint)
+    elif (meeting := find_interference(roller)) is not None:
+        message = f"at travel {meeting[0]:.6g} the roller would meet the path at travel {meeting[1]:.6g}, too"
         hint = "a shorter path, a smaller roller, or the other side of it; the centre's own path has no radius"
-        yield Violation((*at, "radius"), message, hint)
+        yield Violation((*joint_path, "radius"), message, hint)
 
 
-def struck(draft: DraftDocument) -> Iterator[Violation]:
-    """What strikes a path may lift off it, gives back at most its speed, and drags at nothing while it flies."""
+def check_path_restitution(draft: DraftDocument) -> Iterator[Violation]:
+    """Restitution is for a one-sided path, from 0 to 1, without loads in the joint that would act while the point is
+    free.
+    """
     for name, joint in draft.document.joints.items():
         if not isinstance(joint, f.CurveJoint) or joint.restitution is None:
             continue
@@ -119,8 +133,8 @@ def struck(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(("forces", load, "joint"), message, hint)
 
 
-def ranges(name: str, tables: dict[str, TableFunction]) -> Violation | None:
-    """What is wrong with the ranges of tables that make a path together."""
+def find_range_error(name: str, tables: dict[str, TableFunction]) -> Violation | None:
+    """Return what is wrong with the ranges of tables that form a path together."""
     path = ("joints", name)
     ends = {axis: (table.x[0], table.x[-1]) for axis, table in tables.items() if table.kind != PERIODIC}
     if ends:

@@ -1,7 +1,7 @@
-"""Products of a spec's quantities: what a body's mass and inertia come to is computed with, too.
+"""Check that products of a spec's quantities, a body's mass and inertia, stay within the range of computation.
 
-An inertia is judged by what it cannot exceed, m l^2 with the largest coordinate l of the body, and its own moments.
-Volumes are those of shapes/, which stands above the spec and takes NumPy; a test holds the two together.
+An inertia is checked by an upper bound, m l^2 with the largest coordinate l of the body, and its own moments. Volumes
+repeat those of shapes/, which is above the spec in the import order and needs NumPy; a test compares the two.
 """
 
 from __future__ import annotations
@@ -9,67 +9,67 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.base.number_range import is_in_range, out_of_range
+from heuncli.base.number_range import is_in_range, range_error
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
 
 @rule("magnitude")
-def magnitude(draft: DraftDocument) -> Iterator[Violation]:
-    """The masses of shapes, and the inertias of bodies, are of magnitudes that are computed with."""
-    farthest = max((largest(*place) for place in places(draft)), default=0.0)
+def check_magnitude(draft: DraftDocument) -> Iterator[Violation]:
+    """The masses of shapes and the inertias of bodies are within the range of computation."""
+    farthest = max((largest_magnitude(*position) for position in iter_positions(draft)), default=0.0)
     for name, body in draft.document.bodies.items():
         path: Path_ = ("bodies", name)
-        masses = [mass_of(shape) for shape in body.shapes or ()]
-        wrong = [i for i, mass in enumerate(masses) if not is_in_range(mass)]
-        for i in wrong:
-            what = "the mass of this shape [kg], its density times its volume,"
-            yield violation((*path, "shapes", i), masses[i], what)
-        if wrong:
+        masses = [shape_mass(shape) for shape in body.shapes or ()]
+        out_of_range_shapes = [i for i, mass in enumerate(masses) if not is_in_range(mass)]
+        for i in out_of_range_shapes:
+            description = "the mass of this shape [kg], its density times its volume,"
+            yield make_violation((*path, "shapes", i), masses[i], description)
+        if out_of_range_shapes:
             continue
         mass = body.mass if body.mass is not None else math.fsum(masses)
-        own = [body.center or (), *body.points.values(), *(extent(shape) for shape in body.shapes or ())]
-        reach = max((largest(*x) for x in own), default=0.0)
-        inertia = max(largest(*moments(body)), mass * reach**2)
+        coordinates = [body.center or (), *body.points.values(), *(shape_extent(shape) for shape in body.shapes or ())]
+        reach = max((largest_magnitude(*x) for x in coordinates), default=0.0)
+        inertia = max(largest_magnitude(*inertia_elements(body)), mass * reach**2)
         if not is_in_range(inertia):
-            what = f"the inertia of this body [kg m^2], {mass:g} kg times the square of {reach:g} m,"
-            yield violation(path, inertia, what)
+            description = f"the inertia of this body [kg m^2], {mass:g} kg times the square of {reach:g} m,"
+            yield make_violation(path, inertia, description)
         elif mass * farthest**2 > inertia and not is_in_range(mass * farthest**2):
-            what = f"the inertia of this body about the origin [kg m^2], {mass:g} kg at up to {farthest:g} m,"
-            yield violation(path, mass * farthest**2, what)
+            description = f"the inertia of this body about the origin [kg m^2], {mass:g} kg at up to {farthest:g} m,"
+            yield make_violation(path, mass * farthest**2, description)
 
 
-def violation(path: Path_, value: float, what: str) -> Violation:
-    """A product that is out of range."""
-    found = out_of_range(value, what)
-    return Violation(path, found.message, found.hint, key=True)
+def make_violation(path: Path_, value: float, description: str) -> Violation:
+    """Make the violation for a product that is out of range."""
+    finding = range_error(value, description)
+    return Violation(path, finding.message, finding.hint, key=True)
 
 
-def largest(*values: float) -> float:
-    """The largest magnitude; 0 of nothing."""
+def largest_magnitude(*values: float) -> float:
+    """Return the largest magnitude; 0 for no values."""
     return max(map(abs, values), default=0.0)
 
 
-def places(draft: DraftDocument) -> Iterator[tuple[float, ...]]:
-    """Points of the ground, and places of bodies, world axes [m]."""
+def iter_positions(draft: DraftDocument) -> Iterator[tuple[float, ...]]:
+    """Yield points of the ground and positions of bodies, world axes [m]."""
     yield from draft.document.ground.points.values()
     for body in draft.document.bodies.values():
         yield body.position or ()
         yield (body.near.position if body.near is not None else None) or ()
 
 
-def moments(body: f.BodyEntry) -> tuple[float, ...]:
-    """The elements of the inertia that is given [kg m^2]."""
-    given, off = body.inertia, body.deviation or ()
-    if given is None or isinstance(given, float):
-        return (given or 0.0, *off)
-    rows = [row if isinstance(row, tuple) else (row,) for row in given]
-    return (*(element for row in rows for element in row), *off)
+def inertia_elements(body: f.BodyEntry) -> tuple[float, ...]:
+    """Return the elements of the given inertia [kg m^2]."""
+    inertia, deviation = body.inertia, body.deviation or ()
+    if inertia is None or isinstance(inertia, float):
+        return (inertia or 0.0, *deviation)
+    rows = [row if isinstance(row, tuple) else (row,) for row in inertia]
+    return (*(element for row in rows for element in row), *deviation)
 
 
-def extent(shape: fs.ShapeEntry) -> tuple[float, ...]:
-    """Lengths of which none of the shape's coordinates exceeds the sum [m]."""
+def shape_extent(shape: fs.ShapeEntry) -> tuple[float, ...]:
+    """Return lengths whose sum is an upper bound of the shape's coordinates [m]."""
     match shape:
         case fs.RodShape():
             return (*shape.from_, *shape.to)
@@ -87,8 +87,8 @@ def extent(shape: fs.ShapeEntry) -> tuple[float, ...]:
             return shape.at or ()
 
 
-def mass_of(shape: fs.ShapeEntry) -> float:
-    """The mass [kg]: as given, or the density times the volume; of a mesh by density 0, its file is read later."""
+def shape_mass(shape: fs.ShapeEntry) -> float:
+    """Return the mass [kg]: as given, or density times volume; 0 for a mesh by density, whose file is read later."""
     if shape.mass is not None:
         return shape.mass
     if isinstance(shape, fs.RodShape):
@@ -96,11 +96,11 @@ def mass_of(shape: fs.ShapeEntry) -> float:
     if isinstance(shape, fs.MeshShape):
         return 0.0
     assert not isinstance(shape, fs.PointShape)
-    return (shape.density or 0.0) * volume(shape)
+    return (shape.density or 0.0) * shape_volume(shape)
 
 
-def volume(shape: fs.CylinderShape | fs.ConeShape | fs.BoxShape | fs.SphereShape) -> float:
-    """The volume [m^3]."""
+def shape_volume(shape: fs.CylinderShape | fs.ConeShape | fs.BoxShape | fs.SphereShape) -> float:
+    """Return the volume [m^3]."""
     match shape:
         case fs.CylinderShape():
             inner = shape.inner_radius or 0.0

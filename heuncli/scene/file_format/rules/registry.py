@@ -1,4 +1,6 @@
-"""The register of rules: each is a function over the document as read, yields violations, and owns one error code."""
+"""The registry of rules: each is a function that checks the document as read, yields violations, and owns one error
+code.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +9,17 @@ from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.format import Document
-from heuncli.scene.file_format.names import Names
+from heuncli.scene.file_format.names import SceneNames
 
 Path_ = tuple[str | int, ...]
 
 
 class Violation(NamedTuple):
-    """A violation of a rule: path, message, hint; key: the location is that of the key, not of the value."""
+    """A violation of a rule.
+
+    path, message, hint: where, what, and what to do
+    key: whether the location is that of the key, not of the value
+    """
 
     path: Path_
     message: str
@@ -24,13 +30,13 @@ class Violation(NamedTuple):
 class DraftDocument(NamedTuple):
     """A document as far as it could be read, which the rules check.
 
-    Entries that could not be read are missing in `document`, but are among `names`; `unread`: the top-level keys in
-    which an entry could not be read. reached: what paths into the results lead to, as far as a rule has asked
-    (rules/outcome.py): several ask about the same ones.
+    document: entries that could not be read are missing here, but are among `names`
+    unread: top-level keys in which an entry could not be read
+    path_targets: cached targets of paths into the results (rules/outcome.py), because several rules need the same ones
     """
 
     document: Document
-    names: Names
+    names: SceneNames
     unread: frozenset[str]
     reached: dict[str, Any]
 
@@ -41,7 +47,8 @@ Check = Callable[[DraftDocument], Iterable[Violation]]
 class Rule(NamedTuple):
     """A check and the code of its violations; a warning does not stop the run.
 
-    follows: its violations may be consequences of what could not be read; for_check: it matters to `heun check` alone.
+    may_be_consequence: its violations may be consequences of something that could not be read
+    for_check: it only matters to `heun check`
     """
 
     code: str
@@ -55,19 +62,19 @@ RULES: list[Rule] = []
 
 
 def rule(
-    code: str, is_warning: bool = False, follows: bool = True, for_check: bool = False
+    code: str, is_warning: bool = False, may_be_consequence: bool = True, for_check: bool = False
 ) -> Callable[[Check], Check]:
     """Register a check."""
 
     def register(check: Check) -> Check:
-        RULES.append(Rule(code, check, is_warning, follows, for_check))
+        RULES.append(Rule(code, check, is_warning, may_be_consequence, for_check))
         return check
 
     return register
 
 
-def violations(rules: Iterable[Rule], draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
-    """The violations of the rules, in their order."""
-    for each in rules:
-        for violation in each.check(draft):
-            yield each, violation
+def iter_violations(rules: Iterable[Rule], draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
+    """Yield the violations of the rules, in the order of the rules."""
+    for single_rule in rules:
+        for violation in single_rule.check(draft):
+            yield single_rule, violation

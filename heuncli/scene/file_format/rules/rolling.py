@@ -1,4 +1,4 @@
-"""Wheels: round about an axle, on a plane that is another body's, with numbers that a wheel can have."""
+"""Rules about wheels: round about an axle, on a plane of another body, with valid numbers."""
 
 from __future__ import annotations
 
@@ -6,22 +6,27 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
-from heuncli.scene.file_format.format_rolling import AXLES, RollingEntry, axle, centre
+from heuncli.scene.file_format.format_rolling import AXLES, RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.names import GROUND
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
-from heuncli.scene.file_format.turns import unit
+from heuncli.scene.file_format.turns import unit_vector
 
 
 @rule("wheel-form")
-def wheel_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A disc has an axle, a sphere none; a wheel rolls on another body's plane."""
+def check_wheel_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A disc has an axle, a sphere has none; a wheel rolls on a plane of another body."""
     planar = draft.document.head.space == "planar"
     for name, wheel in draft.document.rolling.items():
         path = ("rolling", name)
-        yield from named_once(path, wheel, draft)
-        if wheel.wheel is None and centre(wheel, draft.document.joints) is None:
-            continue  # what it is named by is told of
-        if wheel.shape == "disc" and axle(wheel, draft.document.joints) is None and wheel.axle is None and not planar:
+        yield from check_wheel_reference(path, wheel, draft)
+        if wheel.wheel is None and find_centre(wheel, draft.document.joints) is None:
+            continue  # the missing reference is reported elsewhere
+        if (
+            wheel.shape == "disc"
+            and find_axle_direction(wheel, draft.document.joints) is None
+            and wheel.axle is None
+            and not planar
+        ):
             hint = "axis: that of its axle, in its own axes, as [0, 1, 0]; what is round all over is shape: sphere"
             yield Violation(path, "a disc without an axle", hint, key=True)
         for key in ("axis", "slides") if wheel.shape == "sphere" else ():
@@ -48,11 +53,11 @@ def wheel_form(draft: DraftDocument) -> Iterator[Violation]:
                 message = f"'{event}' is taken: so the wheel's own event is called"
                 yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
         if planar:
-            yield from out_of_plane(path, wheel)
+            yield from check_wheel_planar(path, wheel)
 
 
-def named_once(path: tuple[str, str], wheel: RollingEntry, draft: DraftDocument) -> Iterator[Violation]:
-    """A wheel is a point of a body, with the axis of a disc; or a body and the pin in which it turns."""
+def check_wheel_reference(path: tuple[str, str], wheel: RollingEntry, draft: DraftDocument) -> Iterator[Violation]:
+    """A wheel is given by a point of a body and a disc's axis, or by a body and the pin in which it turns."""
     if wheel.wheel is not None:
         for key in ("body", "axle"):
             if getattr(wheel, key) is not None:
@@ -73,24 +78,24 @@ def named_once(path: tuple[str, str], wheel: RollingEntry, draft: DraftDocument)
         yield Violation(
             (*path, "axle"), f"{wheel.axle} is of type {joint.type}: nothing turns about one axis in it", hint
         )
-    elif joint is not None and wheel.body is not None and centre(wheel, draft.document.joints) is None:
+    elif joint is not None and wheel.body is not None and find_centre(wheel, draft.document.joints) is None:
         hint = f"{joint.from_.body} or {joint.to.body}"
         yield Violation((*path, "body"), f"{wheel.body} is not at the joint {wheel.axle}", hint)
     for key in ("axis",) if wheel.axle is not None and wheel.axis is not None else ():
         yield Violation((*path, key), f"axle and {key} are both given", "the axle has one: leave it out", key=True)
 
 
-def out_of_plane(path: tuple[str, str], wheel: RollingEntry) -> Iterator[Violation]:
-    """In the xy plane wheels turn about z, on lines, along which they roll."""
-    for key, across in (("axis", True), ("normal", False)):
+def check_wheel_planar(path: tuple[str, str], wheel: RollingEntry) -> Iterator[Violation]:
+    """In a planar scene wheels turn about z and roll on lines, without sliding along them."""
+    for key, is_along_z in (("axis", True), ("normal", False)):
         direction = getattr(wheel, key)
         if direction is None or direction == (0.0, 0.0, 0.0):
             continue
-        x, y, z = unit(direction)
-        if (math.hypot(x, y) if across else abs(z)) > tolerances.PARALLEL:
-            wants = "is the z axis" if across else "lies in the xy plane"
+        x, y, z = unit_vector(direction)
+        if (math.hypot(x, y) if is_along_z else abs(z)) > tolerances.PARALLEL:
+            requirement = "is the z axis" if is_along_z else "lies in the xy plane"
             hint = "or declare space: spatial"
-            yield Violation((*path, key), f"in a planar scene {key} of a wheel {wants}", hint)
+            yield Violation((*path, key), f"in a planar scene {key} of a wheel {requirement}", hint)
     if wheel.slides is not None:
         message = "in a planar scene a wheel that slides along its track holds nothing but its distance"
         yield Violation((*path, "slides"), message, "a joint of type plane does that", key=True)

@@ -1,4 +1,6 @@
-"""Sections: one cut or a run of cuts, in a body that knows its matter, with properties in one form."""
+"""Rules about sections: one cut or a run of cuts, in a body with known mass distribution, with properties in one
+form.
+"""
 
 from __future__ import annotations
 
@@ -7,46 +9,46 @@ from collections.abc import Iterator
 from heuncli.base import tolerances
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
-from heuncli.scene.file_format.semantics import point_in
-from heuncli.scene.file_format.turns import cross, length, unit
+from heuncli.scene.file_format.semantics import find_point
+from heuncli.scene.file_format.turns import cross_product, unit_vector, vector_length
 
-MOST_MEANT = 1e4  # MPa that a number may be meant in: some times what the hardest steel bears
-GENERAL = ("area", "I1", "I2", "J", "c1", "c2")
+MAX_PLAUSIBLE_STRENGTH = 1e4  # [MPa] a few times the strength of the hardest steel
+GENERAL_KEYS = ("area", "I1", "I2", "J", "c1", "c2")
 REDUCED_TO = ("at", "centroid", "line")
-MOST_CUTS = 50_000  # of a run: no reader tells more apart, and validate cuts these in a second
-EVENLY = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
+MAX_CUTS = 50_000  # in a run: finer than any figure shows, and validate still takes only a second
+SHEAR_FACTOR_HINT = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
 
 
 def is_run(section: f.SectionEntry) -> bool:
-    """Whether it is a run of cuts."""
+    """Whether a section is a run of cuts."""
     return section.from_ is not None or section.to is not None or section.count is not None
 
 
 @rule("section-form")
-def section_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A cut has at and normal; a run has from, to and count, and takes the normal from them."""
+def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A cut has at and normal; a run has from, to and count, and its normal points from one to the other."""
     for name, section in draft.document.sections.items():
         path = ("sections", name)
-        single = [key for key in ("at", "normal") if getattr(section, key) is not None]
-        run = [
+        single_keys = [key for key in ("at", "normal") if getattr(section, key) is not None]
+        run_keys = [
             key
             for key, value in (("from", section.from_), ("to", section.to), ("count", section.count))
             if value is not None
         ]
-        if single and run:
-            message = f"{' and '.join(single)} (one cut) beside {' and '.join(run)} (a run of cuts)"
+        if single_keys and run_keys:
+            message = f"{' and '.join(single_keys)} (one cut) beside {' and '.join(run_keys)} (a run of cuts)"
             yield Violation(path, message, "a run takes its normal from `from` to `to`", key=True)
-        elif not run and len(single) < 2:
-            missing = [key for key in ("at", "normal") if key not in single]
+        elif not run_keys and len(single_keys) < 2:
+            missing = [key for key in ("at", "normal") if key not in single_keys]
             yield Violation(
                 path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count instead", key=True
             )
-        elif run and len(run) < 3:
-            missing = [key for key in ("from", "to", "count") if key not in run]
+        elif run_keys and len(run_keys) < 3:
+            missing = [key for key in ("from", "to", "count") if key not in run_keys]
             hint = "a run of cuts has from, to and count: 21"
             yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
-        elif run:
-            yield from run_of_cuts(draft, name, section)
+        elif run_keys:
+            yield from check_run_of_cuts(draft, name, section)
         if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
             message = f"'{section.reduce_to}' is not a point of reference"
             yield Violation(
@@ -54,15 +56,15 @@ def section_form(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-def run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) -> Iterator[Violation]:
-    """A run has two ends, two cuts at least, and decides the sides by itself."""
+def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) -> Iterator[Violation]:
+    """A run has two ends, two cuts at least, and takes both sides by itself."""
     path = ("sections", name)
-    if section.count is not None and not 2 <= section.count <= MOST_CUTS:
+    if section.count is not None and not 2 <= section.count <= MAX_CUTS:
         hint = "one cut is {body, at, normal}" if section.count < 2 else "extremes are searched between the cuts, too"
-        yield Violation((*path, "count"), f"a run has 2 to {MOST_CUTS} cuts, not {section.count}", hint)
+        yield Violation((*path, "count"), f"a run has 2 to {MAX_CUTS} cuts, not {section.count}", hint)
     body = draft.document.bodies.get(section.body)
     if body is not None:
-        ends = [point_in(body, end) for end in (section.from_, section.to)]
+        ends = [find_point(body, end) for end in (section.from_, section.to)]
         if ends[0] is not None and ends[0] == ends[1]:
             yield Violation((*path, "to"), "from and to are the same point", "the normal runs from one to the other")
     if section.side is not None:
@@ -74,8 +76,8 @@ def run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) -> Ite
 
 
 @rule("section-matter")
-def section_matter(draft: DraftDocument) -> Iterator[Violation]:
-    """A cut needs shapes to cut, or the piece it separates."""
+def check_section_matter(draft: DraftDocument) -> Iterator[Violation]:
+    """A cut needs shapes, or the piece that it separates."""
     for name, section in draft.document.sections.items():
         body = draft.document.bodies.get(section.body)
         if body is None or body.shapes is not None or section.piece is not None:
@@ -89,36 +91,36 @@ def section_matter(draft: DraftDocument) -> Iterator[Violation]:
 
 
 @rule("first-axis")
-def first_axis(draft: DraftDocument) -> Iterator[Violation]:
+def check_first_axis(draft: DraftDocument) -> Iterator[Violation]:
     """first_axis does not point along the normal."""
     for name, section in draft.document.sections.items():
         normal = section.normal
         body = draft.document.bodies.get(section.body)
         if normal is None and body is not None:
-            start, end = point_in(body, section.from_), point_in(body, section.to)
+            start, end = find_point(body, section.from_), find_point(body, section.to)
             if start is not None and end is not None:
                 normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
         if section.first_axis is None or normal is None or not any(normal) or not any(section.first_axis):
             continue
-        if length(cross(unit(section.first_axis), unit(normal))) < tolerances.PARALLEL:
+        if vector_length(cross_product(unit_vector(section.first_axis), unit_vector(normal))) < tolerances.PARALLEL:
             hint = "it is made perpendicular to the normal, and must not vanish by that"
             yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
 
 
 @rule("strength-small", is_warning=True)
-def strength_small(draft: DraftDocument) -> Iterator[Violation]:
-    """A plain number is in Pa: one of hundreds is meant in MPa."""
+def check_strength_unit(draft: DraftDocument) -> Iterator[Violation]:
+    """A plain number is in Pa: a strength of some hundreds is probably meant in MPa."""
     for name, section in draft.document.sections.items():
         strength = section.strength
         if strength is not None and 0.0 < strength < tolerances.LEAST_STRENGTH:
-            meant = f"{strength:g} MPa" if strength <= MOST_MEANT else "235 MPa"
+            suggestion = f"{strength:g} MPa" if strength <= MAX_PLAUSIBLE_STRENGTH else "235 MPa"
             message = f"a strength of {strength:g} Pa is less than any bar's: a plain number is in Pa"
-            yield Violation(("sections", name, "strength"), message, f"with its unit, as {meant}")
+            yield Violation(("sections", name, "strength"), message, f"with its unit, as {suggestion}")
 
 
 @rule("properties-form")
-def properties_form(draft: DraftDocument) -> Iterator[Violation]:
-    """Properties are those of one named shape, or all six numbers; strength goes with them."""
+def check_properties_form(draft: DraftDocument) -> Iterator[Violation]:
+    """Properties are those of one named shape, or all six numbers; a strength goes with them."""
     for name, section in draft.document.sections.items():
         properties = section.properties
         path = ("sections", name)
@@ -131,20 +133,20 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
             body = draft.document.bodies.get(section.body)
             if body is not None and body.shapes is None:
                 message = f"{section.body} has no shapes to take them from"
-                yield Violation((*path, "properties"), message, f"circle, tube, rectangle, or all of {GENERAL}")
+                yield Violation((*path, "properties"), message, f"circle, tube, rectangle, or all of {GENERAL_KEYS}")
             continue
         shapes = [key for key in ("circle", "tube", "rectangle") if getattr(properties, key) is not None]
-        numbers = [key for key in GENERAL if getattr(properties, key) is not None]
+        numbers = [key for key in GENERAL_KEYS if getattr(properties, key) is not None]
         if len(shapes) + bool(numbers) != 1:
             yield Violation(
                 (*path, "properties"),
                 "properties of one shape are needed",
-                f"auto, circle, tube, rectangle, or all of {GENERAL}",
+                f"auto, circle, tube, rectangle, or all of {GENERAL_KEYS}",
             )
-        elif numbers and len(numbers) < len(GENERAL):
-            missing = ", ".join(key for key in GENERAL if key not in numbers)
-            yield Violation((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL)}")
-        yield from shear_factor(properties, (*path, "properties", "shear_factor"))
+        elif numbers and len(numbers) < len(GENERAL_KEYS):
+            missing = ", ".join(key for key in GENERAL_KEYS if key not in numbers)
+            yield Violation((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL_KEYS)}")
+        yield from check_shear_factor(properties, (*path, "properties", "shear_factor"))
         tube = properties.tube
         if tube is not None and tube.inner_radius >= tube.radius:
             yield Violation(
@@ -154,13 +156,15 @@ def properties_form(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-def shear_factor(properties: f.PropertiesEntry, path: tuple[str, ...]) -> Iterator[Violation]:
-    """The largest shear stress over the mean: of a section given by numbers, and no less than 1."""
+def check_shear_factor(properties: f.PropertiesEntry, path: tuple[str, ...]) -> Iterator[Violation]:
+    """The largest shear stress over the mean is for a section given by numbers, and at least 1."""
     factor = properties.shear_factor
     if factor is None:
         return
     if properties.area is None:
-        hint = f"it goes with {', '.join(GENERAL)}"
+        hint = f"it goes with {', '.join(GENERAL_KEYS)}"
         yield Violation(path, "the shape itself says how its shear stresses are spread", hint, key=True)
     elif factor < 1.0:
-        yield Violation(path, f"the largest shear stress over the mean is 1 at least, not {factor:g}", EVENLY)
+        yield Violation(
+            path, f"the largest shear stress over the mean is 1 at least, not {factor:g}", SHEAR_FACTOR_HINT
+        )

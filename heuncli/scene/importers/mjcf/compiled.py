@@ -1,9 +1,9 @@
-"""A model of MuJoCo's as MuJoCo itself compiles it, and what its parts are called and where they stand in the file.
+"""Compile a model by MuJoCo itself, and name and locate its parts in the file.
 
-MuJoCo's own reader knows defaults, includes, classes, frames, replicas, and the masses of meshes; whoever read the file
-without it would read another machine. Its errors are told as ours. Models stand in memory as arrays by kind: `jnt_axis`
-has a row a joint. Impure: reads the file and what it names; sets MuJoCo's handler of warnings, which else writes a file
-into the working folder.
+Only MuJoCo's own reader knows defaults, includes, classes, frames, replicas, and the masses of meshes; any other reader
+would read another machine. Its errors are reported as heun's. The compiled model holds arrays by kind: `jnt_axis` has
+one row for each joint. Impure: reads the file and the files it names, and sets MuJoCo's handler of warnings, which
+would otherwise write a file into the working folder.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.importers.mjcf.named_files import ModelFiles
 
-OLDEST = (3, 3)  # whose specs take included models as texts
-INSTALL = 'pip install "heuncli[mujoco]"'
-LINE = re.compile(r"\bline(?: number)?[ =](\d+)", re.IGNORECASE)
-KINDS = {  # what a part is called: in MuJoCo's arrays, in a MjSpec, in its list of kinds of objects
+MIN_VERSION = (3, 3)  # the first version whose MjSpec accepts included models as texts
+INSTALL_COMMAND = 'pip install "heuncli[mujoco]"'
+LINE_NUMBER = re.compile(r"\bline(?: number)?[ =](\d+)", re.IGNORECASE)
+PART_KINDS = {  # names of a kind: in MuJoCo's arrays, in MjSpec, in mjtObj
     "body": ("body", "bodies", "mjOBJ_BODY"),
     "joint": ("jnt", "joints", "mjOBJ_JOINT"),
     "site": ("site", "sites", "mjOBJ_SITE"),
@@ -33,8 +33,12 @@ KINDS = {  # what a part is called: in MuJoCo's arrays, in a MjSpec, in its list
 }
 
 
-class Compiled(NamedTuple):
-    """A compiled model. lines: of each kind the line of each part in the file, where MuJoCo tells it."""
+class CompiledModel(NamedTuple):
+    """A compiled model.
+
+    lines: for each kind, the line in the file of each part, where MuJoCo reports it
+    warning_texts: texts of MuJoCo's warnings
+    """
 
     mujoco: Any
     model: Any
@@ -43,65 +47,65 @@ class Compiled(NamedTuple):
     warned: tuple[str, ...] = ()
 
     def count(self, kind: str) -> int:
-        """How many there are of a kind."""
-        prefix = KINDS[kind][0]
+        """Return the number of parts of a kind."""
+        prefix = PART_KINDS[kind][0]
         return int(getattr(self.model, f"n{prefix}"))
 
     def name(self, kind: str, number: int) -> str:
-        """What the file calls it; empty if nothing."""
-        return self.mujoco.mj_id2name(self.model, getattr(self.mujoco.mjtObj, KINDS[kind][2]), number) or ""
+        """Return the name of a part in the file, or an empty text."""
+        return self.mujoco.mj_id2name(self.model, getattr(self.mujoco.mjtObj, PART_KINDS[kind][2]), number) or ""
 
-    def told(self, kind: str, number: int) -> str:
-        """How a sentence speaks of it: by its name, else by its number."""
+    def describe_part(self, kind: str, number: int) -> str:
+        """Name a part within a sentence: by its name, else by its number."""
         name = self.name(kind, number)
         return f"{kind} {name!r}" if name else f"{kind} number {number}"
 
     def location(self, kind: str, number: int) -> SourceLocation | None:
-        """Where it stands in the file, if MuJoCo tells it."""
+        """Return the location of a part in the file, if MuJoCo reports it."""
         line = self.lines.get(kind, {}).get(number)
         return None if line is None else SourceLocation(self.file, line, 1)
 
-    def switched_off(self, *flags: str) -> bool:
-        """Whether one of the flags of `option/flag` that switch a part of the mechanics off is set."""
+    def is_disabled(self, *flags: str) -> bool:
+        """Return whether any of these flags of `option/flag` disables its part of the mechanics."""
         members = self.mujoco.mjtDisableBit.__members__
         bits = sum(int(members[f"mjDSBL_{flag}"]) for flag in flags if f"mjDSBL_{flag}" in members)
         return bool(self.model.opt.disableflags & bits)
 
 
-def compiled(content: bytes, file: str, named: ModelFiles) -> Compiled:
-    """The model of a text. file: what messages call it. Raises SpecError: no mujoco, or what MuJoCo finds wrong."""
-    mujoco = _package(file)
-    warned: list[str] = []
-    mujoco.set_mju_user_warning(lambda text: warned.append(str(text)))
+def compile_model(content: bytes, file: str, named_files: ModelFiles) -> CompiledModel:
+    """Compile a model. file: its name in messages. Raises SpecError [missing-extra, not-xml, import-mjcf]."""
+    mujoco = _import_mujoco(file)
+    warning_texts: list[str] = []
+    mujoco.set_mju_user_warning(lambda text: warning_texts.append(str(text)))
     try:
-        with warnings.catch_warnings(record=True) as seen:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            spec = mujoco.MjSpec.from_string(_text(content, file), include=dict(named.included))
-            spec.modelfiledir = named.folder
+            spec = mujoco.MjSpec.from_string(_decode(content, file), include=dict(named_files.models))
+            spec.modelfiledir = named_files.folder
             model = spec.compile()
     except (MemoryError, SpecError):
         raise
-    except Exception as error:  # ValueError mostly; of the bindings also their own kinds
-        raise SpecError(_problem(str(error), file)) from None
-    warned += [str(warning.message) for warning in seen]
-    lines = {} if named.included else _lines(spec)  # of several files MuJoCo does not say which
-    return Compiled(mujoco, model, file, lines, tuple(dict.fromkeys(warned)))
+    except Exception as error:  # mostly ValueError; the bindings also raise their own types
+        raise SpecError(_compile_problem(str(error), file)) from None
+    warning_texts += [str(warning.message) for warning in caught]
+    lines = {} if named_files.models else _find_lines(spec)  # with several files MuJoCo does not say which one
+    return CompiledModel(mujoco, model, file, lines, tuple(dict.fromkeys(warning_texts)))
 
 
-def _package(file: str) -> Any:
+def _import_mujoco(file: str) -> Any:
     try:
         import mujoco
     except ImportError:
         message = f"{file} is a model of MuJoCo's, which the package mujoco reads; it is not installed"
-        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL} installs it")) from None
-    if tuple(map(int, str(mujoco.__version__).split(".")[:2])) < OLDEST:
-        oldest = ".".join(map(str, OLDEST))
+        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL_COMMAND} installs it")) from None
+    if tuple(map(int, str(mujoco.__version__).split(".")[:2])) < MIN_VERSION:
+        oldest = ".".join(map(str, MIN_VERSION))
         message = f"{file}: the package mujoco is of version {mujoco.__version__}; the oldest understood is {oldest}"
-        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL} --upgrade"))
+        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL_COMMAND} --upgrade"))
     return mujoco
 
 
-def _text(content: bytes, file: str) -> str:
+def _decode(content: bytes, file: str) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -109,22 +113,22 @@ def _text(content: bytes, file: str) -> str:
         raise SpecError(Problem("not-xml", message, SourceLocation(file, 1, 1), "save it as UTF-8")) from None
 
 
-def _problem(text: str, file: str) -> Problem:
-    """What MuJoCo says, in one sentence with its place."""
-    found = LINE.search(text)
-    said = " ".join(text.split()).removeprefix("Error: ").removeprefix("XML Error: ").removeprefix("Error: ")
-    said = re.sub(r"Element name '', id \d+, |,? ?line \d+$", "", said).rstrip(", ")
+def _compile_problem(text: str, file: str) -> Problem:
+    """Turn MuJoCo's error message into a problem: one sentence with its location."""
+    found = LINE_NUMBER.search(text)
+    reason = " ".join(text.split()).removeprefix("Error: ").removeprefix("XML Error: ").removeprefix("Error: ")
+    reason = re.sub(r"Element name '', id \d+, |,? ?line \d+$", "", reason).rstrip(", ")
     line = max(int(found[1]), 1) if found else 1
-    message = f"MuJoCo does not compile it: {said}"
+    message = f"MuJoCo does not compile it: {reason}"
     return Problem("import-mjcf", message, SourceLocation(file, line, 1), "MuJoCo says so of the file by itself, too")
 
 
-def _lines(spec: Any) -> dict[str, dict[int, int]]:
-    return {kind: dict(_lines_of(getattr(spec, several, ()))) for kind, (_, several, _) in KINDS.items()}
+def _find_lines(spec: Any) -> dict[str, dict[int, int]]:
+    return {kind: dict(_iter_part_lines(getattr(spec, several, ()))) for kind, (_, several, _) in PART_KINDS.items()}
 
 
-def _lines_of(parts: Any) -> Iterator[tuple[int, int]]:
+def _iter_part_lines(parts: Any) -> Iterator[tuple[int, int]]:
     for part in parts:
-        found = LINE.search(str(getattr(part, "info", "")))
-        if found and hasattr(part, "id"):  # which versions of 3.3 do not all have: no line is told
+        found = LINE_NUMBER.search(str(getattr(part, "info", "")))
+        if found and hasattr(part, "id"):  # some versions 3.3 have no id: then there is no line
             yield int(part.id), int(found[1])

@@ -1,8 +1,8 @@
-"""Which bodies of MuJoCo's are one body of a spec, and where they stand with every joint at its zero.
+"""Merge MuJoCo's bodies into bodies of a spec, and place them with every joint at zero.
 
-A body without joints is fixed to its parent. What has a mass stays a body of its own, on a weld, whose load is told.
-What has none is a frame: its points are its parent's. A moving body without mass, which MuJoCo takes where bodies fixed
-to it have some, is one with them. What does not move belongs to the ground.
+A body without joints is fixed to its parent. If it has a mass, it stays a body of its own on a weld, so that the load
+there is reported. If it has none, it is a frame, and its points belong to its parent. A moving body without mass, which
+MuJoCo accepts if bodies fixed to it have some, is merged with them. What does not move belongs to the ground.
 
     R_WB  attitude of a body at the zero: R_WP R(body_quat), P its parent
     p_OB  from the origin of the body that it is part of (O), to its own, in axes along the world's
@@ -15,66 +15,68 @@ from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import Matrix, Vec
-from heuncli.scene.file_format.turns import IDENTITY, of_quaternion
-from heuncli.scene.importers.attitudes import after, shifted, turned, turned_tensor
+from heuncli.scene.file_format.turns import IDENTITY, rotation_from_quaternion
+from heuncli.scene.importers.attitudes import add_vectors, compose_rotations, rotate_tensor, rotate_vector
 
-LEAST_MASS = 1e-15  # MuJoCo's own mjMINVAL: what moves has more
-NOWHERE: Vec = (0.0, 0.0, 0.0)
+MIN_MASS = 1e-15  # MuJoCo's own mjMINVAL: moving bodies have more
+ORIGIN: Vec = (0.0, 0.0, 0.0)
 
 
 class BodyFrames(NamedTuple):
-    """Of each of MuJoCo's bodies: the body that it is part of (0: the ground), its attitude, its origin there."""
+    """For each of MuJoCo's bodies: the body that it is part of (0: the ground), its attitude, and its origin in that
+    body.
+    """
 
     owners: tuple[int, ...]
     attitudes: tuple[Matrix, ...]
     origins: tuple[Vec, ...]
 
-    def place(self, body: int, point: Any) -> Vec:
-        """A point of a body, given in the body's own axes: in those of the body that it is part of."""
-        return shifted(self.origins[body], turned(self.attitudes[body], vec(point)))
+    def transform_point(self, body: int, point: Any) -> Vec:
+        """Transform a point from a body's own axes to those of the body that it is part of."""
+        return add_vectors(self.origins[body], rotate_vector(self.attitudes[body], to_vec(point)))
 
-    def direction(self, body: int, axis: Any) -> Vec:
-        """A direction of a body."""
-        return turned(self.attitudes[body], vec(axis))
+    def transform_direction(self, body: int, axis: Any) -> Vec:
+        """Transform a direction from a body's own axes to those of the body that it is part of."""
+        return rotate_vector(self.attitudes[body], to_vec(axis))
 
-    def parts(self, owner: int) -> list[int]:
-        """The bodies that are part of one."""
-        return [body for body, its in enumerate(self.owners) if its == owner]
+    def find_parts(self, owner: int) -> list[int]:
+        """List the bodies that are part of one."""
+        return [body for body, body_owner in enumerate(self.owners) if body_owner == owner]
 
 
-def frames_of(model: Any) -> BodyFrames:
-    """The frames of a compiled model. Parents stand before their children in it."""
-    owners, attitudes, origins = [0], [IDENTITY], [NOWHERE]
+def compute_frames(model: Any) -> BodyFrames:
+    """Compute the frames of a compiled model, in which parents precede their children."""
+    owners, attitudes, origins = [0], [IDENTITY], [ORIGIN]
     for body in range(1, int(model.nbody)):
         parent = int(model.body_parentid[body])
-        attitude = after(attitudes[parent], rotation(model.body_quat[body]))
-        holder = owners[parent]
+        attitude = compose_rotations(attitudes[parent], exact_rotation_from_quaternion(model.body_quat[body]))
+        parent_owner = owners[parent]
         jointless = not model.body_jntnum[body]
-        light = float(model.body_mass[body]) < LEAST_MASS or float(model.body_mass[holder]) < LEAST_MASS
-        if jointless and (holder == 0 or light):
-            owners.append(holder)
-            origins.append(shifted(origins[parent], turned(attitudes[parent], vec(model.body_pos[body]))))
+        is_massless = float(model.body_mass[body]) < MIN_MASS or float(model.body_mass[parent_owner]) < MIN_MASS
+        if jointless and (parent_owner == 0 or is_massless):
+            owners.append(parent_owner)
+            origins.append(add_vectors(origins[parent], rotate_vector(attitudes[parent], to_vec(model.body_pos[body]))))
         else:
             owners.append(body)
-            origins.append(NOWHERE)
+            origins.append(ORIGIN)
         attitudes.append(attitude)
     return BodyFrames(tuple(owners), tuple(attitudes), tuple(origins))
 
 
-def rotation(quaternion: Any) -> Matrix:
-    """The turn of a quaternion w, x, y, z; exact where it is one by right angles."""
+def exact_rotation_from_quaternion(quaternion: Any) -> Matrix:
+    """Make the rotation matrix of a quaternion w, x, y, z; exact for rotations by right angles."""
     w, x, y, z = (float(q) for q in quaternion)
-    return after(IDENTITY, of_quaternion((w, x, y, z)))
+    return compose_rotations(IDENTITY, rotation_from_quaternion((w, x, y, z)))
 
 
-def vec(values: Any) -> Vec:
-    """Three numbers."""
+def to_vec(values: Any) -> Vec:
+    """Convert three numbers to a vector of floats."""
     x, y, z = (float(value) + 0.0 for value in values)
     return x, y, z
 
 
 class PartMass(NamedTuple):
-    """Mass [kg], centre of mass [m], inertia about it [kg m^2]; in the body's axes of a spec."""
+    """Mass [kg], centre of mass [m] and inertia about it [kg m^2] of a part, in the axes of its body in the spec."""
 
     mass: float
     center: Vec
@@ -82,11 +84,13 @@ class PartMass(NamedTuple):
 
 
 def mass_properties(model: Any, frames: BodyFrames, owner: int) -> PartMass:
-    """Of a body with all that is part of it.
+    """Compute the mass properties of a body with all that is part of it.
 
     I = sum of I_k + m_k (|d_k|^2 1 - d_k d_k^T), d_k from the common centre to that of part k.
     """
-    parts = [_own(model, frames, body) for body in frames.parts(owner) if model.body_mass[body] > 0.0]
+    parts = [
+        _part_mass_properties(model, frames, body) for body in frames.find_parts(owner) if model.body_mass[body] > 0.0
+    ]
     if len(parts) == 1:
         return parts[0]
     mass = math.fsum(part.mass for part in parts)
@@ -101,10 +105,12 @@ def mass_properties(model: Any, frames: BodyFrames, owner: int) -> PartMass:
     return PartMass(mass, (x, y, z), tuple(map(tuple, total)))  # type: ignore[arg-type]
 
 
-def _own(model: Any, frames: BodyFrames, body: int) -> PartMass:
-    """Of a body by itself: MuJoCo keeps principal moments, and the attitude of their axes in the body."""
-    A1, A2, A3 = vec(model.body_inertia[body])
-    R = after(frames.attitudes[body], rotation(model.body_iquat[body]))
-    center = frames.place(body, model.body_ipos[body])
+def _part_mass_properties(model: Any, frames: BodyFrames, body: int) -> PartMass:
+    """Compute the mass properties of one part. MuJoCo stores principal moments, and the attitude of their axes in the
+    body.
+    """
+    A1, A2, A3 = to_vec(model.body_inertia[body])
+    R = compose_rotations(frames.attitudes[body], exact_rotation_from_quaternion(model.body_iquat[body]))
+    center = frames.transform_point(body, model.body_ipos[body])
     principal: Matrix = ((A1, 0.0, 0.0), (0.0, A2, 0.0), (0.0, 0.0, A3))
-    return PartMass(float(model.body_mass[body]), center, turned_tensor(R, principal))
+    return PartMass(float(model.body_mass[body]), center, rotate_tensor(R, principal))

@@ -1,11 +1,11 @@
-"""Which joints are held by drives, so that nothing of the machine is left free, and nothing is held twice.
+"""Choose the joints that drives hold, so that no coordinate stays free and none is held twice.
 
-Of a tree that is every hinge and slide. Where equalities close loops, some coordinates follow from others: what is held
-then is one joint after another whose rate the equalities and the joints before it leave open,
+In a tree these are all hinges and slides. Where equalities close loops, some coordinates follow from others. Then a
+joint is held if the equalities and the joints chosen before it leave its rate free,
 
     rank [J; e_1; ...; e_k; e] > rank [J; e_1; ...; e_k]      J: rows of the equalities, e_i q' the rate of joint i
 
-those that lead another first, whose drive needs their parameter, then those that an actuator moves.
+Joints that lead others come first, because the drives of the others need their parameter; then joints with an actuator.
 """
 
 from __future__ import annotations
@@ -16,74 +16,79 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.mjcf.closings import Closings, JointEquality
-from heuncli.scene.importers.mjcf.compiled import Compiled
-from heuncli.scene.importers.mjcf.tree import COORDINATE, JointTree
+from heuncli.scene.importers.mjcf.closings import JointEquality, LoopClosures
+from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, JointTree
 
-# Of a rate of 1, what is left of it beside all that follows from others: those that are well open are taken first, so
-# that none is held which another all but determines.
-OPEN = (0.1, 1e-3, 1e-6)
+# Least part of a unit rate that is independent of the others; the most independent rates are chosen first.
+INDEPENDENCE_THRESHOLDS = (0.1, 1e-3, 1e-6)
 
 
 class HeldJoints(NamedTuple):
-    """joints: the numbers of those that are held, in MuJoCo's order; followed: the couplings that hold others."""
+    """joints: numbers of the joints that drives hold, in MuJoCo's order
+    couplings: the couplings that determine other joints
+    """
 
     joints: tuple[int, ...]
     followed: tuple[JointEquality, ...]
 
 
-def held(c: Compiled, tree: JointTree, closings: Closings, q: Any) -> HeldJoints:
-    """What is held. A joint whose leader nothing holds follows none: it is one among the others."""
-    couplings = [*closings.couplings]
+def choose_held_joints(c: CompiledModel, tree: JointTree, closures: LoopClosures, q: Any) -> HeldJoints:
+    """Choose the held joints. A coupling is dropped if nothing holds its leader; its joint is then treated as any
+    other.
+    """
+    couplings = [*closures.couplings]
     while True:
-        joints = _held(c, tree, closings, couplings, q)
-        idle = _without_leader(couplings, joints)
-        if idle is None:
+        joints = _choose_for_couplings(c, tree, closures, couplings, q)
+        without_leader = _find_coupling_without_leader(couplings, joints)
+        if without_leader is None:
             return HeldJoints(joints, tuple(couplings))
-        couplings.remove(idle)
+        couplings.remove(without_leader)
 
 
-def _held(c: Compiled, tree: JointTree, closings: Closings, couplings: list[JointEquality], q: Any) -> tuple[int, ...]:
-    slaves = {coupling.slave for coupling in couplings}
-    movable = [joint for joint, step in tree.of_joint.items() if step.kind in COORDINATE]
-    joints = [joint for joint in movable if joint not in slaves]
-    if not closings.carried:
+def _choose_for_couplings(
+    c: CompiledModel, tree: JointTree, closures: LoopClosures, couplings: list[JointEquality], q: Any
+) -> tuple[int, ...]:
+    followers = {coupling.follower for coupling in couplings}
+    movable = [joint for joint, step in tree.step_by_joint.items() if step.kind in COORDINATE_KEYS]
+    joints = [joint for joint in movable if joint not in followers]
+    if not closures.imported_equalities:
         return tuple(joints)
-    leaders = {coupling.master for coupling in couplings}
-    moved = set(_moved(c))
-    order = sorted(joints, key=lambda joint: (joint not in leaders, joint not in moved))
+    leaders = {coupling.leader for coupling in couplings}
+    actuated = set(_actuated_joints(c))
+    order = sorted(joints, key=lambda joint: (joint not in leaders, joint not in actuated))
     dofs = [int(c.model.jnt_dofadr[joint]) for joint in order]
-    carried = closings.carried | {coupling.equality for coupling in couplings}
-    return tuple(sorted(order[k] for k in _independent(_rows(c, carried, q), dofs)))
+    imported_equalities = closures.imported_equalities | {coupling.equality for coupling in couplings}
+    return tuple(sorted(order[k] for k in _iter_independent(_equality_rows(c, imported_equalities, q), dofs)))
 
 
-def _without_leader(couplings: list[JointEquality], joints: tuple[int, ...]) -> JointEquality | None:
-    """The first coupling that leads back to no joint that is held; None where all do."""
-    led: set[int | None] = {None, *joints}
-    left = couplings
-    while left:
-        rest = [coupling for coupling in left if coupling.master not in led]
-        if len(rest) == len(left):
-            return rest[0]
-        led |= {coupling.slave for coupling in left if coupling.master in led}
-        left = rest
+def _find_coupling_without_leader(couplings: list[JointEquality], joints: tuple[int, ...]) -> JointEquality | None:
+    """Find the first coupling that leads back to no held joint; None if all do."""
+    determined: set[int | None] = {None, *joints}
+    remaining = couplings
+    while remaining:
+        still_remaining = [coupling for coupling in remaining if coupling.leader not in determined]
+        if len(still_remaining) == len(remaining):
+            return still_remaining[0]
+        determined |= {coupling.follower for coupling in remaining if coupling.leader in determined}
+        remaining = still_remaining
     return None
 
 
-def _moved(c: Compiled) -> Iterator[int]:
-    """The joints that an actuator moves."""
+def _actuated_joints(c: CompiledModel) -> Iterator[int]:
+    """Yield the joints that an actuator moves."""
     kinds = [int(c.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")]
     for number in range(int(c.model.nu)):
         if int(c.model.actuator_trntype[number]) in kinds:
             yield int(c.model.actuator_trnid[number][0])
 
 
-def _rows(c: Compiled, wanted: frozenset[int], q: Any) -> Any:
-    """Rows of the equalities that the spec holds, (rows, rates)."""
+def _equality_rows(c: CompiledModel, equalities: frozenset[int], q: Any) -> Any:
+    """Compute the constraint rows (rows, rates) of the equalities that the spec holds."""
     mujoco, model = c.mujoco, c.model
     data = mujoco.MjData(model)
     data.qpos[:] = q
-    kept = int(model.opt.jacobian)
+    previous = int(model.opt.jacobian)
     model.opt.jacobian = int(mujoco.mjtJacobian.mjJAC_DENSE)
     try:
         mujoco.mj_kinematics(model, data)
@@ -91,25 +96,25 @@ def _rows(c: Compiled, wanted: frozenset[int], q: Any) -> Any:
         mujoco.mj_tendon(model, data)
         mujoco.mj_makeConstraint(model, data)
     finally:
-        model.opt.jacobian = kept
+        model.opt.jacobian = previous
     J = np.array(data.efc_J).reshape(-1, int(model.nv))[: int(data.ne)]
-    return J[[int(number) in wanted for number in np.array(data.efc_id)[: len(J)]]]
+    return J[[int(number) in equalities for number in np.array(data.efc_id)[: len(J)]]]
 
 
-def _independent(J: Any, dofs: Iterable[int]) -> Iterator[int]:
-    """The places in the list of those rates that the rows and the rates before leave open."""
+def _iter_independent(J: Any, dofs: Iterable[int]) -> Iterator[int]:
+    """Yield the indices in `dofs` of the rates that the rows and the rates before them leave free."""
     sizes = np.linalg.norm(J, axis=1)
     rows = J[sizes > 0.0] / sizes[sizes > 0.0, None]
     _, s, V = np.linalg.svd(rows, full_matrices=False) if len(rows) else (0, np.zeros(0), rows)
-    base = V[s > OPEN[-1] * max(1.0, s.max(initial=0.0))]
-    left = dict(enumerate(dofs))
-    for least in OPEN:
-        for place, dof in list(left.items()):
-            rest = -base.T @ base[:, dof]
-            rest[dof] += 1.0
-            rest -= base.T @ (base @ rest)
-            size = np.linalg.norm(rest)
-            if size > least:
-                yield place
-                base = np.vstack([base, rest / size])
-                del left[place]
+    base = V[s > INDEPENDENCE_THRESHOLDS[-1] * max(1.0, s.max(initial=0.0))]
+    remaining = dict(enumerate(dofs))
+    for threshold in INDEPENDENCE_THRESHOLDS:
+        for index, dof in list(remaining.items()):
+            residual = -base.T @ base[:, dof]
+            residual[dof] += 1.0
+            residual -= base.T @ (base @ residual)
+            size = np.linalg.norm(residual)
+            if size > threshold:
+                yield index
+                base = np.vstack([base, residual / size])
+                del remaining[index]

@@ -1,4 +1,4 @@
-"""Springs, dampers and the like of MuJoCo's that a spec has, too; its stops.
+"""Turn springs, dampers and other loads of MuJoCo that a spec has, too, into force entries; and limits into stops.
 
 hinge      -k (q - springref) - d q'    a turn_spring, a damper
 slide      the same along its axis      a torque (thrust) by its travel, a damper
@@ -14,106 +14,121 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from heuncli.scene.importers.described import DescribedEntry
-from heuncli.scene.importers.mjcf.closings import Closer, straight
-from heuncli.scene.importers.mjcf.compiled import Compiled
-from heuncli.scene.importers.mjcf.frames import BodyFrames, vec
-from heuncli.scene.importers.mjcf.laws import zero
-from heuncli.scene.importers.mjcf.points import PointsMade
-from heuncli.scene.importers.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
-from heuncli.scene.importers.spec_text import number_text, pointed
+from heuncli.scene.importers.mjcf.closings import ClosureBuilder, find_straight_tendon_sites
+from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.frames import BodyFrames, to_vec
+from heuncli.scene.importers.mjcf.laws import drawn_coordinate
+from heuncli.scene.importers.mjcf.points import BodyPoints
+from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, RATE_KEYS, JointTree, TreeJoint
+from heuncli.scene.importers.spec_text import format_decimal, format_number
 
-Name = Callable[[str], str]
+AssignName = Callable[[str], str]
 
 
-def joint_loads(c: Compiled, tree: JointTree, name: Name) -> Iterator[DescribedEntry]:
-    """Springs and dampers in the joints of the tree."""
-    springs, dampers = not c.switched_off("PASSIVE", "SPRING"), not c.switched_off("PASSIVE", "DAMPER")
+def iter_joint_loads(c: CompiledModel, tree: JointTree, assign_name: AssignName) -> Iterator[DescribedEntry]:
+    """Yield the springs and dampers in the joints of the tree."""
+    springs, dampers = not c.is_disabled("PASSIVE", "SPRING"), not c.is_disabled("PASSIVE", "DAMPER")
     for step in tree.steps:
         if step.joint is None:
             continue
         stiffness = float(c.model.jnt_stiffness[step.joint]) if springs else 0.0
         damping = float(c.model.dof_damping[c.model.jnt_dofadr[step.joint]]) if dampers else 0.0
-        if stiffness and step.kind in COORDINATE:
+        if stiffness and step.kind in COORDINATE_KEYS:
             reference = float(c.model.qpos_spring[c.model.jnt_qposadr[step.joint]])
-            yield _spring(step, stiffness, reference - zero(c, step.joint), name)
-        if (step.kind in COORDINATE and damping) or (step.kind == "ball" and damping > 0.0):
-            yield _damper(step, damping, name)
+            yield _make_spring(step, stiffness, reference - drawn_coordinate(c, step.joint), assign_name)
+        if (step.kind in COORDINATE_KEYS and damping) or (step.kind == "ball" and damping > 0.0):
+            yield _make_damper(step, damping, assign_name)
 
 
-def _damper(step: TreeStep, damping: float, name: Name) -> DescribedEntry:
-    wanted = name(f"damping_{step.name}")
+def _make_damper(step: TreeJoint, damping: float, assign_name: AssignName) -> DescribedEntry:
+    entry_name = assign_name(f"damping_{step.name}")
     if damping > 0.0:
-        return DescribedEntry(wanted, {"type": "damper", "joint": step.name, "coefficient": damping})
-    law = f"{pointed(-damping)}*{step.name}.{RATE[step.kind]}"
-    return DescribedEntry(wanted, {"type": "torque", "joint": step.name, "value": law}, "a damping below 0")
+        return DescribedEntry(entry_name, {"type": "damper", "joint": step.name, "coefficient": damping})
+    law = f"{format_decimal(-damping)}*{step.name}.{RATE_KEYS[step.kind]}"
+    return DescribedEntry(entry_name, {"type": "torque", "joint": step.name, "value": law}, "a damping below 0")
 
 
-def _spring(step: TreeStep, stiffness: float, free: float, name: Name) -> DescribedEntry:
+def _make_spring(step: TreeJoint, stiffness: float, free_position: float, assign_name: AssignName) -> DescribedEntry:
     if step.kind == "pin" and stiffness > 0.0:
-        keys = {"type": "turn_spring", "joint": step.name, "stiffness": stiffness, **({"angle": free} if free else {})}
-        return DescribedEntry(name(f"spring_{step.name}"), keys)
-    way = f"{step.name}.{COORDINATE[step.kind]}"
-    if free:
-        way = f"({way} {'-' if free > 0.0 else '+'} {number_text(abs(free))})"
-    keys = {"type": "torque", "joint": step.name, "value": f"{number_text(-stiffness)}*{way}"}
+        keys = {
+            "type": "turn_spring",
+            "joint": step.name,
+            "stiffness": stiffness,
+            **({"angle": free_position} if free_position else {}),
+        }
+        return DescribedEntry(assign_name(f"spring_{step.name}"), keys)
+    displacement = f"{step.name}.{COORDINATE_KEYS[step.kind]}"
+    if free_position:
+        displacement = f"({displacement} {'-' if free_position > 0.0 else '+'} {format_number(abs(free_position))})"
+    keys = {"type": "torque", "joint": step.name, "value": f"{format_number(-stiffness)}*{displacement}"}
     remark = "a spring along the slide" if stiffness > 0.0 else "a stiffness below 0"
-    return DescribedEntry(name(f"spring_{step.name}"), keys, remark)
+    return DescribedEntry(assign_name(f"spring_{step.name}"), keys, remark)
 
 
-def is_tendon_spring(c: Compiled, tendon: int) -> bool:
-    """Whether a tendon is a spring, a damper, or both, between two sites; below 0 it is neither."""
+def is_tendon_spring(c: CompiledModel, tendon: int) -> bool:
+    """Return whether a tendon acts as a spring, a damper, or both, between two sites. Negative coefficients do not
+    count.
+    """
     low, high = (float(length) for length in c.model.tendon_lengthspring[tendon])
     both = float(c.model.tendon_stiffness[tendon]), float(c.model.tendon_damping[tendon])
-    return max(both) > 0.0 <= min(both) and straight(c, tendon) is not None and low == high
+    return max(both) > 0.0 <= min(both) and find_straight_tendon_sites(c, tendon) is not None and low == high
 
 
-def tendon_springs(c: Compiled, closer: Closer, name: Name) -> Iterator[DescribedEntry]:
-    """Springs between two sites."""
-    springs, dampers = not c.switched_off("PASSIVE", "SPRING"), not c.switched_off("PASSIVE", "DAMPER")
+def iter_tendon_springs(c: CompiledModel, closer: ClosureBuilder, assign_name: AssignName) -> Iterator[DescribedEntry]:
+    """Yield the springs between two sites."""
+    springs, dampers = not c.is_disabled("PASSIVE", "SPRING"), not c.is_disabled("PASSIVE", "DAMPER")
     for tendon in range(c.count("tendon")):
-        sites = straight(c, tendon)
+        sites = find_straight_tendon_sites(c, tendon)
         if sites is None or not is_tendon_spring(c, tendon):
             continue
         stiffness = float(c.model.tendon_stiffness[tendon]) if springs else 0.0
         damping = float(c.model.tendon_damping[tendon]) if dampers else 0.0
         if not (stiffness or damping):
             continue
-        its = [closer.site(site) for site in sites]
-        if closer.holder(its[0]) == closer.holder(its[1]):
-            continue  # its length stays, and its pulls are one body's
-        wanted = name(c.name("tendon", tendon) or f"tendon_{tendon + 1}")
-        ends = [closer.point(end, wanted) for end in its]
+        site_ends = [closer.find_site_end(site) for site in sites]
+        if closer.body_name(site_ends[0]) == closer.body_name(site_ends[1]):
+            continue  # its length is constant: both ends are on one body
+        entry_name = assign_name(c.name("tendon", tendon) or f"tendon_{tendon + 1}")
+        ends = [closer.add_point(end, entry_name) for end in site_ends]
         keys: dict[str, Any] = {"type": "spring", "from": ends[0], "to": ends[1], "stiffness": stiffness}
         keys["length"] = float(c.model.tendon_lengthspring[tendon][0])
         if damping:
             keys["damping"] = damping
-        yield DescribedEntry(wanted, keys, c.told("tendon", tendon))
+        yield DescribedEntry(entry_name, keys, c.describe_part("tendon", tendon))
 
 
-def weightless(
-    c: Compiled, frames: BodyFrames, tree: JointTree, points: PointsMade, gravity: Any, name: Name, free: bool
+def iter_gravity_compensation(
+    c: CompiledModel,
+    frames: BodyFrames,
+    tree: JointTree,
+    points: BodyPoints,
+    gravity: Any,
+    assign_name: AssignName,
+    free: bool,
 ) -> Iterator[DescribedEntry]:
-    """What carries the weight of bodies that MuJoCo takes it from; not with both springs and dampers switched off.
+    """Yield the forces of gravity compensation; none if springs and dampers are both disabled.
 
-    What joints with `actuatorgravcomp` carry is their motors', and in what drives take; free joints have no drive.
+    What joints with `actuatorgravcomp` carry is left to their drives; free joints have no drive.
     """
-    if c.switched_off("PASSIVE") or (c.switched_off("SPRING") and c.switched_off("DAMPER")):
+    if c.is_disabled("PASSIVE") or (c.is_disabled("SPRING") and c.is_disabled("DAMPER")):
         return
     for body in range(1, int(c.model.nbody)):
         share, mass = float(c.model.body_gravcomp[body]), float(c.model.body_mass[body])
         if not (share and mass and frames.owners[body]) or not any(gravity):
             continue
-        if not free and all(by_motor(c, body)):
+        if not free and all(motor_compensation(c, body)):
             continue
-        its = tree.names[frames.owners[body]]
-        center = points.add(its, "center", frames.place(body, c.model.body_ipos[body]))
-        vector = vec(-share * mass * g for g in gravity)
-        remark = f"gravcomp {number_text(share)} of {c.told('body', body)}"
-        yield DescribedEntry(name(f"gravcomp_{its}"), {"type": "force", "on": center, "vector": vector}, remark)
+        body_name = tree.names[frames.owners[body]]
+        center = points.add(body_name, "center", frames.transform_point(body, c.model.body_ipos[body]))
+        vector = to_vec(-share * mass * g for g in gravity)
+        remark = f"gravcomp {format_number(share)} of {c.describe_part('body', body)}"
+        yield DescribedEntry(
+            assign_name(f"gravcomp_{body_name}"), {"type": "force", "on": center, "vector": vector}, remark
+        )
 
 
-def by_motor(c: Compiled, body: int) -> list[bool]:
-    """Of each joint that carries a body, whether its motor takes the weight off (`actuatorgravcomp`)."""
+def motor_compensation(c: CompiledModel, body: int) -> list[bool]:
+    """For each joint that carries a body, return whether its motor carries the weight (`actuatorgravcomp`)."""
     found: list[bool] = []
     while body:
         first = int(c.model.body_jntadr[body])
@@ -122,13 +137,19 @@ def by_motor(c: Compiled, body: int) -> list[bool]:
     return found
 
 
-def stops(c: Compiled, tree: JointTree, driven: frozenset[int], name: Name) -> Iterator[DescribedEntry]:
-    """The limits of the joints that no drive moves: where the coordinate comes to one, a blow without rebound."""
-    if c.switched_off("LIMIT", "CONSTRAINT"):
+def iter_stops(
+    c: CompiledModel, tree: JointTree, driven_joints: frozenset[int], assign_name: AssignName
+) -> Iterator[DescribedEntry]:
+    """Yield the limits of the joints without a drive as stops. At a stop, the coordinate meets an impact without
+    rebound.
+    """
+    if c.is_disabled("LIMIT", "CONSTRAINT"):
         return
     for step in tree.steps:
-        if step.joint is None or step.joint in driven or not c.model.jnt_limited[step.joint]:
+        if step.joint is None or step.joint in driven_joints or not c.model.jnt_limited[step.joint]:
             continue
-        if step.kind in COORDINATE:
-            low, high = (float(limit) - zero(c, step.joint) for limit in c.model.jnt_range[step.joint])
-            yield DescribedEntry(name(f"limits_{step.name}"), {"joint": step.name, COORDINATE[step.kind]: (low, high)})
+        if step.kind in COORDINATE_KEYS:
+            low, high = (float(limit) - drawn_coordinate(c, step.joint) for limit in c.model.jnt_range[step.joint])
+            yield DescribedEntry(
+                assign_name(f"limits_{step.name}"), {"joint": step.name, COORDINATE_KEYS[step.kind]: (low, high)}
+            )

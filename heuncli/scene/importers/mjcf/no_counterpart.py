@@ -1,7 +1,8 @@
-"""What a model of MuJoCo's has and a spec does not: one row each, told with the names and the first place.
+"""Report what a model of MuJoCo has and a spec does not: one row for each feature, with the names and the first
+location.
 
-A row finds the parts that have it. What changes no number of a spec's results (cameras, materials, sensors, the setting
-of the solver) is in no row.
+Each row finds the parts that have the feature. Features that change no result of a spec (cameras, materials, sensors,
+solver settings) have no row.
 """
 
 from __future__ import annotations
@@ -13,125 +14,139 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import listed
-from heuncli.scene.importers.described import LEFT_OUT
-from heuncli.scene.importers.mjcf.compiled import Compiled
-from heuncli.scene.importers.mjcf.loads import by_motor, is_tendon_spring
+from heuncli.base.nearest import list_words
+from heuncli.scene.importers.described import LEFT_OUT_CODE
+from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.loads import is_tendon_spring, motor_compensation
 
-MOST_NAMES = 6
+MAX_NAMES = 6
 DEFAULT_SOLREF = (0.02, 1.0)
 DEFAULT_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)
-MOST_GROUPS = 3000  # of geoms that are looked at in pairs
+MAX_GROUPS = 3000  # groups of geoms that are checked in pairs
 
 
-class WithoutCounterpart(NamedTuple):
-    """One thing without counterpart. kind: of the parts that have it; has: their numbers; hint: what there is."""
+class UnsupportedFeature(NamedTuple):
+    """A feature without a counterpart in a spec.
+
+    kind: the kind of parts that have it
+    find: returns the numbers of those parts
+    what: the message
+    hint: what to use instead
+    """
 
     kind: str
-    has: Callable[[Compiled], Iterable[int]]
+    has: Callable[[CompiledModel], Iterable[int]]
     what: str
     hint: str
 
 
-def without_counterpart(c: Compiled, rods: frozenset[int], limits: bool, free: bool) -> Iterator[Problem]:
-    """All that is left out of the spec; rods: the tendons that are in it."""
-    for row in ROWS:
-        yield from _problem(c, row, row.has(c))
-    acting = [tendon for tendon in _acting(c) if tendon not in rods]
-    yield from _problem(c, TENDONS, (tendon for tendon in acting if not is_tendon_spring(c, tendon)))
-    yield from _problem(c, TENDON_SPRINGS, (tendon for tendon in acting if is_tendon_spring(c, tendon)))
+def find_unsupported(c: CompiledModel, rods: frozenset[int], limits: bool, free: bool) -> Iterator[Problem]:
+    """Yield a problem for each feature that is left out of the spec. rods: the tendons that are in it."""
+    for row in UNSUPPORTED_FEATURES:
+        yield from _feature_problem(c, row, row.find(c))
+    acting_tendons = [tendon for tendon in _acting_tendons(c) if tendon not in rods]
+    yield from _feature_problem(c, TENDONS, (tendon for tendon in acting_tendons if not is_tendon_spring(c, tendon)))
+    yield from _feature_problem(c, TENDON_SPRINGS, (tendon for tendon in acting_tendons if is_tendon_spring(c, tendon)))
     if limits:
-        yield from _problem(c, BALL_LIMITS, _where(c, c.model.jnt_limited, _of_type(c, "mjJNT_BALL")))
+        yield from _feature_problem(
+            c, BALL_LIMITS, _joints_where(c, c.model.jnt_limited, _joint_type_mask(c, "mjJNT_BALL"))
+        )
     if not free:
-        yield from _problem(c, SHARED_WEIGHTS, _shared_weights(c))
-    yield from _whole(c)
+        yield from _feature_problem(c, SHARED_WEIGHTS, _partly_compensated_bodies(c))
+    yield from _model_problems(c)
 
 
-def _problem(c: Compiled, row: WithoutCounterpart, numbers: Iterable[int]) -> Iterator[Problem]:
-    found = sorted(set(numbers))
-    if not found:
+def _feature_problem(c: CompiledModel, row: UnsupportedFeature, numbers: Iterable[int]) -> Iterator[Problem]:
+    part_numbers = sorted(set(numbers))
+    if not part_numbers:
         return
-    names = [c.name(row.kind, number) or f"number {number}" for number in found]
-    several = row.kind if len(found) == 1 else {"body": "bodies"}.get(row.kind, f"{row.kind}s")
-    shown = listed(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
-    location = c.location(row.kind, found[0])
+    names = [c.name(row.kind, number) or f"number {number}" for number in part_numbers]
+    kind_text = row.kind if len(part_numbers) == 1 else {"body": "bodies"}.get(row.kind, f"{row.kind}s")
+    names_text = list_words(names[:MAX_NAMES]) + (
+        f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    )
+    location = c.location(row.kind, part_numbers[0])
     where = "" if location else f"{c.file}: "
-    yield Problem(LEFT_OUT, f"{where}{row.what}: {several} {shown}", location, row.hint)
+    yield Problem(LEFT_OUT_CODE, f"{where}{row.what}: {kind_text} {names_text}", location, row.hint)
 
 
-def _whole(c: Compiled) -> Iterator[Problem]:
-    """What holds for the whole model."""
+def _model_problems(c: CompiledModel) -> Iterator[Problem]:
+    """Yield the problems that concern the whole model."""
     option, place = c.model.opt, SourceLocation(c.file, 1, 1)
     if float(option.density) or float(option.viscosity):
         message = "the forces of a fluid (density, viscosity, wind) are not in a spec"
-        yield Problem(LEFT_OUT, message, place, "drag on a point is a force by its velocity: -c*points.tip.vx")
-    touching = _touching(c)
-    if touching:
-        message = f"contacts are not in a spec: {touching} of {c.count('geom')} geoms may touch others"
+        yield Problem(LEFT_OUT_CODE, message, place, "drag on a point is a force by its velocity: -c*points.tip.vx")
+    touching_count = _count_touching_geoms(c)
+    if touching_count:
+        message = f"contacts are not in a spec: {touching_count} of {c.count('geom')} geoms may touch others"
         hint = "a floor under a point is a force by its place; ends of a joint's range are stops (--limits)"
-        yield Problem(LEFT_OUT, message, place, hint)
+        yield Problem(LEFT_OUT_CODE, message, place, hint)
     if int(c.model.nplugin):
         message = f"plugins of MuJoCo's ({int(c.model.nplugin)}) have no counterpart in a spec"
-        yield Problem(LEFT_OUT, message, place, "say what they do by forces of the spec")
+        yield Problem(LEFT_OUT_CODE, message, place, "say what they do by forces of the spec")
 
 
-def _where(c: Compiled, joints: Any, of: Any = True) -> list[int]:
-    """The numbers of the joints for which both hold."""
-    return [int(k) for k in np.flatnonzero(np.logical_and(np.asarray(joints) != 0, of))]
+def _joints_where(c: CompiledModel, values: Any, mask: Any = True) -> list[int]:
+    """Return the numbers of the joints whose value is not 0 and for which the mask holds."""
+    return [int(k) for k in np.flatnonzero(np.logical_and(np.asarray(values) != 0, mask))]
 
 
-def _of_type(c: Compiled, *words: str) -> Any:
+def _joint_type_mask(c: CompiledModel, *words: str) -> Any:
     kinds = [int(c.mujoco.mjtJoint.__members__[word]) for word in words]
     return np.isin(np.asarray(c.model.jnt_type), kinds)
 
 
-def _rows_with(values: Any, count: int) -> list[int]:
-    """The rows of an array, one row a part, in which something is not 0; an array that older versions do not have."""
+def _nonzero_rows(values: Any, count: int) -> list[int]:
+    """Return the rows with a nonzero value in an array of one row for each part; none if this version of MuJoCo lacks
+    the array.
+    """
     if values is None or not count:
         return []
     return [int(k) for k in np.flatnonzero((np.asarray(values).reshape(count, -1) != 0).any(axis=1))]
 
 
-def _joints_of_dofs(c: Compiled, values: Any) -> list[int]:
-    """The joints of the rates for which an array is not 0."""
-    return [int(c.model.dof_jntid[dof]) for dof in _rows_with(values, int(c.model.nv))]
+def _joints_with_nonzero_rates(c: CompiledModel, values: Any) -> list[int]:
+    """Return the joints of those rates for which the array is not 0."""
+    return [int(c.model.dof_jntid[dof]) for dof in _nonzero_rows(values, int(c.model.nv))]
 
 
-def _curved(c: Compiled) -> list[int]:
-    """Joints whose spring or damper is not linear, or gives way."""
+def _nonlinear_joints(c: CompiledModel) -> list[int]:
+    """Return the joints whose spring or damper is not linear, or yields."""
     joints = [getattr(c.model, name, None) for name in ("jnt_stiffnesspoly", "jnt_springyield")]
-    of_springs = [joint for values in joints for joint in _rows_with(values, int(c.model.njnt))]
-    return of_springs + _joints_of_dofs(c, getattr(c.model, "dof_dampingpoly", None))
+    of_springs = [joint for values in joints for joint in _nonzero_rows(values, int(c.model.njnt))]
+    return of_springs + _joints_with_nonzero_rates(c, getattr(c.model, "dof_dampingpoly", None))
 
 
-def _free_damped(c: Compiled) -> list[int]:
-    """Free joints with damping, and balls with one below 0."""
-    free, balls = np.flatnonzero(_of_type(c, "mjJNT_FREE")), np.flatnonzero(_of_type(c, "mjJNT_BALL"))
-    driving = [joint for joint in _joints_of_dofs(c, np.minimum(c.model.dof_damping, 0.0)) if joint in balls]
-    return driving + [joint for joint in _joints_of_dofs(c, c.model.dof_damping) if joint in free]
+def _unsupported_damping(c: CompiledModel) -> list[int]:
+    """Return the free joints with damping, and the balls with negative damping."""
+    free, balls = np.flatnonzero(_joint_type_mask(c, "mjJNT_FREE")), np.flatnonzero(_joint_type_mask(c, "mjJNT_BALL"))
+    negatively_damped = [
+        joint for joint in _joints_with_nonzero_rates(c, np.minimum(c.model.dof_damping, 0.0)) if joint in balls
+    ]
+    return negatively_damped + [joint for joint in _joints_with_nonzero_rates(c, c.model.dof_damping) if joint in free]
 
 
-def _shared_weights(c: Compiled) -> Iterator[int]:
-    """The bodies of which some joints take the weight off by their motors, others not."""
-    for body in _rows_with(c.model.body_gravcomp, int(c.model.nbody)):
-        motors = by_motor(c, body)
+def _partly_compensated_bodies(c: CompiledModel) -> Iterator[int]:
+    """Yield the bodies whose weight is carried by the motors of some joints, but not of all."""
+    for body in _nonzero_rows(c.model.body_gravcomp, int(c.model.nbody)):
+        motors = motor_compensation(c, body)
         if any(motors) and not all(motors):
             yield body
 
 
-def _actuators(c: Compiled) -> list[int]:
-    """Those that are more than a torque or thrust which their control alone makes."""
+def _unsupported_actuators(c: CompiledModel) -> list[int]:
+    """Return the actuators that are more than a torque or thrust made by their control alone."""
     model, mujoco = c.model, c.mujoco
-    plain = (
+    is_plain = (
         (np.asarray(model.actuator_dyntype) == int(mujoco.mjtDyn.mjDYN_NONE))
         & (np.asarray(model.actuator_gaintype) == int(mujoco.mjtGain.mjGAIN_FIXED))
         & (np.asarray(model.actuator_biastype) == int(mujoco.mjtBias.mjBIAS_NONE))
     )
-    return [int(k) for k in np.flatnonzero(~plain)]
+    return [int(k) for k in np.flatnonzero(~is_plain)]
 
 
-def _acting(c: Compiled) -> Iterator[int]:
-    """Tendons that pull, or hold, and are no spring between two sites."""
+def _acting_tendons(c: CompiledModel) -> Iterator[int]:
+    """Yield the tendons that pull or hold, and are no spring between two sites."""
     for tendon in range(c.count("tendon")):
         names = ("stiffness", "damping", "limited", "frictionloss", "armature", "stiffnesspoly", "dampingpoly")
         has = {name: bool(np.any(getattr(c.model, f"tendon_{name}", np.zeros(tendon + 1))[tendon])) for name in names}
@@ -142,8 +157,8 @@ def _acting(c: Compiled) -> Iterator[int]:
             yield tendon
 
 
-def _soft(c: Compiled) -> list[int]:
-    """Equalities whose softness was set by hand."""
+def _softened_equalities(c: CompiledModel) -> list[int]:
+    """Return the equalities whose softness was set by hand."""
     n = c.count("equality")
     if not n:
         return []
@@ -152,34 +167,34 @@ def _soft(c: Compiled) -> list[int]:
     return [int(k) for k in np.flatnonzero(~(hard & stiff))]
 
 
-def _touching(c: Compiled) -> int:
-    """How many geoms may touch one of another body, by their `contype`, `conaffinity` and what is excluded.
+def _count_touching_geoms(c: CompiledModel) -> int:
+    """Count the geoms that may touch one of another body, by their `contype`, `conaffinity` and the exclusions.
 
-    Bodies that are fixed to each other are one; a body and its parent do not touch, unless that is the ground.
+    Bodies that are fixed to each other count as one. A body and its parent do not touch, unless that is the ground.
     """
-    if c.switched_off("CONTACT", "CONSTRAINT"):
+    if c.is_disabled("CONTACT", "CONSTRAINT"):
         return 0
     model = c.model
     weld = np.asarray(model.body_weldid)
-    its = weld[np.asarray(model.geom_bodyid, dtype=int)] if model.ngeom else np.zeros(0, dtype=int)
-    rows = np.stack([np.asarray(model.geom_contype), np.asarray(model.geom_conaffinity), its], axis=1)
+    geom_body = weld[np.asarray(model.geom_bodyid, dtype=int)] if model.ngeom else np.zeros(0, dtype=int)
+    rows = np.stack([np.asarray(model.geom_contype), np.asarray(model.geom_conaffinity), geom_body], axis=1)
     groups, member = np.unique(rows, axis=0, return_inverse=True) if len(rows) else (rows, np.zeros(0, dtype=int))
-    if len(groups) > MOST_GROUPS:
+    if len(groups) > MAX_GROUPS:
         return int(np.any(rows[:, :2] != 0, axis=1).sum())
     types, affinities, bodies = groups.T if len(groups) else np.zeros((3, 0), dtype=int)
-    may = (types[:, None] & affinities) | (affinities[:, None] & types)
+    may_touch = (types[:, None] & affinities) | (affinities[:, None] & types)
     parents = weld[np.asarray(model.body_parentid)[bodies]]
-    filtered = not c.switched_off("FILTERPARENT")
+    filtered = not c.is_disabled("FILTERPARENT")
     kin = (parents[:, None] == bodies) & (bodies != 0) & (bodies[:, None] != 0) & filtered
-    may = (may != 0) & (bodies[:, None] != bodies) & ~kin & ~kin.T & ~_excluded(c, weld, bodies)
-    touching = may.any(axis=1)[member.ravel()] if len(groups) else np.zeros(0, dtype=bool)
+    may_touch = (may_touch != 0) & (bodies[:, None] != bodies) & ~kin & ~kin.T & ~_excluded_pairs(c, weld, bodies)
+    touching = may_touch.any(axis=1)[member.ravel()] if len(groups) else np.zeros(0, dtype=bool)
     for pair in range(int(model.npair)):
         touching[[int(model.pair_geom1[pair]), int(model.pair_geom2[pair])]] = True
     return int(touching.sum())
 
 
-def _excluded(c: Compiled, weld: Any, bodies: Any) -> Any:
-    """Which of these pairs of bodies a model excludes by name."""
+def _excluded_pairs(c: CompiledModel, weld: Any, bodies: Any) -> Any:
+    """Return which of these pairs of bodies the model excludes by name."""
     signatures = np.asarray(c.model.exclude_signature, dtype=int)
     pairs = {(int(weld[s >> 16]), int(weld[s & 0xFFFF])) for s in signatures}
     pairs |= {(b, a) for a, b in pairs}
@@ -189,59 +204,59 @@ def _excluded(c: Compiled, weld: Any, bodies: Any) -> Any:
     return out
 
 
-ROWS = (
-    WithoutCounterpart(
-        "joint", lambda c: _joints_of_dofs(c, c.model.dof_armature),
+UNSUPPORTED_FEATURES = (
+    UnsupportedFeature(
+        "joint", lambda c: _joints_with_nonzero_rates(c, c.model.dof_armature),
         "the inertia of a motor (armature) is left out: at rest it adds nothing",
         "a motion takes armature * acceleration more than its drive tells",
     ),
-    WithoutCounterpart(
-        "joint", lambda c: [] if c.switched_off("FRICTIONLOSS") else _joints_of_dofs(c, c.model.dof_frictionloss),
+    UnsupportedFeature(
+        "joint", lambda c: [] if c.is_disabled("FRICTIONLOSS") else _joints_with_nonzero_rates(c, c.model.dof_frictionloss),
         "dry friction (frictionloss) is left out",
         "a force of type friction has it, with the speed at which it is full",
     ),
-    WithoutCounterpart(
-        "joint", lambda c: _where(c, c.model.jnt_stiffness, _of_type(c, "mjJNT_BALL", "mjJNT_FREE")),
+    UnsupportedFeature(
+        "joint", lambda c: _joints_where(c, c.model.jnt_stiffness, _joint_type_mask(c, "mjJNT_BALL", "mjJNT_FREE")),
         "springs in a ball or free joint are not in a spec", "springs between points have their effect",
     ),
-    WithoutCounterpart(
-        "joint", _free_damped,
+    UnsupportedFeature(
+        "joint", _unsupported_damping,
         "damping of a free joint, or below 0 of a ball, is not in a spec",
         "drag on a point is a force by its velocity: -c*points.tip.vx",
     ),
-    WithoutCounterpart(
-        "joint", _curved,
+    UnsupportedFeature(
+        "joint", _nonlinear_joints,
         "springs and dampers that are not linear: their linear part alone is in the spec",
         "a torque has any law in the joint's angle and rate",
     ),
-    WithoutCounterpart(
-        "actuator", _actuators,
+    UnsupportedFeature(
+        "actuator", _unsupported_actuators,
         "actuators with dynamics, or with a feedback of their own, are left out",
         "joints are held by drives, which tell the torque that is needed",
     ),
-    WithoutCounterpart("equality", _soft, "softness of equalities (solref, solimp) is not in a spec, where they hold",
+    UnsupportedFeature("equality", _softened_equalities, "softness of equalities (solref, solimp) is not in a spec, where they hold",
         "an elastic coupling is a spring or turn_spring"),
-    WithoutCounterpart(
+    UnsupportedFeature(
         "flex", lambda c: range(c.count("flex")), "flexible bodies are not in a spec", "a spec has rigid bodies",
     ),
-    WithoutCounterpart(
+    UnsupportedFeature(
         "body", lambda c: [int(k) for k in np.flatnonzero(np.asarray(c.model.body_mocapid) >= 0)],
         "bodies that a program moves (mocap) stand still in the spec", "move what they hold by a drive",
     ),
 )  # fmt: skip
-TENDONS = WithoutCounterpart(
+TENDONS = UnsupportedFeature(
     "tendon", lambda c: (), "tendons are in a spec where they run straight between two sites, as springs or rods of "
     "a given length; left out",
     "rods, springs and actuators run between points",
 )  # fmt: skip
-TENDON_SPRINGS = WithoutCounterpart(
+TENDON_SPRINGS = UnsupportedFeature(
     "tendon", lambda c: (), "limits, friction and armature of tendons, and what is not linear in them, are left out; "
     "their springs and dampers are in the spec",
     "an actuator between two points has any law in its length",
 )  # fmt: skip
-SHARED_WEIGHTS = WithoutCounterpart(
+SHARED_WEIGHTS = UnsupportedFeature(
     "body", lambda c: (), "weights that motors take off (actuatorgravcomp) in some of the joints that carry them: in "
     "the spec no joint carries them",
     "the motor of such a joint takes what its drive tells, and the torque of the weight",
 )  # fmt: skip
-BALL_LIMITS = WithoutCounterpart("joint", lambda c: (), "limits of a ball's turn are not in a spec", "pins have stops")
+BALL_LIMITS = UnsupportedFeature("joint", lambda c: (), "limits of a ball's turn are not in a spec", "pins have stops")

@@ -1,4 +1,4 @@
-"""The named points of all bodies of a spec while it is made: each name once in a body."""
+"""Collect the named points of all bodies of a spec; names are unique within a body."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from heuncli.scene.importers.described import DescribedPoint
 from heuncli.scene.importers.names import Namer
 
 
-class PointsMade:
+class BodyPoints:
     """Points by body, in the order in which they are added."""
 
     def __init__(self) -> None:
         self.namers: dict[str, Namer] = {}
         self.points: dict[str, list[DescribedPoint]] = {}
 
-    def add(self, body: str, wanted: str, place: Vec, remark: str = "") -> str:
-        """The end `body.point` of a new point. wanted: what it is called if that is free."""
-        name = self.namers.setdefault(body, Namer("point")).name(wanted)
+    def add(self, body: str, original: str, place: Vec, remark: str = "") -> str:
+        """Add a point and return its end, `body.point`. original: its name, if that is still free."""
+        name = self.namers.setdefault(body, Namer("point")).assign(original)
         self.points.setdefault(body, []).append(DescribedPoint(name, place, remark))
         return f"{body}.{name}"
 
-    def of(self, body: str) -> tuple[DescribedPoint, ...]:
-        """Those of a body."""
+    def get_points(self, body: str) -> tuple[DescribedPoint, ...]:
+        """Return the points of a body."""
         return tuple(self.points.get(body, ()))

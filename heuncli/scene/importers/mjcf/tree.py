@@ -1,9 +1,9 @@
-"""The joints of MuJoCo's tree, one after the other: each carries one body of the spec on another.
+"""Turn MuJoCo's tree into joints of a spec, in order; each carries one body of the spec on another.
 
-MuJoCo stacks several joints on one body: a hip of three hinges. A spec has a body between any two joints. So a carrier
-stands there: a point mass of CARRIER times the mass of what it carries. That is less than a rounding of any sum in
-which it stands: the numbers are those of no mass at all, and the joints between have theirs (drives, springs, stops).
-A body with joints of all six freedoms (`freejoint`) has no joint in the spec, and one without joints a weld.
+MuJoCo stacks several joints on one body, such as a hip of three hinges. A spec has a body between any two joints, so a
+carrier is put there: a point mass of CARRIER times the mass that it carries. That is below the rounding of any sum it
+enters, so results are those without it, and the joints in between can have drives, springs and stops. A body with a
+free joint (`freejoint`) has no joint in the spec, and one without joints has a weld.
 """
 
 from __future__ import annotations
@@ -11,23 +11,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.mjcf.compiled import Compiled
+from heuncli.scene.importers.mjcf.compiled import CompiledModel
 from heuncli.scene.importers.mjcf.frames import BodyFrames
-from heuncli.scene.importers.names import names_of
+from heuncli.scene.importers.names import assign_names
 
-CARRIER = 1e-20
+CARRIER_MASS_RATIO = 1e-20
 GROUND = "ground"
-KINDS = {"mjJNT_BALL": "ball", "mjJNT_SLIDE": "slide", "mjJNT_HINGE": "pin"}
+JOINT_TYPES = {"mjJNT_BALL": "ball", "mjJNT_SLIDE": "slide", "mjJNT_HINGE": "pin"}
 FREE = "free"
-COORDINATE = {"pin": "angle", "slide": "travel"}
-RATE = {"pin": "rate", "slide": "speed"}
+COORDINATE_KEYS = {"pin": "angle", "slide": "travel"}
+RATE_KEYS = {"pin": "rate", "slide": "speed"}
 
 
-class TreeStep(NamedTuple):
-    """One joint of the tree, from one body of the spec to the next.
+class TreeJoint(NamedTuple):
+    """A joint of the tree, from one body of the spec to the next.
 
-    joint: its number in MuJoCo, None of a weld; kind: its type in a spec, or FREE; body: the body of MuJoCo in whose
-    axes its place and its axis are given.
+    joint: its number in MuJoCo; None for a weld
+    kind: its type in a spec, or FREE
+    body: the body of MuJoCo in whose axes its place and axis are given
     """
 
     joint: int | None
@@ -39,57 +40,66 @@ class TreeStep(NamedTuple):
 
 
 class JointTree(NamedTuple):
-    """names: of those bodies of MuJoCo that are bodies of the spec (0: the ground); wanted: what MuJoCo calls them."""
+    """names: the spec's names of those bodies of MuJoCo that are bodies of the spec (0: the ground)
+    originals: their names in MuJoCo
+    carriers: the bodies between stacked joints, each with the MuJoCo body that it carries
+    """
 
     names: dict[int, str]
     wanted: dict[int, str]
     carriers: dict[str, int]  # the bodies between stacked joints, and the body that they carry
-    steps: tuple[TreeStep, ...]
+    steps: tuple[TreeJoint, ...]
 
     @property
-    def of_joint(self) -> dict[int, TreeStep]:
-        """The steps by the number of the joint."""
+    def step_by_joint(self) -> dict[int, TreeJoint]:
+        """Return the steps by joint number."""
         return {step.joint: step for step in self.steps if step.joint is not None}
 
 
-def tree_of(c: Compiled, frames: BodyFrames) -> JointTree:
-    """The tree of a model."""
+def build_tree(c: CompiledModel, frames: BodyFrames) -> JointTree:
+    """Build the joint tree of a model."""
     owners = sorted(set(frames.owners) - {0})
-    wanted = {body: c.name("body", body) or f"body_{body}" for body in owners}
-    joints = {body: _joints(c, body) for body in owners}
-    called = {joint: _joint_name(c, wanted[body], joint, its) for body, its in joints.items() for joint, _ in its}
+    originals = {body: c.name("body", body) or f"body_{body}" for body in owners}
+    joints = {body: _find_joints(c, body) for body in owners}
+    joint_originals = {
+        joint: _find_joint_name(c, originals[body], joint, body_joints)
+        for body, body_joints in joints.items()
+        for joint, _ in body_joints
+    }
     welded = [body for body in owners if not joints[body]]
-    names = names_of("joint", [*called.values(), *(f"{wanted[body]}_weld" for body in welded)])
-    of_joint = dict(zip(called, names, strict=False))
-    of_weld = dict(zip(welded, names[len(called) :], strict=True))
+    names = assign_names("joint", [*joint_originals.values(), *(f"{originals[body]}_weld" for body in welded)])
+    joint_names = dict(zip(joint_originals, names, strict=False))
+    weld_names = dict(zip(welded, names[len(joint_originals) :], strict=True))
     carriers = [(joint, body) for body in owners for joint, _ in joints[body][:-1]]
-    body_names = names_of("body", [*wanted.values(), *(f"{of_joint[joint]}_carrier" for joint, _ in carriers)])
-    of_body = {0: GROUND, **dict(zip(owners, body_names, strict=False))}
-    of_carrier = dict(zip((joint for joint, _ in carriers), body_names[len(owners) :], strict=True))
+    body_names = assign_names(
+        "body", [*originals.values(), *(f"{joint_names[joint]}_carrier" for joint, _ in carriers)]
+    )
+    name_by_body = {0: GROUND, **dict(zip(owners, body_names, strict=False))}
+    carrier_names = dict(zip((joint for joint, _ in carriers), body_names[len(owners) :], strict=True))
 
-    def steps() -> Iterator[TreeStep]:
+    def steps() -> Iterator[TreeJoint]:
         for body in owners:
-            at = of_body[frames.owners[int(c.model.body_parentid[body])]]
+            at = name_by_body[frames.owners[int(c.model.body_parentid[body])]]
             for joint, kind in joints[body]:
-                child = of_carrier.get(joint, of_body[body])
-                yield TreeStep(joint, kind, body, of_joint[joint], at, child)
+                child = carrier_names.get(joint, name_by_body[body])
+                yield TreeJoint(joint, kind, body, joint_names[joint], at, child)
                 at = child
-            if body in of_weld:
-                yield TreeStep(None, "weld", body, of_weld[body], at, of_body[body])
+            if body in weld_names:
+                yield TreeJoint(None, "weld", body, weld_names[body], at, name_by_body[body])
 
-    return JointTree(of_body, wanted, {of_carrier[joint]: body for joint, body in carriers}, tuple(steps()))
+    return JointTree(name_by_body, originals, {carrier_names[joint]: body for joint, body in carriers}, tuple(steps()))
 
 
-def _joints(c: Compiled, body: int) -> list[tuple[int, str]]:
-    """The joints of a body and their kinds, the one nearest to its parent first."""
-    kinds = {int(getattr(c.mujoco.mjtJoint, word)): kind for word, kind in KINDS.items()}
+def _find_joints(c: CompiledModel, body: int) -> list[tuple[int, str]]:
+    """List the joints of a body and their types, the one nearest to its parent first."""
+    kinds = {int(getattr(c.mujoco.mjtJoint, word)): kind for word, kind in JOINT_TYPES.items()}
     first = int(c.model.body_jntadr[body])
     return [
         (k, kinds.get(int(c.model.jnt_type[k]), FREE)) for k in range(first, first + int(c.model.body_jntnum[body]))
     ]
 
 
-def _joint_name(c: Compiled, body: str, joint: int, its: list[tuple[int, str]]) -> str:
-    """A joint without a name has that of its body, with a number where there are several."""
-    place = [number for number, _ in its].index(joint) + 1
-    return c.name("joint", joint) or (f"{body}_{place}" if len(its) > 1 else body)
+def _find_joint_name(c: CompiledModel, body: str, joint: int, body_joints: list[tuple[int, str]]) -> str:
+    """Return a joint's name; without one, that of its body, with a number if there are several."""
+    position = [number for number, _ in body_joints].index(joint) + 1
+    return c.name("joint", joint) or (f"{body}_{position}" if len(body_joints) > 1 else body)

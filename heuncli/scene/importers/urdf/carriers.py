@@ -1,9 +1,9 @@
-"""Which body carries each link, and where: links without mass are no bodies, but points of the body they are fixed to.
+"""Find the body that carries each link, and where. A link without mass is a point of the body to which it is fixed.
 
-Links joined by fixed joints make one rigid group. In it every link with mass is a body, and one without is carried by
-the nearest body above it; where there is none above, by the ground if the group stands on it, else by the first body of
-the group below it. With every joint at 0, R_WL the attitude of a link and x_HL its origin from that of its carrier,
-both along the world's axes:
+Links joined by fixed joints form one rigid group. In it, every link with mass is a body. A link without mass is carried
+by the nearest body above it; if there is none, by the ground if the group is grounded, else by the first body of the
+group below it. With every joint at 0, R_WL is the attitude of a link and x_HL its origin from that of its carrier, both
+along the world's axes:
 
     R_WL = R_WP R_PL,   x_HL = x_HP + R_WP p_PL      P the parent of L, p_PL, R_PL the pose of its joint
 """
@@ -15,14 +15,25 @@ from collections.abc import Collection
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import ZERO, Matrix, Vec
 from heuncli.scene.file_format.turns import IDENTITY
-from heuncli.scene.importers.attitudes import after, of_roll_pitch_yaw, shifted, turned
+from heuncli.scene.importers.attitudes import (
+    add_vectors,
+    compose_rotations,
+    rotate_vector,
+    rotation_from_roll_pitch_yaw,
+)
 from heuncli.scene.importers.urdf.tree import LinkTree
 
-GROUND = ""  # no name of a link
+GROUND = ""  # differs from every link name
 
 
 class PlacedLink(NamedTuple):
-    """A link at the zero of all joints: its attitude and origin in the world; its carrier, and where from that."""
+    """A link with all joints at zero.
+
+    R: its attitude in the world
+    origin: its origin in the world [m]
+    carrier: the link, or GROUND, that carries it
+    offset: its origin relative to that of the carrier [m]
+    """
 
     R: Matrix
     origin: Vec
@@ -30,81 +41,94 @@ class PlacedLink(NamedTuple):
     offset: Vec
 
 
-def placed_links(
-    tree: LinkTree, attitudes: dict[str, Matrix], massive: Collection[str], grounded: bool
+def place_links(
+    tree: LinkTree, attitudes: dict[str, Matrix], links_with_mass: Collection[str], is_grounded: bool
 ) -> tuple[dict[str, PlacedLink], list[str]]:
-    """Every link; and those without mass that have no carrier, whose group nobody carries.
+    """Place every link. Also returns the links without mass whose rigid group has no body.
 
-    attitudes: R_WL of every link; massive: the links with mass; grounded: the root stands on the ground.
+    attitudes: R_WL of every link
+    is_grounded: whether the root is fixed to the ground
     """
-    head = heads_of(tree)
-    carrier = _carriers(tree, head, massive, grounded)
-    offset = _offsets(tree, attitudes, head, carrier)
-    origin: dict[str, Vec] = {}
+    heads = find_group_heads(tree)
+    carriers = _find_carriers(tree, heads, links_with_mass, is_grounded)
+    offsets = _compute_offsets(tree, attitudes, heads, carriers)
+    origins: dict[str, Vec] = {}
     for link in tree.links:
-        joint = tree.above.get(link.name)
-        at = ZERO if joint is None else shifted(origin[joint.parent], turned(attitudes[joint.parent], joint.pose.xyz))
-        origin[link.name] = at
-    lost = [link.name for link in tree.links if link.name not in carrier]
+        joint = tree.parent_joints.get(link.name)
+        place = (
+            ZERO
+            if joint is None
+            else add_vectors(origins[joint.parent], rotate_vector(attitudes[joint.parent], joint.pose.xyz))
+        )
+        origins[link.name] = place
+    uncarried = [link.name for link in tree.links if link.name not in carriers]
     placed = {
-        link.name: PlacedLink(attitudes[link.name], origin[link.name], carrier[link.name], offset[link.name])
+        link.name: PlacedLink(attitudes[link.name], origins[link.name], carriers[link.name], offsets[link.name])
         for link in tree.links
-        if link.name in carrier
+        if link.name in carriers
     }
-    return placed, lost
+    return placed, uncarried
 
 
-def attitudes_of(tree: LinkTree) -> dict[str, Matrix]:
-    """R_WL of every link with every joint at 0."""
-    found: dict[str, Matrix] = {}
+def compute_attitudes(tree: LinkTree) -> dict[str, Matrix]:
+    """Compute R_WL of every link with every joint at 0."""
+    attitudes: dict[str, Matrix] = {}
     for link in tree.links:
-        joint = tree.above.get(link.name)
-        found[link.name] = IDENTITY if joint is None else after(found[joint.parent], of_roll_pitch_yaw(joint.pose.rpy))
-    return found
+        joint = tree.parent_joints.get(link.name)
+        attitudes[link.name] = (
+            IDENTITY
+            if joint is None
+            else compose_rotations(attitudes[joint.parent], rotation_from_roll_pitch_yaw(joint.pose.rpy))
+        )
+    return attitudes
 
 
-def heads_of(tree: LinkTree) -> dict[str, str]:
-    """The first link of the rigid group of each link."""
-    head: dict[str, str] = {}
+def find_group_heads(tree: LinkTree) -> dict[str, str]:
+    """Find the first link of the rigid group of each link."""
+    heads: dict[str, str] = {}
     for link in tree.links:
-        joint = tree.above.get(link.name)
-        head[link.name] = link.name if joint is None or joint.movable else head[joint.parent]
-    return head
+        joint = tree.parent_joints.get(link.name)
+        heads[link.name] = link.name if joint is None or joint.is_movable else heads[joint.parent]
+    return heads
 
 
-def _carriers(tree: LinkTree, head: dict[str, str], massive: Collection[str], grounded: bool) -> dict[str, str]:
-    first = {tree.root.name: GROUND} if grounded else {}
+def _find_carriers(
+    tree: LinkTree, heads: dict[str, str], links_with_mass: Collection[str], is_grounded: bool
+) -> dict[str, str]:
+    first_carrier = {tree.root.name: GROUND} if is_grounded else {}
     for link in tree.links:
-        if link.name in massive:
-            first.setdefault(head[link.name], link.name)
-    carrier: dict[str, str] = {}
+        if link.name in links_with_mass:
+            first_carrier.setdefault(heads[link.name], link.name)
+    carriers: dict[str, str] = {}
     for link in tree.links:
-        name, joint = link.name, tree.above.get(link.name)
-        if name in massive:
-            carrier[name] = name
-        elif head[name] != name and joint is not None and joint.parent in carrier:
-            carrier[name] = carrier[joint.parent]
-        elif head[name] in first:
-            carrier[name] = first[head[name]]
-    return carrier
+        name, joint = link.name, tree.parent_joints.get(link.name)
+        if name in links_with_mass:
+            carriers[name] = name
+        elif heads[name] != name and joint is not None and joint.parent in carriers:
+            carriers[name] = carriers[joint.parent]
+        elif heads[name] in first_carrier:
+            carriers[name] = first_carrier[heads[name]]
+    return carriers
 
 
-def _offsets(
-    tree: LinkTree, attitudes: dict[str, Matrix], head: dict[str, str], carrier: dict[str, str]
+def _compute_offsets(
+    tree: LinkTree, attitudes: dict[str, Matrix], heads: dict[str, str], carriers: dict[str, str]
 ) -> dict[str, Vec]:
-    """x_HL: from a carrier below up to the head of its group, then from each head outward."""
-    offset = {name: ZERO for name, by in carrier.items() if name == by}
-    if carrier.get(tree.root.name) == GROUND:
-        offset[tree.root.name] = ZERO
-    for name in [*offset]:
-        at = name
-        while at != head[at] and carrier[tree.above[at].parent] == name:
-            joint = tree.above[at]
-            x, y, z = turned(attitudes[joint.parent], joint.pose.xyz)
-            offset[joint.parent] = shifted(offset[at], (-x, -y, -z))
-            at = joint.parent
+    """Compute x_HL: from a carrier below up to the head of its group, then outward from each head."""
+    offsets = {name: ZERO for name, carrier_name in carriers.items() if name == carrier_name}
+    if carriers.get(tree.root.name) == GROUND:
+        offsets[tree.root.name] = ZERO
+    for name in [*offsets]:
+        link_name = name
+        while link_name != heads[link_name] and carriers[tree.parent_joints[link_name].parent] == name:
+            joint = tree.parent_joints[link_name]
+            x, y, z = rotate_vector(attitudes[joint.parent], joint.pose.xyz)
+            offsets[joint.parent] = add_vectors(offsets[link_name], (-x, -y, -z))
+            link_name = joint.parent
     for link in tree.links:
-        if link.name in carrier and link.name not in offset:
-            joint = tree.above[link.name]
-            offset[link.name] = shifted(offset[joint.parent], turned(attitudes[joint.parent], joint.pose.xyz))
-    return offset
+        if link.name in carriers and link.name not in offsets:
+            joint = tree.parent_joints[link.name]
+            offsets[link.name] = add_vectors(
+                offsets[joint.parent], rotate_vector(attitudes[joint.parent], joint.pose.xyz)
+            )
+    return offsets

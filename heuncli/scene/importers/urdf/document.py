@@ -1,4 +1,4 @@
-"""The elements of a URDF -> its links and joints, as the file has them: names, poses, masses, not yet judged."""
+"""Read the elements of a URDF into links and joints, as the file has them: names, poses, masses, not yet validated."""
 
 from __future__ import annotations
 
@@ -6,35 +6,38 @@ from collections import Counter
 
 from heuncli.base.errors import SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean
+from heuncli.base.nearest import suggest
 from heuncli.base.records import record
 from heuncli.scene.file_format.models import ZERO, Vec
-from heuncli.scene.importers.described import LEFT_OUT
-from heuncli.scene.importers.urdf.fields import UrdfFields, alike
-from heuncli.scene.importers.xml_elements import XACRO, XmlElement
+from heuncli.scene.importers.described import LEFT_OUT_CODE
+from heuncli.scene.importers.urdf.fields import UrdfFields, find_misspelt
+from heuncli.scene.importers.xml_elements import XACRO_HINT, XmlElement
 
-MOST_LINKS = 100_000
-KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
-TURNS, SLIDES = ("revolute", "continuous"), ("prismatic",)
+MAX_LINKS = 100_000
+JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+ROTARY_TYPES, SLIDING_TYPES = ("revolute", "continuous"), ("prismatic",)
 X_AXIS: Vec = (1.0, 0.0, 0.0)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-# of a robot, a link, a joint: what says nothing of its mechanics
-SILENT = ("material", "gazebo", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")
+# elements of a robot, link or joint without mechanical meaning
+NON_MECHANICAL_TAGS = ("material", "gazebo", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")
 LINK_PARTS = ("inertial", "visual", "collision")
 INERTIAL_PARTS = ("origin", "mass", "inertia")
 JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")
-OTHER_KINDS = "known: " + ", ".join(KINDS) + "; a ball joint is three revolute ones with links between"
+JOINT_TYPE_HINT = "known: " + ", ".join(JOINT_TYPES) + "; a ball joint is three revolute ones with links between"
 
 
 class LinkPose(NamedTuple):
-    """Where one frame stands in another: x, y, z [m]; roll, pitch, yaw [rad] about its fixed axes."""
+    """The pose of one frame in another: x, y, z [m]; roll, pitch, yaw [rad] about its fixed axes."""
 
     xyz: Vec = ZERO
     rpy: Vec = ZERO
 
 
 class Inertial(NamedTuple):
-    """Mass [kg]; pose of the axes of the inertia, whose origin is the centre of mass; ixx, iyy, izz, ixy, ixz, iyz."""
+    """mass: [kg]
+    pose: of the axes of the inertia, whose origin is the centre of mass
+    moments: ixx, iyy, izz, ixy, ixz, iyz [kg m^2]
+    """
 
     element: XmlElement
     mass: float
@@ -44,7 +47,7 @@ class Inertial(NamedTuple):
 
 @record
 class UrdfLink:
-    """A link; geometries: its visual and collision elements."""
+    """A link; its visual and collision elements are read from `element` when they are needed."""
 
     name: str
     element: XmlElement
@@ -56,7 +59,7 @@ class UrdfLink:
 
 
 class Mimic(NamedTuple):
-    """position = multiplier * position of the joint + offset."""
+    """The relation position = multiplier * position of the named joint + offset."""
 
     element: XmlElement
     joint: str
@@ -66,9 +69,11 @@ class Mimic(NamedTuple):
 
 @record
 class UrdfJoint:
-    """A joint: pose of the child's frame in the parent's at position 0; axis in the child's frame, of any length.
+    """A joint: the pose of the child's frame in the parent's at position 0, and the axis in the child's frame, of any
+    length.
 
-    limits: lower and upper, as far as given; damping: N m s/rad or N s/m.
+    limits: lower and upper limit [rad or m], or None
+    damping: [N m s/rad] or [N s/m]
     """
 
     name: str
@@ -89,20 +94,21 @@ class UrdfJoint:
         return f"joint {self.name}"
 
     @property
-    def movable(self) -> bool:
+    def is_movable(self) -> bool:
         return self.kind != "fixed"
 
     @property
-    def single(self) -> bool:
-        """Whether it has one coordinate."""
-        return self.kind in (*TURNS, *SLIDES)
+    def has_one_coordinate(self) -> bool:
+        """Return whether the joint has exactly one coordinate."""
+        return self.kind in (*ROTARY_TYPES, *SLIDING_TYPES)
 
 
 @record
 class Robot:
-    """All of a file, its links and joints in their order; silent: how often what says nothing of the mechanics.
+    """All links and joints of a file, in order.
 
-    whole: none of them was left out for what is wrong with it, so that what is missing is missing in the file.
+    ignored_tags: how often each tag without mechanical meaning occurs
+    is_complete: whether no link or joint was dropped for an error, so that whatever is missing is missing in the file
     """
 
     element: XmlElement
@@ -113,163 +119,169 @@ class Robot:
     whole: bool
 
 
-def robot_of(root: XmlElement, fields: UrdfFields) -> Robot:
-    """The robot of a file; what is wrong is added to the problems. Raises SpecError for what is no robot at all."""
-    _require_plain(root, fields)
+def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:
+    """Read the robot of a file; errors are added to the problems. Raises SpecError if it is no robot at all."""
+    _require_readable(root, fields)
     links: dict[str, UrdfLink] = {}
     joints: dict[str, UrdfJoint] = {}
-    silent: Counter[str] = Counter()
-    for element in root.inner:
+    ignored_tags: Counter[str] = Counter()
+    for element in root.children:
         if element.tag == "link":
-            link = _link(element, fields, silent)
-            if link is not None and _is_new(link, links, fields):
+            link = _read_link(element, fields, ignored_tags)
+            if link is not None and _check_is_new(link, links, fields):
                 links[link.name] = link
         elif element.tag == "joint":
-            joint = _joint(element, fields)
-            if joint is not None and _is_new(joint, joints, fields):
+            joint = _read_joint(element, fields)
+            if joint is not None and _check_is_new(joint, joints, fields):
                 joints[joint.name] = joint
-        elif element.tag in SILENT:
-            silent[element.tag] += 1
+        elif element.tag in NON_MECHANICAL_TAGS:
+            ignored_tags[element.tag] += 1
         else:
             message = f"<{element.tag}> is no part of a robot that is read"
-            hint = did_you_mean(element.tag, ("link", "joint", *sorted(SILENT)), "parts")
+            hint = suggest(element.tag, ("link", "joint", *sorted(NON_MECHANICAL_TAGS)), "parts")
             fields.report("import-part", element, f"robot {root.attributes.get('name', '')}".strip(), message, hint)
-    whole = len(links) + len(joints) + sum(silent[tag] for tag in SILENT) == len(root.inner)
-    return Robot(root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(silent), whole)
+    is_complete = len(links) + len(joints) + sum(ignored_tags[tag] for tag in NON_MECHANICAL_TAGS) == len(root.children)
+    return Robot(
+        root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(ignored_tags), is_complete
+    )
 
 
-def _require_plain(root: XmlElement, fields: UrdfFields) -> None:
-    """Raise SpecError for macros that are not expanded, and for what is too large."""
-    macro = next((element for element in root.inner if element.tag.startswith("xacro:")), None)
+def _require_readable(root: XmlElement, fields: UrdfFields) -> None:
+    """Raise SpecError for macros that are not expanded, and for files that are too large."""
+    macro = next((element for element in root.children if element.tag.startswith("xacro:")), None)
     if macro is not None:
-        raise SpecError(fields.problem("import-xacro", macro, "", f"<{macro.tag}> is a macro of xacro", XACRO))
-    links = len(root.all("link"))
-    if links > MOST_LINKS:
-        message = f"{links:,} links; at most {MOST_LINKS:,} are read"
-        raise SpecError(fields.problem("too-large", root, "", message, "split the robot"))
+        raise SpecError(
+            fields.make_problem("import-xacro", macro, "", f"<{macro.tag}> is a macro of xacro", XACRO_HINT)
+        )
+    links = len(root.find_all("link"))
+    if links > MAX_LINKS:
+        message = f"{links:,} links; at most {MAX_LINKS:,} are read"
+        raise SpecError(fields.make_problem("too-large", root, "", message, "split the robot"))
 
 
-def _is_new(found: UrdfLink | UrdfJoint, known: dict[str, UrdfLink] | dict[str, UrdfJoint], fields: UrdfFields) -> bool:
-    first = known.get(found.name)
-    if first is not None:
-        message = f"the name is taken, first in line {first.element.line}"
-        fields.report("import-twice", found.element, found.path, message, "give the two names of their own")
-    return first is None
+def _check_is_new(
+    element: UrdfLink | UrdfJoint, earlier: dict[str, UrdfLink] | dict[str, UrdfJoint], fields: UrdfFields
+) -> bool:
+    previous = earlier.get(element.name)
+    if previous is not None:
+        message = f"the name is taken, first in line {previous.element.line}"
+        fields.report("import-twice", element.element, element.path, message, "give the two names of their own")
+    return previous is None
 
 
-def _link(element: XmlElement, fields: UrdfFields, silent: Counter[str]) -> UrdfLink | None:
-    name = fields.word(element, "name", "link")
+def _read_link(element: XmlElement, fields: UrdfFields, ignored_tags: Counter[str]) -> UrdfLink | None:
+    name = fields.read_word(element, "name", "link")
     if name is None:
         return None
-    others = [part.tag for part in element.inner if part.tag not in LINK_PARTS]
-    meant = dict(alike(dict.fromkeys([part.tag for part in element.inner]), LINK_PARTS))
-    for part in element.inner:
-        if part.tag in meant:
+    others = [part.tag for part in element.children if part.tag not in LINK_PARTS]
+    suggestions = dict(find_misspelt(dict.fromkeys([part.tag for part in element.children]), LINK_PARTS))
+    for part in element.children:
+        if part.tag in suggestions:
             message = f"<link> has a part <{part.tag}>, which is not read"
-            fields.report("import-part", part, f"link {name}", message, f"did you mean {meant[part.tag]}?")
-    silent.update(f"{tag} in links" for tag in others if tag not in meant)
-    inertial = fields.one(element, "inertial", f"link {name}")
-    return UrdfLink(name, element, None if inertial is None else _inertial(inertial, f"link {name}", fields))
+            fields.report("import-part", part, f"link {name}", message, f"did you mean {suggestions[part.tag]}?")
+    ignored_tags.update(f"{tag} in links" for tag in others if tag not in suggestions)
+    inertial = fields.find_child(element, "inertial", f"link {name}")
+    return UrdfLink(name, element, None if inertial is None else _read_inertial(inertial, f"link {name}", fields))
 
 
-def _inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inertial | None:
-    """None where something of it is wrong, which is then a problem."""
-    fields.known_parts(element, path, *INERTIAL_PARTS)
-    parts = {tag: fields.one(element, tag, path) for tag in ("mass", "inertia")}
+def _read_inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inertial | None:
+    """Read the inertial element. None if something in it is wrong, which is then a problem."""
+    fields.report_unknown_parts(element, path, *INERTIAL_PARTS)
+    parts = {tag: fields.find_child(element, tag, path) for tag in ("mass", "inertia")}
     for tag, part in parts.items():
         if part is None:
             hint = "mass and inertia stand in it; a frame without mass has no <inertial>"
             fields.report("import-missing", element, path, f"<inertial> has no <{tag}>", hint)
-    pose = pose_of(element, path, fields)
+    pose = read_pose(element, path, fields)
     mass_part, inertia_part = parts["mass"], parts["inertia"]
     if mass_part is None or inertia_part is None:
         return None
-    fields.known(mass_part, path, "value")
-    fields.known(inertia_part, path, *MOMENTS)
-    mass = fields.number(mass_part, "value", path)
-    moments = [fields.number(inertia_part, name, path) for name in MOMENTS]
+    fields.report_unknown_attributes(mass_part, path, "value")
+    fields.report_unknown_attributes(inertia_part, path, *MOMENTS)
+    mass = fields.read_number(mass_part, "value", path)
+    moments = [fields.read_number(inertia_part, name, path) for name in MOMENTS]
     if mass is None or pose is None or None in moments:
         return None
     return Inertial(inertia_part, mass, pose, tuple(value for value in moments if value is not None))
 
 
-def pose_of(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | None:
-    """The pose of its <origin>; None where it is wrong."""
-    origin = fields.one(element, "origin", path)
+def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | None:
+    """Read the pose of the <origin>; None if it is wrong."""
+    origin = fields.find_child(element, "origin", path)
     if origin is not None:
-        fields.known(origin, path, "xyz", "rpy")
-    xyz, rpy = (fields.vector(origin, name, path, ZERO) for name in ("xyz", "rpy"))
-    return None if xyz is None or rpy is None else LinkPose(xyz, fields.angles(rpy, path))
+        fields.report_unknown_attributes(origin, path, "xyz", "rpy")
+    xyz, rpy = (fields.read_vector(origin, name, path, ZERO) for name in ("xyz", "rpy"))
+    return None if xyz is None or rpy is None else LinkPose(xyz, fields.read_angles(rpy, path))
 
 
-def _joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
-    name = fields.word(element, "name", "joint")
+def _read_joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
+    name = fields.read_word(element, "name", "joint")
     path = f"joint {name}" if name is not None else "joint"
-    fields.known_parts(element, path, *JOINT_PARTS, *SILENT)
-    kind = fields.word(element, "type", path)
-    if kind is not None and kind not in KINDS:
-        fields.report("import-joint", element, path, f"'{kind}' is not a type of joint in URDF", OTHER_KINDS)
+    fields.report_unknown_parts(element, path, *JOINT_PARTS, *NON_MECHANICAL_TAGS)
+    kind = fields.read_word(element, "type", path)
+    if kind is not None and kind not in JOINT_TYPES:
+        fields.report("import-joint", element, path, f"'{kind}' is not a type of joint in URDF", JOINT_TYPE_HINT)
         kind = None
-    ends = [_end(element, tag, path, fields) for tag in ("parent", "child")]
-    pose = pose_of(element, path, fields)
-    axis_part = fields.one(element, "axis", path)
+    ends = [_read_end(element, tag, path, fields) for tag in ("parent", "child")]
+    pose = read_pose(element, path, fields)
+    axis_part = fields.find_child(element, "axis", path)
     if axis_part is not None:
-        fields.known(axis_part, path, "xyz")
-        fields.word(axis_part, "xyz", path)
-    axis = fields.vector(axis_part, "xyz", path, X_AXIS)
+        fields.report_unknown_attributes(axis_part, path, "xyz")
+        fields.read_word(axis_part, "xyz", path)
+    axis = fields.read_vector(axis_part, "xyz", path, X_AXIS)
     if axis == ZERO and kind not in (None, "fixed", "floating"):
         fields.report("import-joint", axis_part or element, path, "the axis is 0 0 0", "it needs a direction: 0 0 1")
-    mimic = _mimic(element, path, fields, kind)
-    limits, effort = _limits(element, path, fields)
-    damping, friction = _dynamics(element, path, fields)
+    mimic = _read_mimic(element, path, fields, kind)
+    limits, effort = _read_limits(element, path, fields)
+    damping, friction = _read_dynamics(element, path, fields)
     parent, child = ends
     if name is None or kind is None or parent is None or child is None or pose is None or axis is None:
         return None
     return UrdfJoint(name, element, kind, parent, child, pose, axis, limits, effort, mimic, damping, friction)
 
 
-def _end(element: XmlElement, tag: str, path: str, fields: UrdfFields) -> str | None:
-    part = fields.one(element, tag, path)
+def _read_end(element: XmlElement, tag: str, path: str, fields: UrdfFields) -> str | None:
+    part = fields.find_child(element, tag, path)
     if part is None:
         fields.report("import-missing", element, path, f"<{tag}> is missing", f'as <{tag} link="..."/>')
         return None
-    return fields.word(part, "link", path)
+    return fields.read_word(part, "link", path)
 
 
-def _mimic(element: XmlElement, path: str, fields: UrdfFields, kind: str | None) -> Mimic | None:
-    part = fields.one(element, "mimic", path)
+def _read_mimic(element: XmlElement, path: str, fields: UrdfFields, kind: str | None) -> Mimic | None:
+    part = fields.find_child(element, "mimic", path)
     if part is None:
         return None
     if kind == "fixed":
         message = "it is fixed, and what it is to follow is left out"
-        fields.left_out.append(fields.problem(LEFT_OUT, part, path, message, "delete the <mimic>"))
+        fields.left_out.append(fields.make_problem(LEFT_OUT_CODE, part, path, message, "delete the <mimic>"))
         return None
-    fields.known(part, path, "joint", "multiplier", "offset")
-    joint = fields.word(part, "joint", path)
-    multiplier = fields.number(part, "multiplier", path, 1.0)
-    offset = fields.number(part, "offset", path, 0.0)
+    fields.report_unknown_attributes(part, path, "joint", "multiplier", "offset")
+    joint = fields.read_word(part, "joint", path)
+    multiplier = fields.read_number(part, "multiplier", path, 1.0)
+    offset = fields.read_number(part, "offset", path, 0.0)
     return None if joint is None or multiplier is None or offset is None else Mimic(part, joint, multiplier, offset)
 
 
-def _limits(element: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple[float, float] | None, float | None]:
-    """Lower and upper limit, 0 where one alone is left out, and the effort."""
-    part = fields.one(element, "limit", path)
+def _read_limits(element: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple[float, float] | None, float | None]:
+    """Read the lower and upper limit, 0 if only one is left out, and the effort."""
+    part = fields.find_child(element, "limit", path)
     if part is None:
         return None, None
-    fields.misspelt(part, path, "lower", "upper", "effort", "velocity")
-    effort = fields.number(part, "effort", path) if "effort" in part.attributes else None
+    fields.report_misspelt(part, path, "lower", "upper", "effort", "velocity")
+    effort = fields.read_number(part, "effort", path) if "effort" in part.attributes else None
     if "lower" not in part.attributes and "upper" not in part.attributes:
         return None, effort
-    lower, upper = (fields.number(part, name, path, 0.0) for name in ("lower", "upper"))
+    lower, upper = (fields.read_number(part, name, path, 0.0) for name in ("lower", "upper"))
     return (None if lower is None or upper is None else (lower, upper)), effort
 
 
-def _dynamics(element: XmlElement, path: str, fields: UrdfFields) -> tuple[float, float]:
-    part = fields.one(element, "dynamics", path)
+def _read_dynamics(element: XmlElement, path: str, fields: UrdfFields) -> tuple[float, float]:
+    part = fields.find_child(element, "dynamics", path)
     if part is None:
         return 0.0, 0.0
-    fields.misspelt(part, path, "damping", "friction")
-    damping, friction = (fields.number(part, name, path, 0.0) for name in ("damping", "friction"))
+    fields.report_misspelt(part, path, "damping", "friction")
+    damping, friction = (fields.read_number(part, name, path, 0.0) for name in ("damping", "friction"))
     for name, value in (("damping", damping), ("friction", friction)):
         if value is not None and value < 0.0:
             fields.report("import-joint", part, path, f"{name} is {value:g}", "it resists with a number above 0")

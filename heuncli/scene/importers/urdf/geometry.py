@@ -1,7 +1,7 @@
-"""Shapes of a link that has no inertia: its collision or visual elements, of the density that was asked for.
+"""Turn the collision or visual elements of a link without inertia into shapes with the density of --density.
 
-The collision elements where all of them are boxes, cylinders and spheres, else the visual ones. The cylinder of URDF
-stands about its z axis, with its middle in the origin.
+The collision elements are used if all of them are boxes, cylinders and spheres, otherwise the visual ones. A URDF
+cylinder is centred at the origin, with its axis along z.
 """
 
 from __future__ import annotations
@@ -9,79 +9,94 @@ from __future__ import annotations
 from typing import Any
 
 from heuncli.scene.file_format.models import Matrix, Vec
-from heuncli.scene.importers.attitudes import after, is_right, kept, of_roll_pitch_yaw, shifted, turned
+from heuncli.scene.importers.attitudes import (
+    add_vectors,
+    compose_rotations,
+    is_right_angled,
+    rotate_vector,
+    rotation_from_roll_pitch_yaw,
+    round_vector,
+)
 from heuncli.scene.importers.described import DescribedEntry
-from heuncli.scene.importers.urdf.document import UrdfLink, pose_of
+from heuncli.scene.importers.urdf.document import UrdfLink, read_pose
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
-SOURCES = ("collision", "visual")
-MEASURES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
+GEOMETRY_TAGS = ("collision", "visual")
+SIZE_ATTRIBUTES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
 
 
-def shapes_of(link: UrdfLink, R: Matrix, density: float, fields: UrdfFields) -> tuple[str, tuple[DescribedEntry, ...]]:
-    """Which elements they are of, and the shapes, along the world's axes; none, and problems, of what is no shape.
+def make_shapes(
+    link: UrdfLink, R: Matrix, density: float, fields: UrdfFields
+) -> tuple[str, tuple[DescribedEntry, ...]]:
+    """Make the shapes of a link, and return the tag of the elements from which they come. Elements that are no shape
+    add problems.
 
-    R: the attitude of the link with every joint at 0. A link without geometry has no shapes, and that is no problem.
+    R: the attitude of the link with every joint at 0; the shapes are given along the world's axes. A link without
+    geometry has no shapes, and that is no problem.
     """
-    found = {source: link.element.all(source) for source in SOURCES}
-    given = [source for source in SOURCES if found[source]]
-    source = next((source for source in given if all(map(_plain, found[source]))), given[0] if given else "")
-    shapes = [_shape(element, R, density, link, fields) for element in found.get(source, ())]
+    found = {source: link.element.find_all(source) for source in GEOMETRY_TAGS}
+    present = [source for source in GEOMETRY_TAGS if found[source]]
+    source = next(
+        (source for source in present if all(map(_is_supported, found[source]))), present[0] if present else ""
+    )
+    shapes = [_make_shape(element, R, density, link, fields) for element in found.get(source, ())]
     return source, tuple(shape for shape in shapes if shape is not None)
 
 
-def has_plain(link: UrdfLink) -> bool:
-    """Whether the elements of the one or the other kind are all of forms that heun has."""
-    return any(found and all(map(_plain, found)) for found in map(link.element.all, SOURCES))
+def has_supported_shapes(link: UrdfLink) -> bool:
+    """Return whether all visual or all collision elements are boxes, cylinders and spheres."""
+    return any(found and all(map(_is_supported, found)) for found in map(link.element.find_all, GEOMETRY_TAGS))
 
 
-def _plain(element: XmlElement) -> bool:
-    """Whether it is of a form that heun has."""
-    return _form(element) is not None
+def _is_supported(element: XmlElement) -> bool:
+    """Return whether the element is a box, cylinder or sphere."""
+    return _find_form(element) is not None
 
 
-def _form(element: XmlElement) -> XmlElement | None:
-    parts = [part for geometry in element.all("geometry") for part in geometry.inner]
-    return parts[0] if len(parts) == 1 and parts[0].tag in MEASURES else None
+def _find_form(element: XmlElement) -> XmlElement | None:
+    parts = [part for geometry in element.find_all("geometry") for part in geometry.children]
+    return parts[0] if len(parts) == 1 and parts[0].tag in SIZE_ATTRIBUTES else None
 
 
-def _shape(element: XmlElement, R: Matrix, density: float, link: UrdfLink, fields: UrdfFields) -> DescribedEntry | None:
-    form, pose = _form(element), pose_of(element, link.path, fields)
+def _make_shape(
+    element: XmlElement, R: Matrix, density: float, link: UrdfLink, fields: UrdfFields
+) -> DescribedEntry | None:
+    form, pose = _find_form(element), read_pose(element, link.path, fields)
     if form is None:
-        parts = [part.tag for geometry in element.all("geometry") for part in geometry.inner]
-        what = f"a {parts[0]}" if parts else "nothing"
-        message = f"it has no <inertial>, and its {element.tag} is {what}: no shape that --density can fill"
+        parts = [part.tag for geometry in element.find_all("geometry") for part in geometry.children]
+        geometry_text = f"a {parts[0]}" if parts else "nothing"
+        message = f"it has no <inertial>, and its {element.tag} is {geometry_text}: no shape that --density can fill"
         hint = "give it an <inertial>; boxes, cylinders and spheres are filled, and meshes where all of it are"
         fields.report("import-shape", element, link.path, message, hint)
         return None
-    sizes = _sizes(form, link, fields)
+    sizes = _read_sizes(form, link, fields)
     if sizes is None or pose is None:
         return None
-    attitude = after(R, of_roll_pitch_yaw(pose.rpy))
-    return DescribedEntry("", _keys(form.tag, turned(R, pose.xyz), attitude, sizes) | {"density": density})
+    attitude = compose_rotations(R, rotation_from_roll_pitch_yaw(pose.rpy))
+    return DescribedEntry("", _shape_keys(form.tag, rotate_vector(R, pose.xyz), attitude, sizes) | {"density": density})
 
 
-def _keys(form: str, center: Vec, attitude: Matrix, sizes: tuple[float, ...]) -> dict[str, Any]:
-    """The keys of a shape, its axes along the world's."""
+def _shape_keys(form: str, center: Vec, attitude: Matrix, sizes: tuple[float, ...]) -> dict[str, Any]:
+    """Make the keys of a shape, along the world's axes."""
     if form == "sphere":
         return {"type": "sphere", "center": center, "radius": sizes[0]}
     if form == "cylinder":
-        half = turned(attitude, (0.0, 0.0, sizes[1] / 2.0))
-        ends = {"from": shifted(center, (-half[0], -half[1], -half[2])), "to": shifted(center, half)}
+        half = rotate_vector(attitude, (0.0, 0.0, sizes[1] / 2.0))
+        ends = {"from": add_vectors(center, (-half[0], -half[1], -half[2])), "to": add_vectors(center, half)}
         return {"type": "cylinder", **ends, "radius": sizes[0]}
-    if is_right(attitude):
-        x, y, z = (abs(size) for size in turned(attitude, (sizes[0], sizes[1], sizes[2])))
+    if is_right_angled(attitude):
+        x, y, z = (abs(size) for size in rotate_vector(attitude, (sizes[0], sizes[1], sizes[2])))
         return {"type": "box", "center": center, "size": (x, y, z)}
-    rows = tuple(kept(row) for row in attitude)
+    rows = tuple(round_vector(row) for row in attitude)
     return {"type": "box", "center": center, "size": sizes, "orientation": {"matrix": rows}}
 
 
-def _sizes(form: XmlElement, link: UrdfLink, fields: UrdfFields) -> tuple[float, ...] | None:
-    """Its measures [m], all above 0; None where they are wrong."""
+def _read_sizes(form: XmlElement, link: UrdfLink, fields: UrdfFields) -> tuple[float, ...] | None:
+    """Read the sizes [m], all above 0; None if they are wrong."""
     values: list[float] = []
-    for name in MEASURES[form.tag]:
-        found = fields.numbers(form, name, link.path, 3 if name == "size" else 1, None)
+    for name in SIZE_ATTRIBUTES[form.tag]:
+        found = fields.read_numbers(form, name, link.path, 3 if name == "size" else 1, None)
         if found is None:
             return None
         values += found

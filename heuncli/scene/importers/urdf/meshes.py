@@ -1,7 +1,7 @@
-"""Mass properties of a link whose collision or visual elements are meshes, of the density that was asked for.
+"""Compute the mass properties of a link whose collision or visual elements are meshes, from the density of --density.
 
-The file of a mesh is looked for beside the model; `package://NAME/...` in a folder NAME above it, or below one that is.
-What comes of it are numbers: the spec that is made names no file. Impure: reads the meshes.
+A mesh file is searched for relative to the model; `package://NAME/...` in a folder NAME above the model, or inside a
+folder above it. The result is numbers: the spec names no mesh file. Impure: reads the meshes.
 """
 
 from __future__ import annotations
@@ -11,89 +11,93 @@ from pathlib import Path
 import numpy as np
 
 from heuncli.base.errors import Finding
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import ZERO
-from heuncli.scene.file_format.named_files import LARGEST
+from heuncli.scene.file_format.named_files import MAX_FILE_SIZE
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
-from heuncli.scene.importers.attitudes import of_roll_pitch_yaw
-from heuncli.scene.importers.urdf.document import UrdfLink, pose_of
+from heuncli.scene.importers.attitudes import rotation_from_roll_pitch_yaw
+from heuncli.scene.importers.urdf.document import UrdfLink, read_pose
 from heuncli.scene.importers.urdf.fields import UrdfFields
-from heuncli.scene.importers.urdf.geometry import SOURCES
+from heuncli.scene.importers.urdf.geometry import GEOMETRY_TAGS
 from heuncli.scene.importers.urdf.masses import LinkMass
 from heuncli.scene.importers.xml_elements import XmlElement
-from heuncli.scene.meshes.model import middle_of, moments
-from heuncli.scene.meshes.reading import mesh_of
-from heuncli.scene.shapes.inertia import assembled, properties
+from heuncli.scene.meshes.model import middle_of_extent, volume_moments
+from heuncli.scene.meshes.reading import read_closed_mesh
+from heuncli.scene.shapes.inertia import assemble_pseudo_inertia, split_pseudo_inertia
 
-PACKAGE, FILE = "package://", "file://"
-
-
-def source_of_meshes(link: UrdfLink) -> str | None:
-    """Which elements of a link are meshes, all of them; None if none are so."""
-    found = {source: [_form(element) for element in link.element.all(source)] for source in SOURCES}
-    whole = (source for source in SOURCES if found[source] and all(form is not None for form in found[source]))
-    return next(whole, None)
+PACKAGE_PREFIX, FILE_PREFIX = "package://", "file://"
 
 
-def _form(element: XmlElement) -> XmlElement | None:
-    parts = [part for geometry in element.all("geometry") for part in geometry.inner]
+def find_mesh_tag(link: UrdfLink) -> str | None:
+    """Return the tag, collision or visual, whose elements in a link are all meshes; None if there is none."""
+    found = {
+        source: [_find_mesh_element(element) for element in link.element.find_all(source)] for source in GEOMETRY_TAGS
+    }
+    matching = (source for source in GEOMETRY_TAGS if found[source] and all(form is not None for form in found[source]))
+    return next(matching, None)
+
+
+def _find_mesh_element(element: XmlElement) -> XmlElement | None:
+    parts = [part for geometry in element.find_all("geometry") for part in geometry.children]
     return parts[0] if len(parts) == 1 and parts[0].tag == "mesh" and "filename" in parts[0].attributes else None
 
 
-def mass_of_meshes(link: UrdfLink, source: str, density: float, fields: UrdfFields) -> LinkMass | None:
-    """The mass, centre and inertia of a link's meshes; None, and problems, where one is no solid."""
-    parts = [_pseudo_inertia(element, density, link, fields) for element in link.element.all(source)]
+def compute_mesh_mass(link: UrdfLink, tag: str, density: float, fields: UrdfFields) -> LinkMass | None:
+    """Compute the mass, centre and inertia of a link's meshes; None, and problems, if one is no solid."""
+    parts = [_mesh_pseudo_inertia(element, density, link, fields) for element in link.element.find_all(tag)]
     known = [part for part in parts if part is not None]
     if len(known) < len(parts):
         return None
-    mass, center, inertia = properties(np.sum(known, axis=0))
+    mass, center, inertia = split_pseudo_inertia(np.sum(known, axis=0))
     x, y, z = center.tolist()
     a, b, c = ((p, q, r) for p, q, r in inertia.tolist())
-    note = f"of the {source} meshes, at {density:g} kg/m^3" + (": what overlaps counts twice" if len(known) > 1 else "")
+    note = f"of the {tag} meshes, at {density:g} kg/m^3" + (": what overlaps counts twice" if len(known) > 1 else "")
     return LinkMass(mass, (x, y, z), ZERO, (a, b, c), {"mass": note})
 
 
-def _pseudo_inertia(element: XmlElement, density: float, link: UrdfLink, fields: UrdfFields) -> Array | None:
-    """Of one mesh, in the link's frame."""
-    form, pose = _form(element), pose_of(element, link.path, fields)
+def _mesh_pseudo_inertia(element: XmlElement, density: float, link: UrdfLink, fields: UrdfFields) -> Array | None:
+    """Compute the pseudo-inertia (4, 4) of one mesh, in the link's frame."""
+    form, pose = _find_mesh_element(element), read_pose(element, link.path, fields)
     assert form is not None
-    scale = fields.numbers(form, "scale", link.path, 3, (1.0, 1.0, 1.0)) if "scale" in form.attributes else (1.0,) * 3
+    scale = (
+        fields.read_numbers(form, "scale", link.path, 3, (1.0, 1.0, 1.0)) if "scale" in form.attributes else (1.0,) * 3
+    )
     if pose is None or scale is None:
         return None
     name = form.attributes["filename"]
     try:
-        path = path_of(name, fields.file)
-        mesh = mesh_of(read_bytes(str(path), LARGEST), path.name)
+        path = find_mesh_file(name, fields.file)
+        mesh = read_closed_mesh(read_bytes(str(path), MAX_FILE_SIZE), path.name)
         if not all(scale):
             raise Finding("import-shape", "its scale is 0 along an axis", "one mesh's unit in m: 0.001 0.001 0.001")
     except Finding as finding:
-        message = f"it has no <inertial>, and its {element.tag} {shown(name)} has no mass: {finding.message}"
+        message = f"it has no <inertial>, and its {element.tag} {escape(name)} has no mass: {finding.message}"
         fields.report("import-shape", form, link.path, message, f"give it an <inertial>; or {finding.hint}")
         return None
     corners = mesh.corners * np.array(scale)
-    volume, first, second = moments(corners, mesh.triangles)
-    side = density * (1.0 if volume > 0.0 else -1.0)  # mirrored, its triangles are turned inward
-    P = side * assembled(np.array(volume), first, second)
+    volume, first, second = volume_moments(corners, mesh.triangles)
+    signed_density = density * (1.0 if volume > 0.0 else -1.0)  # a mirrored mesh has its triangles inward
+    P = signed_density * assemble_pseudo_inertia(np.array(volume), first, second)
     G = np.eye(4)
-    G[:3, :3] = np.array(of_roll_pitch_yaw(pose.rpy))
-    G[:3, 3] = G[:3, :3] @ middle_of(corners) + np.array(pose.xyz)
+    G[:3, :3] = np.array(rotation_from_roll_pitch_yaw(pose.rpy))
+    G[:3, 3] = G[:3, :3] @ middle_of_extent(corners) + np.array(pose.xyz)
     return np.asarray(G @ P @ G.T)
 
 
-def path_of(name: str, model: str) -> Path:
-    """Where the file of a mesh stands. Raises Finding where none is there."""
+def find_mesh_file(name: str, model: str) -> Path:
+    """Find the file of a mesh. Raises Finding [import-shape] if it is nowhere."""
     folder = Path() if model == STANDARD_INPUT else Path(model).parent
-    if name.startswith(PACKAGE):
-        package, _, rest = name.removeprefix(PACKAGE).partition("/")
+    if name.startswith(PACKAGE_PREFIX):
+        package, _, rest = name.removeprefix(PACKAGE_PREFIX).partition("/")
         above = [folder.absolute(), *folder.absolute().parents]
-        places = [place / rest for place in above if place.name == package]
-        places += [place / package / rest for place in above]
+        candidates = [place / rest for place in above if place.name == package]
+        candidates += [place / package / rest for place in above]
     else:
-        places = [folder / name.removeprefix(FILE)]
+        candidates = [folder / name.removeprefix(FILE_PREFIX)]
     try:
-        found = next((place for place in places if place.is_file()), None)
-    except (OSError, ValueError):  # no name of a file
+        found = next((place for place in candidates if place.is_file()), None)
+    except (OSError, ValueError):  # not a valid file name
         found = None
     if found is None:
         raise Finding(

@@ -1,4 +1,4 @@
-"""Named points of bodies and of the ground, gathered first and named then: a body names each of its points once."""
+"""Collect the named points of bodies and of the ground, and name them at the end; names are unique within a body."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.described import DescribedPoint
-from heuncli.scene.importers.names import called, names_of
+from heuncli.scene.importers.names import assign_names, format_original_name
 from heuncli.scene.importers.urdf.carriers import GROUND
 
 
 class PointKey(NamedTuple):
-    """A point that was gathered: who carries it, and its number there."""
+    """Identifies a collected point: its carrier, and its number there."""
 
     carrier: str
     number: int
@@ -22,29 +22,33 @@ class RobotPoints:
     """The points of one machine; kinds of names: `joint`, `link`."""
 
     def __init__(self) -> None:
-        self.wanted: dict[str, list[tuple[str, str, Vec]]] = {}
-        self.given: dict[str, list[str]] = {}
+        self.entries: dict[str, list[tuple[str, str, Vec]]] = {}
+        self.point_names: dict[str, list[str]] = {}
         self.bodies: Mapping[str, str] = {}
 
-    def add(self, carrier: str, kind: str, wanted: str, place: Vec) -> PointKey:
-        """A point of a carrier, by the name of the joint or link that it is of; place from the carrier's origin [m]."""
-        own = self.wanted.setdefault(carrier, [])
-        own.append((kind, wanted, place))
-        return PointKey(carrier, len(own) - 1)
+    def add(self, carrier: str, kind: str, original: str, place: Vec) -> PointKey:
+        """Add a point to a carrier. original: the name of its joint or link; place: relative to the carrier's origin
+        [m].
+        """
+        carrier_points = self.entries.setdefault(carrier, [])
+        carrier_points.append((kind, original, place))
+        return PointKey(carrier, len(carrier_points) - 1)
 
-    def name_all(self, bodies: Mapping[str, str]) -> None:
-        """Name them; bodies: the names of the carriers in the spec."""
+    def assign_names(self, bodies: Mapping[str, str]) -> None:
+        """Assign the names. bodies: the names of the carriers in the spec."""
         self.bodies = bodies
-        self.given = {
-            carrier: names_of("point", [wanted for _, wanted, _ in own]) for carrier, own in self.wanted.items()
+        self.point_names = {
+            carrier: assign_names("point", [wanted for _, wanted, _ in own]) for carrier, own in self.entries.items()
         }
 
-    def end(self, key: PointKey) -> str:
-        """The point as an end of a joint: `arm.elbow`."""
+    def format_end(self, key: PointKey) -> str:
+        """Format a point as the end of a joint: `arm.elbow`."""
         body = "ground" if key.carrier == GROUND else self.bodies[key.carrier]
-        return f"{body}.{self.given[key.carrier][key.number]}"
+        return f"{body}.{self.point_names[key.carrier][key.number]}"
 
-    def of(self, carrier: str) -> tuple[DescribedPoint, ...]:
-        """The points of a carrier."""
-        own = zip(self.given.get(carrier, ()), self.wanted.get(carrier, ()), strict=True)
-        return tuple(DescribedPoint(name, place, called(kind, name, wanted)) for name, (kind, wanted, place) in own)
+    def get_points(self, carrier: str) -> tuple[DescribedPoint, ...]:
+        """Return the points of a carrier."""
+        own = zip(self.point_names.get(carrier, ()), self.entries.get(carrier, ()), strict=True)
+        return tuple(
+            DescribedPoint(name, place, format_original_name(kind, name, wanted)) for name, (kind, wanted, place) in own
+        )

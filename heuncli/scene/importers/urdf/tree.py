@@ -1,17 +1,17 @@
-"""Links and joints of a URDF as one tree: every link but the root is the child of one joint."""
+"""Join the links and joints of a URDF to one tree: every link except the root is the child of one joint."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import did_you_mean, listed
+from heuncli.base.nearest import list_words, suggest
 from heuncli.scene.importers.urdf.document import Mimic, Robot, UrdfJoint, UrdfLink
 from heuncli.scene.importers.urdf.fields import UrdfFields
 
 
-class Followed(NamedTuple):
-    """What a joint follows: its position is multiplier * that of the leader + offset."""
+class MimicRelation(NamedTuple):
+    """The relation that a joint follows: its position is multiplier * that of the leader + offset."""
 
     leader: UrdfJoint
     multiplier: float
@@ -19,123 +19,142 @@ class Followed(NamedTuple):
 
 
 class LinkTree(NamedTuple):
-    """Links from the root outward, parents before their children; above: the joint that carries a link, but the root's.
-
-    followed: of every joint that follows another, by its name, what it follows in the end.
+    """links: from the root outward, parents before their children
+    parent_joints: by link name, the joint that carries the link; the root has none
+    leaders: by joint name, the leader at the end of its mimic chain
     """
 
     links: list[UrdfLink]
     above: dict[str, UrdfJoint]
-    followed: dict[str, Followed]
+    followed: dict[str, MimicRelation]
 
     @property
     def root(self) -> UrdfLink:
         return self.links[0]
 
 
-def tree_of(robot: Robot, fields: UrdfFields) -> LinkTree | None:
-    """The tree; None, and problems, where links and joints make none."""
-    before = len(fields.problems)
-    above = _carried(robot, fields)
+def build_tree(robot: Robot, fields: UrdfFields) -> LinkTree | None:
+    """Build the tree; None, and problems, if links and joints form none."""
+    problem_count = len(fields.problems)
+    parent_joints = _find_parent_joints(robot, fields)
     if not robot.links:
         if not fields.problems:
             fields.report("import-tree", robot.element, "", "the robot has no links", "is it the right file?")
         return None
-    if len(fields.problems) > before or not robot.whole:
+    if len(fields.problems) > problem_count or not robot.is_complete:
         return None
-    roots = [link for name, link in robot.links.items() if name not in above]
+    roots = [link for name, link in robot.links.items() if name not in parent_joints]
     if len(roots) > 1:
-        names = listed([link.name for link in roots[1:]])
+        names = list_words([link.name for link in roots[1:]])
         message = f"{len(roots)} links are nobody's child: {roots[0].name}, {names}"
         hint = f'join them by a joint of type fixed, or delete what is not used: <parent link="{roots[0].name}"/>'
         fields.report("import-tree", roots[1].element, roots[1].path, message, hint)
-    order = _outward(robot, above, roots)
-    left = [link for name, link in robot.links.items() if name not in order]
-    if left:
-        _report_circle(left[0], above, fields)
-    followed = _followed(robot, fields)
-    return LinkTree([*order.values()], above, followed) if len(fields.problems) == before else None
+    order = _order_outward(robot, parent_joints, roots)
+    unreached = [link for name, link in robot.links.items() if name not in order]
+    if unreached:
+        _report_cycle(unreached[0], parent_joints, fields)
+    leaders = _resolve_mimics(robot, fields)
+    return LinkTree([*order.values()], parent_joints, leaders) if len(fields.problems) == problem_count else None
 
 
-def _carried(robot: Robot, fields: UrdfFields) -> dict[str, UrdfJoint]:
-    """The joint of which each link is the child; what leads to no link, and second parents, are problems."""
-    above: dict[str, UrdfJoint] = {}
+def _find_parent_joints(robot: Robot, fields: UrdfFields) -> dict[str, UrdfJoint]:
+    """Find the joint of which each link is the child. Ends that are no link, and second parents, are problems."""
+    parent_joints: dict[str, UrdfJoint] = {}
     for joint in robot.joints.values():
         ends = (("parent", joint.parent), ("child", joint.child))
         for tag, name in ends:
-            if name not in robot.links and robot.whole:
-                hint = did_you_mean(name, robot.links, "links")
+            if name not in robot.links and robot.is_complete:
+                hint = suggest(name, robot.links, "links")
                 fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is no link", hint)
-        first = above.setdefault(joint.child, joint)
+        first = parent_joints.setdefault(joint.child, joint)
         if first is not joint and joint.child in robot.links:
             message = f"the link {joint.child} has two parents: it is the child of {first.name}, too"
             hint = "URDF has no loops: cut the loop, and close it in the spec by a joint of heun"
             fields.report("import-tree", joint.element, joint.path, message, hint)
-    return above
+    return parent_joints
 
 
-def _outward(robot: Robot, above: dict[str, UrdfJoint], roots: Iterable[UrdfLink]) -> dict[str, UrdfLink]:
-    """The links that are reached from the roots, each behind its parent."""
-    below: dict[str, list[str]] = {}
-    for name, joint in above.items():
-        below.setdefault(joint.parent, []).append(name)
+def _order_outward(robot: Robot, parent_joints: dict[str, UrdfJoint], roots: Iterable[UrdfLink]) -> dict[str, UrdfLink]:
+    """List the links that are reached from the roots, each after its parent."""
+    children: dict[str, list[str]] = {}
+    for name, joint in parent_joints.items():
+        children.setdefault(joint.parent, []).append(name)
     order = {link.name: link for link in roots}
-    waiting = list(order)
-    for name in waiting:  # which grows as it is walked
-        for child in below.get(name, ()):
+    queue = list(order)
+    for name in queue:  # the list grows during the loop
+        for child in children.get(name, ()):
             order[child] = robot.links[child]
-            waiting.append(child)
+            queue.append(child)
     return order
 
 
-def _report_circle(start: UrdfLink, above: dict[str, UrdfJoint], fields: UrdfFields) -> None:
-    """A circle that is come upon from a link that no root leads to, going from child to parent."""
+def _report_cycle(start: UrdfLink, parent_joints: dict[str, UrdfJoint], fields: UrdfFields) -> None:
+    """Report a cycle, found by walking from child to parent from a link that no root reaches."""
     seen: dict[str, UrdfJoint] = {}
     name = start.name
     while name not in seen:
-        seen[name] = above[name]
-        name = above[name].parent
+        seen[name] = parent_joints[name]
+        name = parent_joints[name].parent
     names = list(seen)
-    circle = [*reversed(names[names.index(name) :])]
+    cycle = [*reversed(names[names.index(name) :])]
     joint = seen[name]
-    message = f"a circle of links: {listed([name, *circle])}"
+    message = f"a circle of links: {list_words([name, *cycle])}"
     hint = "one link stands on none of the others: cut the circle, and close it in the spec by a joint of heun"
     fields.report("import-tree", joint.element, joint.path, message, hint)
 
 
-def _followed(robot: Robot, fields: UrdfFields) -> dict[str, Followed]:
-    """Of every joint that follows another the one that leads the chain; chains of any length, each walked once."""
-    known: dict[str, Followed | None] = {}
+def _resolve_mimics(robot: Robot, fields: UrdfFields) -> dict[str, MimicRelation]:
+    """Find the leader at the end of the mimic chain of each joint. Chains may have any length; each is walked once."""
+    resolved: dict[str, MimicRelation | None] = {}
     for joint in robot.joints.values():
         chain: dict[str, UrdfJoint] = {}
-        at: UrdfJoint | None = joint
-        while at is not None and at.mimic is not None and at.name not in known and at.name not in chain:
-            chain[at.name] = at
-            at = _leader(at, at.mimic, robot, fields)
-        found = None if at is None else known.get(at.name) if at.mimic else Followed(at, 1.0, 0.0)
-        if at is not None and at.mimic is not None and at.name in chain:
-            message = "it follows itself" + ("" if at.mimic.joint == at.name else f", by {listed([*chain])}")
-            fields.report("import-mimic", at.mimic.element, at.path, message, "one joint of a chain leads it")
+        current: UrdfJoint | None = joint
+        while (
+            current is not None
+            and current.mimic is not None
+            and current.name not in resolved
+            and current.name not in chain
+        ):
+            chain[current.name] = current
+            current = _find_leader(current, current.mimic, robot, fields)
+        relation = (
+            None
+            if current is None
+            else resolved.get(current.name)
+            if current.mimic
+            else MimicRelation(current, 1.0, 0.0)
+        )
+        if current is not None and current.mimic is not None and current.name in chain:
+            message = "it follows itself" + (
+                "" if current.mimic.joint == current.name else f", by {list_words([*chain])}"
+            )
+            fields.report("import-mimic", current.mimic.element, current.path, message, "one joint of a chain leads it")
         for name, follower in reversed(chain.items()):
             mimic = follower.mimic
-            if found is not None and mimic is not None:
-                found = Followed(
-                    found.leader, mimic.multiplier * found.multiplier, mimic.multiplier * found.offset + mimic.offset
+            if relation is not None and mimic is not None:
+                relation = MimicRelation(
+                    relation.leader,
+                    mimic.multiplier * relation.multiplier,
+                    mimic.multiplier * relation.offset + mimic.offset,
                 )
-            known[name] = found
-    return {name: found for name, found in known.items() if found is not None}
+            resolved[name] = relation
+    return {name: relation for name, relation in resolved.items() if relation is not None}
 
 
-def _leader(joint: UrdfJoint, mimic: Mimic, robot: Robot, fields: UrdfFields) -> UrdfJoint | None:
-    """The joint that this one names; None, and a problem, where it is none or has no position of one number."""
+def _find_leader(joint: UrdfJoint, mimic: Mimic, robot: Robot, fields: UrdfFields) -> UrdfJoint | None:
+    """Find the joint that a mimic names; None, and a problem, if there is none or it does not have exactly one
+    coordinate.
+    """
     leader = robot.joints.get(mimic.joint)
     if leader is None:
-        hint = did_you_mean(mimic.joint, robot.joints, "joints")
+        hint = suggest(mimic.joint, robot.joints, "joints")
         fields.report("import-mimic", mimic.element, joint.path, f"it follows '{mimic.joint}', which is no joint", hint)
         return None
-    wrong = next((one for one in (joint, leader) if not one.single), None)
-    if wrong is not None:
-        message = f"it follows {leader.name}, but {wrong.name} is {wrong.kind}: it has no position of one number"
+    unsuitable = next((one for one in (joint, leader) if not one.has_one_coordinate), None)
+    if unsuitable is not None:
+        message = (
+            f"it follows {leader.name}, but {unsuitable.name} is {unsuitable.kind}: it has no position of one number"
+        )
         hint = "revolute, continuous and prismatic joints follow, and are followed"
         fields.report("import-mimic", mimic.element, joint.path, message, hint)
         return None

@@ -1,7 +1,7 @@
-"""The way to a Dask cluster: an address, a connection, or why there is none.
+"""Connect to a Dask cluster, or say why that fails.
 
-Here alone `distributed` is imported, once a cluster is asked for. Impure: the network; what `distributed` would log and
-warn of is kept from standard error.
+Only this module imports `distributed`, and only if a cluster is requested. Impure: the network; silences the log and
+the warnings of `distributed`.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ SCHEMES = ("tcp", "tls")
 EXAMPLE = "such as --dask tcp://127.0.0.1:8786; `dask scheduler` tells its address as it starts"
 INSTALL = 'pip install "heuncli[dask]"'
 TLS = "tls:// takes certificates: DASK_DISTRIBUTED__COMM__TLS__CA_FILE and the other keys of distributed.comm.tls"
-# What an address of another kind is, and what to do.
-OTHERS = {
+# Hints for addresses with another scheme.
+SCHEME_HINTS = {
     "http": "that is a dashboard; the scheduler is beside it: --dask tcp://HOST:8786",
     "https": "that is a dashboard; the scheduler is beside it: --dask tcp://HOST:8786",
     "inproc": "a cluster within another process cannot be reached: LocalCluster(processes=True)",
 }
 LOGGERS = ("distributed", "distributed.client", "distributed.core", "tornado", "tornado.application", "asyncio")
-TOLD_OTHERWISE = ("Sending large graph", "\\n?Mismatched versions")  # the beginnings of warnings
+IGNORED_WARNINGS = ("Sending large graph", "\\n?Mismatched versions")  # the beginnings of warnings
 
 
 class ClusterGone(LimitError):
-    """The cluster went away while it was at work; what was answered before is kept where it is stored."""
+    """The cluster went away during the work; earlier results remain in the store, if there is one."""
 
     def __init__(self, address: str, why: str) -> None:
         hint = "what was answered before is kept by --store FILE; the same command goes on from there"
@@ -41,16 +41,18 @@ class ClusterGone(LimitError):
 
 
 @contextmanager
-def connected(address: str) -> Iterator[Any]:
-    """A client of the scheduler at an address. Raises UsageError: bad-option, missing-extra, no-cluster."""
-    host, port = host_and_port(address)
-    distributed = _distributed()
+def connect(address: str) -> Iterator[Any]:
+    """Provide a client of the scheduler at an address. Raises UsageError: bad-option, missing-extra, no-cluster."""
+    host, port = parse_address(address)
+    distributed = _import_distributed()
     _require_listener(address, host, port)
     try:
         client = distributed.Client(address, timeout=PATIENCE, set_as_default=False, name="heun-sweep")
     except Exception as error:
         hint = TLS if address.startswith("tls:") else "is it a Dask scheduler, of the same version of distributed?"
-        raise _none_at(address, f"no scheduler answers: {str(error) or type(error).__name__}", hint) from None
+        raise _make_no_cluster_error(
+            address, f"no scheduler answers: {str(error) or type(error).__name__}", hint
+        ) from None
     try:
         yield client
     finally:
@@ -58,14 +60,14 @@ def connected(address: str) -> Iterator[Any]:
             client.close(timeout=PATIENCE / 5)
 
 
-def host_and_port(address: str) -> tuple[str, int]:
-    """The parts of an address. Raises UsageError."""
+def parse_address(address: str) -> tuple[str, int]:
+    """Return host and port of an address. Raises UsageError."""
     scheme, separator, rest = address.partition("://")
     if not separator:
         raise UsageError(Problem("bad-option", f"--dask {address}: expected tcp://HOST:PORT", hint=EXAMPLE))
     if scheme not in SCHEMES:
         message = f"--dask {address}: no address of a scheduler begins with {scheme}://; accepted: tcp://, tls://"
-        raise UsageError(Problem("bad-option", message, hint=OTHERS.get(scheme, EXAMPLE)))
+        raise UsageError(Problem("bad-option", message, hint=SCHEME_HINTS.get(scheme, EXAMPLE)))
     try:
         parts = urlsplit(f"//{rest}")
         host, port = parts.hostname, parts.port
@@ -77,31 +79,35 @@ def host_and_port(address: str) -> tuple[str, int]:
 
 
 def _require_listener(address: str, host: str, port: int) -> None:
-    """Raise UsageError where nothing listens: `distributed` would try again and again for all of its patience."""
+    """Raise UsageError if nothing listens: `distributed` would try again until its timeout."""
     try:
         socket.create_connection((host, port), timeout=PATIENCE).close()
     except socket.gaierror:
-        raise _none_at(address, f"there is no machine '{host}'", EXAMPLE) from None
+        raise _make_no_cluster_error(address, f"there is no machine '{host}'", EXAMPLE) from None
     except (OSError, UnicodeError) as error:
-        refused = isinstance(error, ConnectionRefusedError)
-        silent = isinstance(error, TimeoutError)
-        why = "nothing listens there" if refused else f"no answer within {PATIENCE:g} s" if silent else str(error)
-        raise _none_at(address, why, "is the scheduler running? `dask scheduler` tells its address") from None
+        is_refused = isinstance(error, ConnectionRefusedError)
+        is_timeout = isinstance(error, TimeoutError)
+        why = (
+            "nothing listens there" if is_refused else f"no answer within {PATIENCE:g} s" if is_timeout else str(error)
+        )
+        raise _make_no_cluster_error(
+            address, why, "is the scheduler running? `dask scheduler` tells its address"
+        ) from None
 
 
-def _none_at(address: str, why: str, hint: str) -> UsageError:
+def _make_no_cluster_error(address: str, why: str, hint: str) -> UsageError:
     return UsageError(Problem("no-cluster", f"--dask {address}: {why}", hint=hint))
 
 
-def _distributed() -> Any:
-    """The package, quiet. Raises UsageError."""
-    for beginning in TOLD_OTHERWISE:
+def _import_distributed() -> Any:
+    """Import the package and silence it. Raises UsageError."""
+    for beginning in IGNORED_WARNINGS:
         warnings.filterwarnings("ignore", message=beginning)
     try:
         import distributed
     except ImportError as error:
-        absent = isinstance(error, ModuleNotFoundError) and error.name == "distributed"
-        why = "" if absent else f" ({error})"
+        is_missing = isinstance(error, ModuleNotFoundError) and error.name == "distributed"
+        why = "" if is_missing else f" ({error})"
         raise UsageError(
             Problem("missing-extra", f"--dask: the package distributed is not installed{why}", hint=INSTALL)
         ) from None

@@ -1,14 +1,14 @@
-"""The variants of a plan answered by the workers of a Dask cluster.
+"""Solve the variants of a plan on the workers of a Dask cluster.
 
-    answers_of(recipe, plan, numbers, address)  ->  (number, Answer), in the order in which they come
+    solve_variants(recipe, plan, numbers, address)  ->  (number, VariantResult), in the order of completion
 
-This process receives every answer, and it alone writes; workers need neither the spec nor its files. Each lot of
-variants (lots.py) is a task for one worker, of which each has two at most: so it is known who had what when a
-worker goes away, as many tasks are under way as workers have use for, and results do not gather on the cluster. What
-is left over of those that went is given to others; what ends a worker again and again has that for its answer. When
-this ends, by an error or a signal too, nothing of it is left on the cluster.
+This process receives every result, and it alone writes; workers need neither the spec nor its files. Each batch of
+variants (batches.py) is a task for one worker, and each worker has two at most. So it is known which variants a worker
+had when it goes away, no more tasks are under way than are useful, and results do not pile up on the cluster. The
+remaining batches of a worker that went away go to others; a variant that ends workers repeatedly gets that as its
+result. At the end, also after an error or a signal, nothing is left on the cluster.
 
-Impure: the network, the clock, another thread, in which `distributed` tells that a task has ended.
+Impure: the network, the clock, another thread, in which `distributed` reports that a task has ended.
 """
 
 from __future__ import annotations
@@ -23,120 +23,131 @@ from itertools import chain
 from typing import Any
 
 from heuncli.analyses.sweep_store.rows import WORKER_DIED
-from heuncli.analyses.variants.asking import Answer, Recipe
-from heuncli.analyses.variants.files import with_files, with_more_files
+from heuncli.analyses.variants.asking import Recipe, VariantResult
+from heuncli.analyses.variants.files import add_files, add_named_files
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.commands.sweep.cluster.door import PATIENCE, ClusterGone, connected
-from heuncli.app.commands.sweep.cluster.lots import WORKERS, Lot, Lots
-from heuncli.app.commands.sweep.cluster.members import ClusterTask, Member, Members, named
-from heuncli.app.commands.sweep.cluster.worker import PartAnswered, Variant, in_words
+from heuncli.app.commands.sweep.cluster.door import PATIENCE, ClusterGone, connect
+from heuncli.app.commands.sweep.cluster.lots import WORKERS, BatchQueue, VariantBatch
+from heuncli.app.commands.sweep.cluster.members import ClusterTask, ClusterWorker, WorkerPool, format_addresses
+from heuncli.app.commands.sweep.cluster.worker import PartialResults, Variant, format_exception
 from heuncli.base.errors import Problem
 from heuncli.version import VERSION
 
-LOOK = 1.0  # seconds from one look at who is there to the next
+UPDATE_INTERVAL = 1.0  # seconds between updates of the list of workers
 LONGEST_WAIT = 600.0  # seconds without a worker
-FETCH = 2.0  # seconds for the answers of a lot that is done
-MISSES = 10  # times that answers may fail to arrive from a worker that is there
+FETCH_TIMEOUT = 2.0  # seconds to fetch the results of a finished batch
+MAX_MISSES = 10  # how often results may fail to arrive from a connected worker
 SAME_HEUN = f"the same heun on every worker: pip install heuncli=={VERSION}"
-Numbered = tuple[int, Answer]
+NumberedResult = tuple[int, VariantResult]
 
 
-def answers_of(
+def solve_variants(
     recipe: Recipe,
     plan: Plan,
     numbers: Iterator[int],
     address: str,
-    many: int,
-    tell: Callable[[str], None],
-    stopped: int | None = None,
-) -> Iterator[Numbered]:
-    """Each number with its answer, as they come.
+    count: int,
+    report: Callable[[str], None],
+    stop_descriptor: int | None = None,
+) -> Iterator[NumberedResult]:
+    """Yield each number with its result, in the order of completion.
 
-    many: how many numbers there are; tell: is given lines on workers; stopped: a descriptor, and what can be read there
-    ends it. Raises UsageError: bad-option, missing-extra, no-cluster, no-worker; ClusterGone.
+    count: how many numbers there are
+    report: is called with lines about the workers
+    stop_descriptor: a file descriptor; the work ends once anything can be read from it
+
+    Raises UsageError: bad-option, missing-extra, no-cluster, no-worker; ClusterGone.
     """
     first = next(numbers, None)
-    if first is None:  # nobody is needed
+    if first is None:  # no variants
         return
-    variants = ((number, plan.values(number)) for number in chain((first,), numbers))
-    with connected(address) as client:
-        sweeping = _Sweeping(client, address, with_files(recipe, plan), Lots(variants, many), tell)
+    variants = ((number, plan.find_values(number)) for number in chain((first,), numbers))
+    with connect(address) as client:
+        scheduler = _Scheduler(client, address, add_files(recipe, plan), BatchQueue(variants, count), report)
         try:
-            yield from sweeping.answers(stopped)
+            yield from scheduler.iter_results(stop_descriptor)
         finally:
-            sweeping.end()
+            scheduler.close()
 
 
-class _Sweeping:
-    """Lots on their way to workers, and answers on their way back."""
+class _Scheduler:
+    """Sends batches to the workers and receives their results."""
 
-    def __init__(self, client: Any, address: str, recipe: Recipe, lots: Lots, tell: Callable[[str], None]) -> None:
-        self.client, self.address, self.lots, self.tell = client, address, lots, tell
-        self.ended: deque[str] = deque()  # keys of tasks, by the thread of `distributed`
-        self.bell, self.ringer = socket.socketpair()
-        self.bell.setblocking(False)
-        self.ringer.setblocking(False)
-        self.members = Members(client, recipe, self._ring)
-        self.looked = -LOOK
-        self.with_workers = time.monotonic()  # when a worker was there
+    def __init__(
+        self, client: Any, address: str, recipe: Recipe, queue: BatchQueue, report: Callable[[str], None]
+    ) -> None:
+        self.client, self.address, self.queue, self.report = client, address, queue, report
+        self.ended_keys: deque[str] = deque()  # keys of ended tasks, added by the thread of `distributed`
+        self.wake_receiver, self.wake_sender = socket.socketpair()
+        self.wake_receiver.setblocking(False)
+        self.wake_sender.setblocking(False)
+        self.pool = WorkerPool(client, recipe, self._wake)
+        self.last_update = -UPDATE_INTERVAL
+        self.last_with_workers = time.monotonic()  # last time with a worker
         self.waiting = False
 
-    def answers(self, stopped: int | None) -> Iterator[Numbered]:
-        """All of them."""
-        members, lots = self.members, self.lots
+    def iter_results(self, stop_descriptor: int | None) -> Iterator[NumberedResult]:
+        """Yield all results."""
+        pool, queue = self.pool, self.queue
         while True:
-            yield from self._look()
-            self._give()
-            if lots.nothing() and not any(member.lots for member in members.known.values()):
+            yield from self._update_workers()
+            self._send_batches()
+            if queue.is_empty() and not any(member.batches for member in pool.known.values()):
                 break
-            if self._wait(stopped):
+            if self._wait(stop_descriptor):
                 return
-            while self.ended:
-                task = members.takes(key := self.ended.popleft())
+            while self.ended_keys:
+                task = pool.pop_task(key := self.ended_keys.popleft())
                 if task is not None:
-                    yield from self._take(key, task)
-            self._speak()
-        self._speak()
+                    yield from self._process_task(key, task)
+            self._report_remarks()
+        self._report_remarks()
 
-    def end(self) -> None:
+    def close(self) -> None:
         """Leave nothing on the cluster."""
         if self.client.status == "running":
-            with suppress(Exception):  # it may be going just now
-                self.members.end()
-        self.ringer.close()
-        self.bell.close()
+            with suppress(Exception):  # the cluster may be closing
+                self.pool.cancel_all()
+        self.wake_sender.close()
+        self.wake_receiver.close()
 
-    def _ring(self, key: str) -> None:
-        """In the thread of `distributed`: a task has ended."""
-        self.ended.append(key)
-        with suppress(OSError):  # full: it rings already; closed: nobody waits any more
-            self.ringer.send(b"\0")
+    def _wake(self, key: str) -> None:
+        """Note that a task has ended, and wake the main thread; runs in the thread of `distributed`."""
+        self.ended_keys.append(key)
+        with suppress(OSError):  # full: already notified; closed: nobody waits any more
+            self.wake_sender.send(b"\0")
 
-    def _wait(self, stopped: int | None) -> bool:
-        """Wait until a task has ended, or it is time to look round; returns whether this is to end."""
+    def _wait(self, stop_descriptor: int | None) -> bool:
+        """Wait until a task has ended, or the next update is due; returns whether the work must stop."""
         from select import select
 
-        watched: list[Any] = [self.bell] if stopped is None else [self.bell, stopped]
-        readable, _, _ = select(watched, [], [], max(0.0, self.looked + LOOK - time.monotonic()))
+        descriptors: list[Any] = (
+            [self.wake_receiver] if stop_descriptor is None else [self.wake_receiver, stop_descriptor]
+        )
+        readable, _, _ = select(descriptors, [], [], max(0.0, self.last_update + UPDATE_INTERVAL - time.monotonic()))
         with suppress(BlockingIOError):
-            while self.bell in readable and self.bell.recv(4096):
+            while self.wake_receiver in readable and self.wake_receiver.recv(4096):
                 pass
-        return stopped is not None and stopped in readable
+        return stop_descriptor is not None and stop_descriptor in readable
 
-    def _look(self) -> Iterator[Numbered]:
-        """See who came and who went, now and then. Raises ClusterGone, UsageError."""
+    def _update_workers(self) -> Iterator[NumberedResult]:
+        """Update the list of workers now and then; yields results of variants that ended workers. Raises ClusterGone,
+        UsageError.
+        """
         now = time.monotonic()
-        if now < self.looked + LOOK:
+        if now < self.last_update + UPDATE_INTERVAL:
             return
         self._require_connection()
         try:
-            gone = list(self.members.look())
+            lost_batches = list(self.pool.update())
         except Exception as error:
-            raise ClusterGone(self.address, f"the scheduler does not answer any more: {in_words(error)}") from None
-        self.looked = now
-        for lot in gone:
-            yield from self._lost(lot)
+            raise ClusterGone(
+                self.address, f"the scheduler does not answer any more: {format_exception(error)}"
+            ) from None
+        self.last_update = now
+        for batch in lost_batches:
+            yield from self._handle_lost(batch)
         self._require_workers(now)
 
     def _require_connection(self) -> None:
@@ -144,111 +155,116 @@ class _Sweeping:
             raise ClusterGone(self.address, "the scheduler went away")
 
     def _require_workers(self, now: float) -> None:
-        """Raise UsageError where no worker will do, ClusterGone where none comes."""
-        members = self.members
-        if members.able() or members.asked():
-            self.with_workers, self.waiting = now, False
+        """Raise UsageError if no worker can be used, ClusterGone if none comes."""
+        pool = self.pool
+        if pool.list_usable() or pool.has_unknown():
+            self.last_with_workers, self.waiting = now, False
             return
-        if members.known:
+        if pool.known:
             reasons: dict[str, list[str]] = {}
-            for member in members.known.values():
-                reasons.setdefault(member.unable, []).append(member.address)
-            found = "; ".join(f"{named(addresses)}: {why}" for why, addresses in reasons.items())
+            for worker in pool.known.values():
+                reasons.setdefault(worker.refusal, []).append(worker.address)
+            reason_text = "; ".join(f"{format_addresses(addresses)}: {why}" for why, addresses in reasons.items())
             raise UsageError(
-                Problem("no-worker", f"--dask {self.address}: no worker can be used: {found}", hint=SAME_HEUN)
+                Problem("no-worker", f"--dask {self.address}: no worker can be used: {reason_text}", hint=SAME_HEUN)
             )
-        if now - self.with_workers > LONGEST_WAIT:
+        if now - self.last_with_workers > LONGEST_WAIT:
             raise ClusterGone(self.address, f"there was no worker for {LONGEST_WAIT:g} s")
         if not self.waiting:
             self.waiting = True
-            self.tell(f"{self.address}: no workers; waiting for them")
+            self.report(f"{self.address}: no workers; waiting for them")
 
-    def _give(self) -> None:
-        """As many lots as workers have room for; while some go alone, only these."""
-        able, alone = self.members.able(), self.lots.alone
-        if alone:
-            for member in able:
-                if alone and member.has_room(alone=True):
-                    self.members.give(member, alone.popleft())
+    def _send_batches(self) -> None:
+        """Send as many batches as the workers can take; while there are isolated ones, only these."""
+        usable, isolated = self.pool.list_usable(), self.queue.isolated
+        if isolated:
+            for worker in usable:
+                if isolated and worker.has_capacity(isolated=True):
+                    self.pool.send(worker, isolated.popleft())
             return
         for _ in range(2):  # first one to each, then the next
-            for member in able:
-                if member.has_room(alone=False) and (lot := self.lots.next(member.pace.size, len(able))) is not None:
-                    self.members.give(member, lot)
+            for worker in usable:
+                if (
+                    worker.has_capacity(isolated=False)
+                    and (batch := self.queue.pop_next(worker.pace.size, len(usable))) is not None
+                ):
+                    self.pool.send(worker, batch)
 
-    def _take(self, key: str, task: ClusterTask) -> Iterator[Numbered]:
-        """What a task has come to. Raises ClusterGone."""
+    def _process_task(self, key: str, task: ClusterTask) -> Iterator[NumberedResult]:
+        """Process a task that has ended. Raises ClusterGone."""
         status = task.future.status
         if status == "error":
             error = task.future.exception(timeout=PATIENCE)
-            if type(error).__name__ == "KilledWorker" and task.lot is not None:
-                yield from self._lost(task.lot, WORKERS)
+            if type(error).__name__ == "KilledWorker" and task.batch is not None:
+                yield from self._handle_lost(task.batch, WORKERS)
             else:
-                self._cannot(task, _unable(error))
+                self._refuse_worker(task, _explain_failure(error))
         elif status == "finished":
-            yield from self._finished(key, task)
-        elif status != "cancelled":  # done, and lost with its worker before it was taken
-            self.members.waits_on(key, task)
-        else:  # not by us: what is in our books we do not cancel
+            yield from self._fetch_results(key, task)
+        elif status != "cancelled":  # done, but lost with its worker before it was fetched
+            self.pool.wait_again(key, task)
+        else:  # cancelled by the cluster: heun does not cancel tasks that it still tracks
             self._require_connection()
-            if task.member.address in self.members.known:  # it is asked again
-                others = [lot for lot in self.members.leaves(task.member) if lot is not task.lot]
-                for lot in [task.lot, *others] if task.lot is not None else others:
-                    self.lots.unanswered(lot, 0)
+            if task.worker.address in self.pool.known:  # it will be asked for its version again
+                other_batches = [batch for batch in self.pool.remove(task.worker) if batch is not task.batch]
+                for batch in [task.batch, *other_batches] if task.batch is not None else other_batches:
+                    self.queue.return_rest(batch, 0)
 
-    def _finished(self, key: str, task: ClusterTask) -> Iterator[Numbered]:
-        """The answers of a task that is done."""
+    def _fetch_results(self, key: str, task: ClusterTask) -> Iterator[NumberedResult]:
+        """Fetch the results of a finished task."""
         try:
-            found = task.future.result(timeout=FETCH)
-        except (Exception, CancelledError) as error:  # its worker may be gone with them: seen at the next look
+            task_result = task.future.result(timeout=FETCH_TIMEOUT)
+        except (Exception, CancelledError) as error:  # its worker may be gone, which the next update notices
             self._require_connection()
-            if task.misses < MISSES:
-                self.members.waits_on(key, task)
+            if task.misses < MAX_MISSES:
+                self.pool.wait_again(key, task)
             else:
-                self._cannot(task, f"its answers do not arrive: {in_words(error)}")
+                self._refuse_worker(task, f"its answers do not arrive: {format_exception(error)}")
             return
-        if task.lot is None:
-            version, able = found
-            self.members.told(task.member, version, able)
+        if task.batch is None:
+            version, worker_version = task_result
+            self.pool.record_version(task.worker, version, worker_version)
         else:
-            yield from self._answered(task.member, task.lot, found)
+            yield from self._accept_results(task.worker, task.batch, task_result)
 
-    def _answered(self, member: Member, lot: Lot, found: PartAnswered) -> Iterator[Numbered]:
-        """The answers of a lot, or of its first variants."""
-        if found.broken:
-            self.members.refuse(member, f"it cannot solve the scene: {found.broken}")
-        if found.answers:
-            member.pace.took(len(found.answers), found.seconds)
-        if found.lacking:
-            self.members.uses(with_more_files(self.members.recipe, [found.lacking]))
-        self.lots.unanswered(lot, len(found.answers))
-        yield from zip(map(_number, lot.variants), found.answers, strict=False)
+    def _accept_results(
+        self, worker: ClusterWorker, batch: VariantBatch, partial: PartialResults
+    ) -> Iterator[NumberedResult]:
+        """Yield the results of a batch, or of its first variants, and put back the rest."""
+        if partial.failure:
+            self.pool.refuse(worker, f"it cannot solve the scene: {partial.failure}")
+        if partial.results:
+            worker.pace.record_time(len(partial.results), partial.seconds)
+        if partial.missing_file:
+            self.pool.replace_recipe(add_named_files(self.pool.recipe, [partial.missing_file]))
+        self.queue.return_rest(batch, len(partial.results))
+        yield from zip(map(_get_number, batch.variants), partial.results, strict=False)
 
-    def _lost(self, lot: Lot, workers: int = 1) -> Iterator[Numbered]:
-        """The worker of a lot is gone."""
-        if self.lots.lost(lot, workers):
+    def _handle_lost(self, batch: VariantBatch, workers: int = 1) -> Iterator[NumberedResult]:
+        """Put back a batch whose worker is gone, or yield the result of the variant that ends workers."""
+        if self.queue.return_lost(batch, workers):
             reason = f"the worker that solved it went away, {WORKERS} times and with nothing else to do"
-            yield _number(lot.variants[0]), Answer(code=WORKER_DIED, reason=reason)
+            yield _get_number(batch.variants[0]), VariantResult(code=WORKER_DIED, reason=reason)
 
-    def _cannot(self, task: ClusterTask, why: str) -> None:
-        """A worker cannot do what it is asked; its lots go to others."""
-        self.members.refuse(task.member, why)
-        if task.lot is not None:
-            self.lots.unanswered(task.lot, 0)
+    def _refuse_worker(self, task: ClusterTask, why: str) -> None:
+        """Stop using the worker of a task; its batches go to others."""
+        self.pool.refuse(task.worker, why)
+        if task.batch is not None:
+            self.queue.return_rest(task.batch, 0)
 
-    def _speak(self) -> None:
-        """What is to be told of workers, when all have said what they have."""
-        if not self.members.asked() and (self.members.able() or not self.members.known):
-            for line in self.members.lines():
-                self.tell(line)
+    def _report_remarks(self) -> None:
+        """Report the remarks on workers, once the version of all is known."""
+        if not self.pool.has_unknown() and (self.pool.list_usable() or not self.pool.known):
+            for line in self.pool.take_remarks():
+                self.report(line)
 
 
-def _number(variant: Variant) -> int:
+def _get_number(variant: Variant) -> int:
     return variant[0]
 
 
-def _unable(error: BaseException | None) -> str:
-    """Why a worker cannot, in words."""
+def _explain_failure(error: BaseException | None) -> str:
+    """Return why a worker cannot be used, in words."""
     if isinstance(error, ModuleNotFoundError) and "heuncli" in str(error):
         return "there is no heun"
-    return f"it cannot be asked: {in_words(error)}"
+    return f"it cannot be asked: {format_exception(error)}"

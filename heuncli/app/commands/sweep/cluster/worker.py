@@ -1,10 +1,10 @@
-"""What a worker of a Dask cluster does: it keeps a recipe with the scene set up, and answers variants of it.
+"""The code that runs on a worker of a Dask cluster: it keeps a recipe with the scene set up, and solves variants of it.
 
-A worker runs its tasks in threads, several at a time where it was started so. What heun keeps in its modules (how many
-suggestions are still looked for, until when a variant may take) is that of one piece of work at a time, and so is what
-one scene has set up: here one task of a process works, the others wait for it. Their threads would gain little: most of
-a variant is Python, which runs in one thread at a time anyway. No signal reaches a thread: that a variant has a limit
-of time is seen to by the loops that look at the clock. Impure: the clock, and what this process keeps.
+A worker may run several tasks at a time in threads. heun's module state (suggestion counters, the time limit of a
+variant) and the memory of a prepared scene serve one task only, so a lock admits one task per process and the others
+wait. Parallel threads would gain little: most of a variant is Python code, which runs in one thread at a time. No
+signal reaches a thread, so only the loops that check the clock enforce the time limit of a variant. Impure: the clock,
+and what this process keeps.
 """
 
 from __future__ import annotations
@@ -16,38 +16,39 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import heuncli
-from heuncli.analyses.variants.asking import Answer, Asker, Recipe
+from heuncli.analyses.variants.asking import Recipe, VariantEvaluator, VariantResult
 from heuncli.app.commands.sweep.workers import answer_of
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.form import KERNEL
-from heuncli.scene.file_format.named_files import FileNotKept
+from heuncli.scene.file_format.named_files import FileNotPreloaded
 from heuncli.version import VERSION
 
 Variant = tuple[int, Mapping[str, str]]  # its number in the plan, and its values in the form of `--set`
 PACKAGE = os.path.dirname(os.path.abspath(heuncli.__file__))  # noqa: PTH100, PTH120
-_AT_WORK = threading.Lock()
+_TASK_LOCK = threading.Lock()
 
 
-class AbleWorker(NamedTuple):
-    """What a worker has: the digest of heun's text, and the kernel that runs."""
+class WorkerVersion(NamedTuple):
+    """The version of heun on a worker: the digest of its source text, and its kernel."""
 
     text: str
     kernel: str
 
 
-class PartAnswered(NamedTuple):
-    """The answers of the first variants of a batch, and what they took [s].
+class PartialResults(NamedTuple):
+    """The results of the first variants of a batch, and the time they took [s].
 
-    lacking: the file that the next one names, where the recipe has it not; broken: why this worker answers nothing.
+    missing_file: the file that the next variant names and the recipe does not contain
+    failure: why this worker cannot solve anything
     """
 
-    answers: tuple[Answer, ...] = ()
+    answers: tuple[VariantResult, ...] = ()
     seconds: float = 0.0
     lacking: str = ""
     broken: str = ""
 
 
-# What a worker is asked first, as text: with no heun there, no function of it could be sent.
+# The first request to a worker, as text: without heun there, none of its functions could be sent.
 HELLO = (
     "(lambda load: (lambda version: (version, "
     f"load({__name__!r}).described() if version == {VERSION!r} else None))(load('heuncli.version').VERSION)"
@@ -55,17 +56,21 @@ HELLO = (
 )
 
 
-def described() -> AbleWorker:
-    """What this process has."""
-    return AbleWorker(text_digest(), KERNEL)
+def described() -> WorkerVersion:
+    """Return the version of heun in this process."""
+    return WorkerVersion(text_digest(), KERNEL)
 
 
 def text_digest() -> str:
-    """A digest of the text of heun; 20 ms. Two that are alike answer alike, where a version alone may be under way."""
+    """Compute a digest of heun's source text, in 20 ms.
+
+    Two workers with the same text give the same results; with the same version number the text may still differ during
+    development.
+    """
     import hashlib
 
     text = hashlib.sha256()
-    for path in sorted(_sources()):
+    for path in sorted(_iter_sources()):
         with open(os.path.join(PACKAGE, path), "rb") as file:  # noqa: PTH118, PTH123 - as below
             content = file.read().replace(b"\r\n", b"\n")
         text.update(f"{path} {len(content)}\n".encode())
@@ -73,51 +78,53 @@ def text_digest() -> str:
     return text.hexdigest()
 
 
-def _sources() -> Iterator[str]:
-    """The files of Python in the package, relative to it, with / between the parts."""
+def _iter_sources() -> Iterator[str]:
+    """Yield the Python files of the package, relative to it, with / as separator."""
     for folder, _, names in os.walk(PACKAGE):
-        inner = os.path.relpath(folder, PACKAGE).replace(os.sep, "/")
-        yield from (f"{inner}/{name}" for name in names if name.endswith(".py"))
+        relative = os.path.relpath(folder, PACKAGE).replace(os.sep, "/")
+        yield from (f"{relative}/{name}" for name in names if name.endswith(".py"))
 
 
-class HeldRecipe:
-    """A recipe in the memory of a worker, with its scene set up once it is asked for; sent on, the recipe alone."""
+class CachedRecipe:
+    """A recipe in the memory of a worker, with its scene set up on first use; pickled without the scene."""
 
     def __init__(self, recipe: Recipe) -> None:
         self.recipe = recipe
-        self._asker: Asker | None = None
+        self._evaluator: VariantEvaluator | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return HeldRecipe, (self.recipe,)
+        return CachedRecipe, (self.recipe,)
 
     def __dask_tokenize__(self) -> tuple[str, int]:
         return "heun", id(self)
 
-    def answered(self, variants: Sequence[Variant], seconds: float) -> PartAnswered:
-        """The answers of variants one after the other, until they are done or have taken so long."""
-        with _AT_WORK:
-            begun = time.monotonic()
-            answers: list[Answer] = []
-            lacking = ""
+    def solve_variants(self, variants: Sequence[Variant], seconds: float) -> PartialResults:
+        """Solve variants one after the other, until all are done or the time is used up."""
+        with _TASK_LOCK:
+            start = time.monotonic()
+            results: list[VariantResult] = []
+            missing_file = ""
             try:
-                asker = self._asker = self._asker or Asker(self.recipe)
+                evaluator = self._evaluator = self._evaluator or VariantEvaluator(self.recipe)
                 for _, values in variants:
-                    answers.append(answer_of(asker, values))
-                    if time.monotonic() - begun > seconds:
+                    results.append(answer_of(evaluator, values))
+                    if time.monotonic() - start > seconds:
                         break
-            except FileNotKept as missing:
-                lacking = missing.name
-            return PartAnswered(tuple(answers), time.monotonic() - begun, lacking)
+            except FileNotPreloaded as missing:
+                missing_file = missing.name
+            return PartialResults(tuple(results), time.monotonic() - start, missing_file)
 
 
-def answered(held: HeldRecipe, variants: Sequence[Variant], seconds: float) -> PartAnswered:
-    """The task of a worker: see HeldRecipe.answered. What is raised is told in words: Dask cannot send all of it."""
+def solve_batch(recipe: CachedRecipe, variants: Sequence[Variant], seconds: float) -> PartialResults:
+    """Run the task of a worker, CachedRecipe.solve_variants; exceptions become text, because Dask cannot send all of
+    them.
+    """
     try:
-        return held.answered(variants, seconds)
+        return recipe.solve_variants(variants, seconds)
     except Exception as error:
-        return PartAnswered(broken=in_words(error))
+        return PartialResults(failure=format_exception(error))
 
 
-def in_words(error: BaseException | None) -> str:
-    """An exception on a line."""
+def format_exception(error: BaseException | None) -> str:
+    """Format an exception on one line."""
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

@@ -1,4 +1,4 @@
-"""The rows of a sweep as CSV: a line a variant, all digits, units in the heads; an empty cell is not known."""
+"""Write the rows of a sweep as CSV: one line per variant, all digits, units in the heads; an empty cell is unknown."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import csv
 import io
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.sweep_store.columns import Cell, columns_of
+from heuncli.analyses.sweep_store.columns import Cell, make_columns
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.base.foreign_text import shown
+from heuncli.base.foreign_text import escape
 
 
-def csv_pieces(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
-    """The lines, one after the other."""
-    columns = columns_of(head)
-    yield _line(columns.heads)
+def iter_csv(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
+    """Yield the lines one after the other."""
+    columns = make_columns(head)
+    yield _format_line(columns.headings)
     for row in rows:
-        yield _line(columns.cells(row))
+        yield _format_line(columns.make_cells(row))
 
 
-def _line(cells: Iterable[Cell]) -> str:
+def _format_line(cells: Iterable[Cell]) -> str:
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(shown(cell) if isinstance(cell, str) else cell for cell in cells)
+    csv.writer(text, lineterminator="\n").writerow(escape(cell) if isinstance(cell, str) else cell for cell in cells)
     return text.getvalue()

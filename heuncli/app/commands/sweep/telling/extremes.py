@@ -1,4 +1,6 @@
-"""Which variants have the least and the greatest value of a measure, and which cannot be told from these."""
+"""Find the variants with the least and the greatest value of a measure, and those that their errors do not separate
+from these.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +10,12 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
 
-class BestAndWorst(NamedTuple):
-    """The places of the least and the greatest value, and which may be it as well by their errors, (n,) of bool."""
+class MeasureExtremes(NamedTuple):
+    """The extremes of a measure.
+
+    least, greatest: indices of the variants
+    may_be_least, may_be_greatest: (n,) bool, which variants may be it as well by their errors
+    """
 
     least: int
     greatest: int
@@ -17,17 +23,19 @@ class BestAndWorst(NamedTuple):
     greatest_too: Array
 
     @property
-    def flat(self) -> bool:
-        """Whether any could be either: the measure does not vary, as far as is known."""
-        return bool(self.least_too[self.greatest])
+    def is_constant(self) -> bool:
+        """Whether any variant could be either: the measure does not vary, as far as is known."""
+        return bool(self.may_be_least[self.greatest])
 
 
-def extremes(values: Array, errors: Array) -> BestAndWorst | None:
-    """Of a measure, (n,) each, nan where it is not known; None where it is known of less than two variants."""
+def find_extremes(values: Array, errors: Array) -> MeasureExtremes | None:
+    """Find the extremes of a measure, (n,) values and errors, nan if unknown; None if fewer than two values are
+    known.
+    """
     if np.count_nonzero(np.isfinite(values)) < 2:
         return None
     least, greatest = int(np.nanargmin(values)), int(np.nanargmax(values))
     with np.errstate(invalid="ignore"):
         low = values - errors <= values[least] + errors[least]
         high = values + errors >= values[greatest] - errors[greatest]
-    return BestAndWorst(least, greatest, low, high)
+    return MeasureExtremes(least, greatest, low, high)

@@ -1,6 +1,6 @@
-"""The measures of a sweep as numbers in a row: what extremes, sparklines and statistics are made from.
+"""Buffer the measures of a sweep as columns of numbers, for extremes, sparklines and statistics.
 
-Of a million variants it holds the numbers alone, 16 bytes a measure and variant.
+It holds only the numbers, 16 bytes per measure and variant, so that a million variants fit.
 """
 
 from __future__ import annotations
@@ -15,29 +15,31 @@ from heuncli.analyses.sweep_store.rows import SweptRow
 from heuncli.results.results import Array
 
 
-class GatheredRows:
-    """What has passed by: the numbers of the variants in their order, and their measures; nan where there is none."""
+class ColumnBuffer:
+    """The columns of the rows so far: numbers of the variants in their order, and their measures; nan if there is
+    none.
+    """
 
-    def __init__(self, measures: int) -> None:
-        """measures: how many there are of each variant."""
+    def __init__(self, measure_count: int) -> None:
+        """measure_count: number of measures of each variant"""
         self._numbers = array("q")
-        self._values = [array("d") for _ in range(measures)]
-        self._errors = [array("d") for _ in range(measures)]
-        self.failed: Counter[str] = Counter()  # by code
+        self._values = [array("d") for _ in range(measure_count)]
+        self._errors = [array("d") for _ in range(measure_count)]
+        self.failures: Counter[str] = Counter()  # by code
 
-    def passing(self, rows: Iterable[SweptRow]) -> Iterator[SweptRow]:
-        """The rows, each taken down as it goes by."""
+    def record(self, rows: Iterable[SweptRow]) -> Iterator[SweptRow]:
+        """Yield the rows, and add each to the columns."""
         for row in rows:
             self.add(row)
             yield row
 
     def add(self, row: SweptRow) -> None:
-        """Take down a variant."""
+        """Add a variant."""
         self._numbers.append(row.number)
         if row.answer.code:
-            self.failed[row.answer.code] += 1
-        found = row.answer.measures or (None,) * len(self._values)
-        for place, one in enumerate(found):
+            self.failures[row.answer.code] += 1
+        results = row.answer.measures or (None,) * len(self._values)
+        for place, one in enumerate(results):
             self._values[place].append(np.nan if one is None or one.value is None else one.value)
             self._errors[place].append(np.nan if one is None or one.error is None else one.error)
 
@@ -46,17 +48,17 @@ class GatheredRows:
 
     @property
     def numbers(self) -> Array:
-        """Of the variants, (n,)."""
+        """Numbers of the variants, (n,)."""
         return np.frombuffer(self._numbers, dtype=np.int64) if self._numbers else np.empty(0, dtype=np.int64)
 
     def values(self, measure: int) -> Array:
-        """Of a measure, (n,) in SI."""
-        return _floats(self._values[measure])
+        """Return the values of a measure, (n,) in SI."""
+        return _to_array(self._values[measure])
 
     def errors(self, measure: int) -> Array:
-        """As the runs state them, (n,) in SI; 0 where they state none."""
-        return np.nan_to_num(_floats(self._errors[measure]))
+        """Return the stated errors of a measure, (n,) in SI; 0 if a run states none."""
+        return np.nan_to_num(_to_array(self._errors[measure]))
 
 
-def _floats(numbers: array[float]) -> Array:
+def _to_array(numbers: array[float]) -> Array:
     return np.frombuffer(numbers) if numbers else np.empty(0)

@@ -1,4 +1,4 @@
-"""Which rows of a sweep a table shows: of a long one the first, the last, and those with an extreme."""
+"""Select the rows of a sweep for the table: of a long sweep the first, the last, and those with an extreme."""
 
 from __future__ import annotations
 
@@ -7,56 +7,56 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.app.commands.sweep.telling.extremes import BestAndWorst, extremes
-from heuncli.app.commands.sweep.telling.gathered import GatheredRows
+from heuncli.app.commands.sweep.telling.extremes import MeasureExtremes, find_extremes
+from heuncli.app.commands.sweep.telling.gathered import ColumnBuffer
 from heuncli.base.named_tuples import NamedTuple
 
-MOST_ROWS = 60  # that are shown without --all
-ENDS = 10  # rows at the beginning and at the end of more
+MAX_ROWS = 60  # shown without --all
+END_ROWS = 10  # rows at the beginning and at the end of more
 
 
-class KeptRows(NamedTuple):
-    """The rows that are shown by their places in the sweep, and the measures of all."""
+class ShownRows(NamedTuple):
+    """The selected rows by their index in the sweep, and the columns of all rows."""
 
     rows: Mapping[int, SweptRow]
-    gathered: GatheredRows
-    extremes: tuple[BestAndWorst | None, ...]
+    gathered: ColumnBuffer
+    extremes: tuple[MeasureExtremes | None, ...]
 
     @property
     def size(self) -> int:
-        """How many variants there are."""
-        return len(self.gathered)
+        """Number of variants."""
+        return len(self.columns)
 
 
-def kept(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) -> KeptRows:
-    """What is to be shown of the rows, read once."""
-    gathered = GatheredRows(len(head.measures))
-    passing, most = gathered.passing(rows), None if all_of_them else MOST_ROWS
-    first = list(islice(passing, most))
-    best = BestRows(first, len(head.measures))
-    last: deque[SweptRow] = deque(maxlen=ENDS)
-    for row in passing:
-        best.look_at(row, len(gathered) - 1)
+def select_rows(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) -> ShownRows:
+    """Select the rows to show, reading them once."""
+    columns = ColumnBuffer(len(head.measures))
+    recorded, limit = columns.record(rows), None if all_of_them else MAX_ROWS
+    first = list(islice(recorded, limit))
+    best = ExtremeRows(first, len(head.measures))
+    last: deque[SweptRow] = deque(maxlen=END_ROWS)
+    for row in recorded:
+        best.add(row, len(columns) - 1)
         last.append(row)
-    found = tuple(extremes(gathered.values(k), gathered.errors(k)) for k in range(len(head.measures)))
-    shown = dict(enumerate(first))
+    extremes_found = tuple(find_extremes(columns.values(k), columns.errors(k)) for k in range(len(head.measures)))
+    selected = dict(enumerate(first))
     if last:
-        shown = dict(enumerate(first[:ENDS])) | dict(enumerate(last, len(gathered) - len(last)))
-        shown |= {place: row for place, row in best.rows() if place not in shown}
-    return KeptRows(dict(sorted(shown.items())), gathered, found)
+        selected = dict(enumerate(first[:END_ROWS])) | dict(enumerate(last, len(columns) - len(last)))
+        selected |= {place: row for place, row in best.iter_rows() if place not in selected}
+    return ShownRows(dict(sorted(selected.items())), columns, extremes_found)
 
 
-class BestRows:
-    """The rows with the least and the greatest value of each measure so far; the first of equals."""
+class ExtremeRows:
+    """The rows with the least and the greatest value of each measure so far; the first of equal ones."""
 
     def __init__(self, first: Sequence[SweptRow], measures: int) -> None:
         self._least: list[tuple[float, int, SweptRow] | None] = [None] * measures
         self._greatest: list[tuple[float, int, SweptRow] | None] = [None] * measures
         for place, row in enumerate(first):
-            self.look_at(row, place)
+            self.add(row, place)
 
-    def look_at(self, row: SweptRow, place: int) -> None:
-        """Keep it where it is one of them."""
+    def add(self, row: SweptRow, place: int) -> None:
+        """Keep the row if it has an extreme."""
         for k, one in enumerate(row.answer.measures):
             if one.value is None:
                 continue
@@ -65,6 +65,6 @@ class BestRows:
                 if known is None or sign * one.value < sign * known[0]:
                     best[k] = one.value, place, row
 
-    def rows(self) -> Iterator[tuple[int, SweptRow]]:
-        """These rows and their places."""
+    def iter_rows(self) -> Iterator[tuple[int, SweptRow]]:
+        """Yield these rows with their indices."""
         return ((known[1], known[2]) for known in (*self._least, *self._greatest) if known is not None)

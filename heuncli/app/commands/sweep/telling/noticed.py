@@ -1,4 +1,4 @@
-"""What a sweep came to, in some lines on standard error: what could not be solved, and warnings with their counts."""
+"""Summarize a sweep on standard error: how many variants could not be solved, and warnings with their counts."""
 
 from __future__ import annotations
 
@@ -6,18 +6,21 @@ from collections import Counter
 from collections.abc import Iterable
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.once import kind_of_warning
-from heuncli.app.cli.output import say
+from heuncli.analyses.variants.once import strip_figures
+from heuncli.app.cli.output import print_stderr
 from heuncli.base.named_tuples import NamedTuple
 
-MOST = 20  # kinds of warnings that are told
+MAX_KINDS = 20  # kinds of warnings that are told
 
 
-class Noticed(NamedTuple):
-    """How many variants there are, how many failed by which code, and what warned how often.
+class SweepWarnings(NamedTuple):
+    """The failures and warnings of a sweep.
 
-    warnings: by their words without figures, the first of each kind, and of how many variants. absent: by measure, in
-    how many variants there is none of it.
+    rows: number of variants
+    codes: number of failed variants by code
+    warnings: by their words without figures, the first of each kind, and the number of variants
+    more: number of warnings of further kinds
+    absent: by measure, number of variants without it
     """
 
     rows: int
@@ -27,14 +30,14 @@ class Noticed(NamedTuple):
     absent: Counter[str]
 
     @property
-    def failed(self) -> int:
-        """How many could not be solved."""
+    def failure_count(self) -> int:
+        """Number of variants that could not be solved."""
         return self.codes.total()
 
 
-def noticed_in(head: SweepHead, rows: Iterable[SweptRow]) -> Noticed:
-    """What there is to say of all rows, gone through once."""
-    count, more = 0, 0
+def collect_warnings(head: SweepHead, rows: Iterable[SweptRow]) -> SweepWarnings:
+    """Collect the failures and warnings of all rows, read once."""
+    count, other_kinds = 0, 0
     codes: Counter[str] = Counter()
     warnings: dict[str, tuple[str, int]] = {}
     absent: Counter[str] = Counter()
@@ -43,33 +46,33 @@ def noticed_in(head: SweepHead, rows: Iterable[SweptRow]) -> Noticed:
         if row.answer.code:
             codes[row.answer.code] += 1
         for text in row.answer.warnings:
-            kind = kind_of_warning(text)
-            if kind in warnings or len(warnings) < MOST:
+            kind = strip_figures(text)
+            if kind in warnings or len(warnings) < MAX_KINDS:
                 first, so_far = warnings.get(kind, (text, 0))
                 warnings[kind] = first, so_far + 1
             else:
-                more += 1
+                other_kinds += 1
         absent.update(
             m.text for m, one in zip(head.measures, row.answer.measures, strict=False) if one.word == "absent"
         )
-    return Noticed(count, codes, warnings, more, absent)
+    return SweepWarnings(count, codes, warnings, other_kinds, absent)
 
 
-def say_noticed(noticed: Noticed, quiet: bool) -> None:
-    """What there is to say beside the rows."""
+def print_warnings_summary(summary: SweepWarnings, quiet: bool) -> None:
+    """Print the failures and warnings."""
     if quiet:
         return
-    for text, count in noticed.warnings.values():
-        say(f"warning: heun: {text} ({_of(count, noticed.rows)})")
-    if noticed.more:
-        say(f"warning: heun: and {noticed.more} warnings of other kinds; the rows have them all")
-    for measure, count in noticed.absent.items():
-        if count == noticed.rows - noticed.failed:
-            say(f"warning: heun: {measure}: no variant has it")
-    if noticed.failed:
-        codes = ", ".join(f"{count} {code}" for code, count in noticed.codes.most_common())
-        say(f"heun: {_of(noticed.failed, noticed.rows)} could not be solved: {codes}")
+    for text, count in summary.warnings.values():
+        print_stderr(f"warning: heun: {text} ({_format_share(count, summary.rows)})")
+    if summary.more:
+        print_stderr(f"warning: heun: and {summary.more} warnings of other kinds; the rows have them all")
+    for measure, count in summary.absent.items():
+        if count == summary.rows - summary.failure_count:
+            print_stderr(f"warning: heun: {measure}: no variant has it")
+    if summary.failure_count:
+        codes = ", ".join(f"{count} {code}" for code, count in summary.codes.most_common())
+        print_stderr(f"heun: {_format_share(summary.failure_count, summary.rows)} could not be solved: {codes}")
 
 
-def _of(count: int, rows: int) -> str:
+def _format_share(count: int, rows: int) -> str:
     return "all variants" if count == rows else f"{count} of {rows} variants"

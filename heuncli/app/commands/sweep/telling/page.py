@@ -1,28 +1,32 @@
-"""The tables of a sweep: its rows, the measures with their extremes and courses, the statistics of what is drawn."""
+"""Make the tables of a sweep: rows, measures with extremes and courses, and statistics of random draws."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.app.commands.sweep.telling.kept_rows import kept
-from heuncli.app.commands.sweep.telling.shown_rows import table_of_rows
-from heuncli.app.commands.sweep.telling.statistics import statistics_of
-from heuncli.app.commands.sweep.telling.statistics_tables import tables_of
-from heuncli.app.commands.sweep.telling.summary import summary
-from heuncli.output.tables.sparkline import letters
+from heuncli.app.commands.sweep.telling.kept_rows import select_rows
+from heuncli.app.commands.sweep.telling.shown_rows import make_row_table
+from heuncli.app.commands.sweep.telling.statistics import iter_statistics
+from heuncli.app.commands.sweep.telling.statistics_tables import make_statistics_tables
+from heuncli.app.commands.sweep.telling.summary import make_summary_table
+from heuncli.output.tables.sparkline import choose_characters
 from heuncli.output.tables.text_table import TextTable
 from heuncli.study.quantities.table_units import Units
 
 
-def tables(
+def make_tables(
     head: SweepHead, rows: Iterable[SweptRow], units: Units, all_of_them: bool, encoding: str | None = None
 ) -> list[TextTable]:
-    """The tables; all_of_them: every row; encoding: of the terminal they go to, None where it is UTF-8."""
-    shown = kept(head, rows, all_of_them)
-    found = list(statistics_of(head, shown.gathered))
+    """Make the tables.
+
+    all_of_them: show every row
+    encoding: of the terminal; None for UTF-8
+    """
+    selection = select_rows(head, rows, all_of_them)
+    statistics = list(iter_statistics(head, selection.columns))
     return [
-        table_of_rows(head, shown, units),
-        summary(head, shown, units, letters(encoding), all_of_them),
-        *tables_of(head, found, units, all_of_them),
+        make_row_table(head, selection, units),
+        make_summary_table(head, selection, units, choose_characters(encoding), all_of_them),
+        *make_statistics_tables(head, statistics, units, all_of_them),
     ]

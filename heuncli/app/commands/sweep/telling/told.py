@@ -1,4 +1,4 @@
-"""A sweep as it is told: tables, CSV, JSON, Parquet, each from rows that come one after the other. Impure: writes."""
+"""Write a sweep as tables, CSV, JSON or Parquet, from rows that are read one after the other. Impure: writes."""
 
 from __future__ import annotations
 
@@ -12,13 +12,19 @@ from heuncli.app.cli.output import emit
 from heuncli.base import files
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.page_width import fit
-from heuncli.output.tables.text_table import WIDTH, TextTable, plain
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_plain
 from heuncli.study.quantities.table_units import Units
 
 
-class Telling(NamedTuple):
-    """How a sweep is told: in which form, where (None: standard output), in which units of tables, all rows or some."""
+class SweepOutput(NamedTuple):
+    """How a sweep is written.
+
+    form: the format
+    output: the file; None for standard output
+    units: display units of tables
+    all: whether tables show every row
+    """
 
     form: str
     output: str | None = None
@@ -26,52 +32,52 @@ class Telling(NamedTuple):
     all: bool = False
 
 
-def require_tellable(how: Telling) -> None:
-    """Say before the work what could not be told after it. Raises UsageError, SpecError."""
-    if how.form != "parquet":
+def require_writable_form(output: SweepOutput) -> None:
+    """Raise an error before the work if the sweep could not be written after it: UsageError, SpecError."""
+    if output.form != "parquet":
         return
-    if how.output in (None, files.STDOUT):
+    if output.output in (None, files.STDOUT):
         raise UsageError(Problem("bad-option", "parquet goes to a file only", hint="name it: -o sweep.parquet"))
     from heuncli.app.commands.sweep.telling.as_parquet import require_parquet
 
     require_parquet()
 
 
-def tell(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> None:
-    """Write the sweep; rows by rising numbers, read once. Raises OutputError."""
-    if how.form == "parquet":
+def write_sweep(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> None:
+    """Write the sweep from rows in ascending order of their numbers, read once. Raises OutputError."""
+    if output.form == "parquet":
         from heuncli.app.cli import alarm
-        from heuncli.app.commands.sweep.telling.as_parquet import parquet_pieces
+        from heuncli.app.commands.sweep.telling.as_parquet import iter_parquet
 
-        assert how.output is not None
+        assert output.output is not None
         alarm.disarm(late=True)
-        files.write(parquet_pieces(head, rows), how.output)
+        files.write(iter_parquet(head, rows), output.output)
     else:
-        emit(pieces(head, rows, how), how.output)
+        emit(iter_pieces(head, rows, output), output.output)
 
 
-def pieces(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> Iterator[str]:
-    """The sweep as text."""
-    if how.form == "csv":
-        from heuncli.app.commands.sweep.telling.as_csv import csv_pieces
+def iter_pieces(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
+    """Yield the sweep as text."""
+    if output.form == "csv":
+        from heuncli.app.commands.sweep.telling.as_csv import iter_csv
 
-        return csv_pieces(head, rows)
-    if how.form == "json":
-        from heuncli.app.commands.sweep.telling.as_json import json_pieces
+        return iter_csv(head, rows)
+    if output.form == "json":
+        from heuncli.app.commands.sweep.telling.as_json import iter_json
 
-        return json_pieces(head, rows)
-    return _page(head, rows, how)
+        return iter_json(head, rows)
+    return _iter_tables(head, rows, output)
 
 
-def _page(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> Iterator[str]:
-    from heuncli.app.commands.sweep.telling.page import tables
+def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
+    from heuncli.app.commands.sweep.telling.page import make_tables
 
-    on_terminal = how.output is None and terminal.present()
-    found = tables(head, rows, how.units, how.all, sys.stdout.encoding if on_terminal else None)
-    texts = terminal.write(found) if on_terminal else [_plain(table) for table in found]
+    on_terminal = output.output is None and terminal.is_terminal()
+    tables_made = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
+    texts = terminal.render_tables(tables_made) if on_terminal else [_render_plain(table) for table in tables_made]
     for number, text in enumerate(texts):
         yield "\n" * (number > 0) + text
 
 
-def _plain(table: TextTable) -> str:
-    return "\n".join(plain(part, WIDTH) for part in fit(table, WIDTH))
+def _render_plain(table: TextTable) -> str:
+    return "\n".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH))
