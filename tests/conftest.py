@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import enter
-from heuncli.base.nearest import reset_effort
+from heuncli.base.spelling import reset_effort
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 from tests.shared.processes import hand_down_signals
@@ -61,7 +61,7 @@ def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
 def pytest_configure() -> None:
     """Processes that tests start take signals as on a terminal, and warnings are errors in them, too."""
     hand_down_signals()
-    alarm.HARD_END = (
+    timeout.HARD_END = (
         600.0  # s: however slow the machine, a time limit of a command does not end the process of the tests
     )
     os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")  # NumPy's; of these users would see the paths

@@ -15,10 +15,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from heuncli.base.available_memory import result_memory
 from heuncli.base.errors import Problem, SpecError, UsageError
-from heuncli.base.memory_left import result_memory
-from heuncli.base.nearest import find_similar
 from heuncli.base.records import replace
+from heuncli.base.spelling import find_similar
 from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.output.snapshots.selection import ReportChoice, parse_choice, select_reports
 from heuncli.results.results_schema import REPORTS
@@ -26,7 +26,7 @@ from heuncli.scene.file_format.load import Overrides, load, load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.source import SourceFile
-from heuncli.study.ask.asked_values import require_choice, require_positive, require_tolerance
+from heuncli.study.ask.option_values import require_choice, require_positive, require_tolerance
 from heuncli.study.ask.study import Study
 from heuncli.study.model.memory_estimate import MemoryBudget
 from heuncli.study.model.options import Options
@@ -34,8 +34,8 @@ from heuncli.study.workflow import solve as solve_study
 
 if TYPE_CHECKING:
     from heuncli.app.python.arguments import ArgumentKind
-    from heuncli.app.python.given import SpecSource
-    from heuncli.app.python.solved import Solved
+    from heuncli.app.python.solved_scene import Solved
+    from heuncli.app.python.spec_arguments import SpecSource
 
 
 def read(
@@ -100,7 +100,7 @@ def solve(
     HeunWarning.
     """
     from heuncli.app.python.arguments import TEXT, check_arguments
-    from heuncli.app.python.given import make_settings, resolve_source
+    from heuncli.app.python.spec_arguments import make_settings, resolve_source
 
     check_arguments(
         ("case", case, TEXT), *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes)
@@ -141,7 +141,7 @@ def solve_cases(
     Raises UsageError if the spec has no load cases.
     """
     from heuncli.app.python.arguments import check_arguments
-    from heuncli.app.python.given import make_settings, resolve_source
+    from heuncli.app.python.spec_arguments import make_settings, resolve_source
 
     check_arguments(*_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes))
     _check_booleans(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
@@ -166,7 +166,7 @@ def validate(spec: SpecSource | None = None, *, text: str | None = None) -> tupl
     Raises SpecError with every problem of the spec, in the order of the lines.
     """
     from heuncli.app.python.arguments import TEXT, check_arguments
-    from heuncli.app.python.given import resolve_source
+    from heuncli.app.python.spec_arguments import resolve_source
 
     check_arguments(("text", text, TEXT))
     name, source = resolve_source(spec, text)
@@ -182,7 +182,7 @@ def _solve_selected(
     instants: float | Sequence[float] | None,
 ) -> Solved:
     """Solve a scene with the options of a Python call, and emit its warnings."""
-    from heuncli.app.python.solved import make_solved
+    from heuncli.app.python.solved_scene import make_solved
 
     default = frozenset(REPORTS) if scene.report is None else frozenset(scene.report)
     what = select_reports(selection, scene, default, by_cause=by_cause)
@@ -215,9 +215,13 @@ def _make_options(
     error_tolerance: float | None, method: str | None, step: float | None, least_norm: bool, reduce: bool, axes: str
 ) -> Options:
     return Options(
-        tolerance=require_tolerance(error_tolerance, ""), method=method, step=require_positive("step", step), least_norm=least_norm, reduce=reduce,
+        tolerance=require_tolerance(error_tolerance, ""),
+        method=method,
+        step=require_positive("step", step),
+        least_norm=least_norm,
+        reduce=reduce,
         axes=require_choice("axes", axes, JOINT_AXES),
-    )  # fmt: skip
+    )
 
 
 def _parse_only(words: str | Iterable[str] | None) -> ReportChoice | None:

@@ -5,8 +5,8 @@ Problems are named tuples: importing dataclasses would take 10 ms, and `heun --v
 
 from __future__ import annotations
 
-from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
 
 MAX_MESSAGE_LENGTH = (
     5000  # characters of a message that are shown: the longest expression, twice, and the text around it
@@ -52,7 +52,10 @@ def shorten_text(text: str) -> str:
     surplus = len(text) - MAX_MESSAGE_LENGTH
     if surplus <= 0:
         return escape(text)
-    return f"{escape(text[: MAX_MESSAGE_LENGTH // 2])} ... ({surplus} characters more) ... {escape(text[-MAX_MESSAGE_LENGTH // 2 :])}"
+    return (
+        f"{escape(text[: MAX_MESSAGE_LENGTH // 2])} ... ({surplus} characters more) ... "
+        f"{escape(text[-MAX_MESSAGE_LENGTH // 2 :])}"
+    )
 
 
 class Finding(ValueError):

@@ -265,25 +265,48 @@ TYPES: dict[str, JointKind] = {
 JOINTS: dict[str, JointKind] = TYPES | {
     kind.name: kind
     for kind in (
-        JointKind("flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), display_name="line"),
-        JointKind("flat plane", PLANE_IN_PLANE, ABOUT_Z, "forward", axis_key="normal", motions=("sliding",),
-             display_name="plane"),
-        JointKind("flat curve", CURVE_IN_PLANE, ABOUT_Z, "forward", coordinates=("travel",), motions=("sliding",),
-             display_name="curve"),
-        JointKind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), weaker_planar_kinds=("flat line",), display_name="pin"),
+        JointKind(
+            "flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), display_name="line"
+        ),
+        JointKind(
+            "flat plane",
+            PLANE_IN_PLANE,
+            ABOUT_Z,
+            "forward",
+            axis_key="normal",
+            motions=("sliding",),
+            display_name="plane",
+        ),
+        JointKind(
+            "flat curve",
+            CURVE_IN_PLANE,
+            ABOUT_Z,
+            "forward",
+            coordinates=("travel",),
+            motions=("sliding",),
+            display_name="curve",
+        ),
+        JointKind(
+            "spun pin", POINT, ABOUT_AXIS, motions=("turning",), weaker_planar_kinds=("flat line",), display_name="pin"
+        ),
     )
-}  # fmt: skip
+}
 # with what they all are where a scene is solved in its plane (multibody/reduction/plane/step.py)
 FLAT: dict[tuple[str, bool], JointKind] = {
     (kind.name, along): kind._replace(
-        name=f"{kind.name} {'along' if along else 'across'} the normal", hold=held[kind.hold], turn=turns[kind.turn],
+        name=f"{kind.name} {'along' if along else 'across'} the normal",
+        hold=held[kind.hold],
+        turn=turns[kind.turn],
         coordinates=tuple(x for x in kind.coordinates if kind.follows_path or x == ("angle" if along else "travel")),
         display_name=kind.display_name or kind.name,
     )
     for kind in JOINTS.values()
-    for along, held, turns in ((True, HOLDS_AXIS_NORMAL, TURNS_AXIS_NORMAL), (False, HOLDS_AXIS_IN_PLANE, TURNS_AXIS_IN_PLANE))
+    for along, held, turns in (
+        (True, HOLDS_AXIS_NORMAL, TURNS_AXIS_NORMAL),
+        (False, HOLDS_AXIS_IN_PLANE, TURNS_AXIS_IN_PLANE),
+    )
     if kind.hold in held and kind.turn in turns
-}  # fmt: skip
+}
 JOINTS |= {kind.name: kind for kind in FLAT.values()}
 LENGTHS = frozenset(("travel", "length", "dx", "dy", "dz"))  # of the coordinates; all others are angles
 RATES = {"angle": "rate", "travel": "speed"}  # of the coordinates

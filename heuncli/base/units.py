@@ -12,7 +12,7 @@ from functools import lru_cache
 from math import pi
 
 from heuncli.base.errors import Finding
-from heuncli.base.nearest import find_similar
+from heuncli.base.spelling import find_similar
 
 Dimension = tuple[int, int, int]
 

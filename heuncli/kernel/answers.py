@@ -9,13 +9,13 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, scale_vector
-    from heuncli.kernel.chosen import choose_rows_again
     from heuncli.kernel.closures import apply_multipliers, measure_rows, row_acceleration, size_of_row_acceleration
     from heuncli.kernel.columns import largest_relative_residual, measure_row_responses, solve_causes, write_vector
     from heuncli.kernel.loads import load_potential
     from heuncli.kernel.orthogonal import estimate_multiplier_doubt
     from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate, must_choose_rows, project_state
+    from heuncli.kernel.row_choice import choose_rows_again
     from heuncli.kernel.scene import (
         APART,
         CARRIES,

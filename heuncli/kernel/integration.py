@@ -13,14 +13,14 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.chosen import choice_width
+    from heuncli.kernel.contact_rounding import clear_accelerations
     from heuncli.kernel.dense import clip_time, evaluate_polynomial
     from heuncli.kernel.events import MAX_PEAK_PARTS, hold_branches, reset_watches
     from heuncli.kernel.following import is_linear, prepare_step
-    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate
+    from heuncli.kernel.row_choice import choice_width
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Collocation, Course, Method, Newton, Orbits, Run

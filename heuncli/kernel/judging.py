@@ -18,8 +18,8 @@ if not cython.compiled:
 
     from heuncli.kernel.attitudes import scale_chart_errors
     from heuncli.kernel.collocation import estimate_error, refine_error
+    from heuncli.kernel.contact_rounding import remove_contact_rounding
     from heuncli.kernel.dense import combine_stages
-    from heuncli.kernel.held import remove_contact_rounding
     from heuncli.kernel.scene import Group, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Method, Run

@@ -15,6 +15,7 @@ except ImportError:
 if not cython.compiled:
     from math import fabs
 
+    from heuncli.kernel.contact_rounding import clear_accelerations
     from heuncli.kernel.contacts import (
         begin_margin_extremes,
         find_contact_event,
@@ -44,7 +45,6 @@ if not cython.compiled:
         relative_jump,
         reset_extremes,
     )
-    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.points import evaluate_variables
     from heuncli.kernel.response import evaluate
     from heuncli.kernel.scene import Scene

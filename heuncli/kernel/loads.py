@@ -136,7 +136,7 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
     against the direction of the motion; in a thread the force that goes with its moment is added. Returns the power of
     what has no potential, without joint friction that depends on the joint's own load: that is found here for 1 N, and
-    not applied to any body (pressing.py).
+    not applied to any body (joint_friction.py).
     """
     axis: Vec3 = world_direction(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION

@@ -25,9 +25,7 @@ if not cython.compiled:
         measure_row,
         required_acceleration,
     )
-    from heuncli.kernel.loads import apply_loads
-    from heuncli.kernel.orthogonal import factor_closures, solve_closures
-    from heuncli.kernel.pressing import (
+    from heuncli.kernel.joint_friction import (
         apply_friction,
         apply_unit_friction,
         find_normal_forces,
@@ -35,6 +33,8 @@ if not cython.compiled:
         restore_applied_loads,
         store_applied_loads,
     )
+    from heuncli.kernel.loads import apply_loads
+    from heuncli.kernel.orthogonal import factor_closures, solve_closures
     from heuncli.kernel.scene import APART, ArtificialInertia, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import (

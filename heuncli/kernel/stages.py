@@ -11,8 +11,8 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.contact_rounding import clear_accelerations
     from heuncli.kernel.dense import clip_time, combine_stages, evaluate_stage
-    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.landing import record_stage
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.shadow import cython

@@ -22,8 +22,8 @@ if not cython.compiled:
         leave_chart,
         measure_turns_left,
     )
-    from heuncli.kernel.chosen import choose_rows_again, restore_choice, save_choice
     from heuncli.kernel.collocation import collocate, collocate_to
+    from heuncli.kernel.contact_rounding import clear_accelerations
     from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, find_reopened_contact, start_contacts
     from heuncli.kernel.dense import (
         CONTACT_EVENT,
@@ -40,7 +40,6 @@ if not cython.compiled:
     from heuncli.kernel.evaluator import evaluate_program
     from heuncli.kernel.events import follow_angles, hold_branches
     from heuncli.kernel.following import follow_drives, is_determined, prepare_step, project_sample
-    from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.judging import (
         ACCEPTED,
         AGAIN,
@@ -71,6 +70,7 @@ if not cython.compiled:
         project_evaluated_state,
         project_state,
     )
+    from heuncli.kernel.row_choice import choose_rows_again, restore_choice, save_choice
     from heuncli.kernel.scene import Body, Group, Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython

@@ -49,9 +49,9 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_closures import add_closure_tangents
+    from heuncli.kernel.tangent_friction import add_friction_tangent, find_joint_load_tangents
     from heuncli.kernel.tangent_loads import add_load_tangents
     from heuncli.kernel.tangent_motion import differentiate_motion, omega_tangent, vector_tangent
-    from heuncli.kernel.tangent_pressing import add_friction_tangent, find_joint_load_tangents
     from heuncli.kernel.tangent_strains import set_variable_slopes
     from heuncli.kernel.tangent_tracks import track_speed_tangent
     from heuncli.kernel.tree import balance_joints, project_on_freedom, push_artificial_load, sweep_down

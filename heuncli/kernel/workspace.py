@@ -22,6 +22,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
+    from heuncli.kernel.allocation import allocate_work, copy_tables, set_numbers
     from heuncli.kernel.answers import (
         find_joint_loads,
         recover_states,
@@ -29,7 +30,6 @@ if not cython.compiled:
         write_jacobian,
         write_measured_state,
     )
-    from heuncli.kernel.chosen import choose_rows_again, set_row_threshold
     from heuncli.kernel.closures import measure_rows
     from heuncli.kernel.columns import measure_row_responses, solve_column, solve_impulse
     from heuncli.kernel.expressions import Expressions
@@ -37,7 +37,7 @@ if not cython.compiled:
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.programs import FREE, HELD, TAKEN
     from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
-    from heuncli.kernel.room import allocate_work, copy_tables, set_numbers
+    from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
     from heuncli.kernel.scene import Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython

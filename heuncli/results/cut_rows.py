@@ -16,9 +16,9 @@ from heuncli.base import tolerances
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.path_words import INDEX_WORD, POSITION_WORD
 from heuncli.results.results import Array, Indices
 from heuncli.results.results_schema import parse_index
-from heuncli.results.run_places import INDEX_WORD, POSITION_WORD
 
 SIDES = ("before", "beyond")
 ACCEPTED = "a place is @0.28 (metres), @280mm, @start or @end, a cut its number from 0; either with :before or :beyond"

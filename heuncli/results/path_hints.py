@@ -10,9 +10,9 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice, product
 
-from heuncli.base.nearest import find_similar, spend_effort
+from heuncli.base.spelling import find_similar, spend_effort
+from heuncli.results.path_words import join_path, split_path
 from heuncli.results.results_schema import AFTER_THE_RUN, IMPULSES, NAMES, ROWS, XYZ
-from heuncli.results.run_places import join_path, split_path
 
 COMMON = ("joints", "coordinates", "sections", "bodies", "points", "forces")  # tried first
 ALIASES = {  # what other programs and textbooks call quantities, by what they are here, the likeliest first

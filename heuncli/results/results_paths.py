@@ -13,8 +13,9 @@ import numpy as np
 
 from heuncli.base.errors import Finding, Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import find_similar, reset_effort
+from heuncli.base.spelling import find_similar, reset_effort
 from heuncli.results.cut_rows import find_cut_row
+from heuncli.results.path_words import NO_RUN, find_position_word, is_cut_word, join_path, split_path
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import (
     CUT,
@@ -30,7 +31,6 @@ from heuncli.results.results_schema import (
     is_no_number,
     split_leading_key,
 )  # fmt: skip
-from heuncli.results.run_places import NO_RUN, find_position_word, is_cut_word, join_path, split_path
 
 MAX_NAMES = 12  # of the known names an error lists
 

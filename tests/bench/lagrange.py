@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.commands.lagrange.options import parse_range
 from heuncli.scene.file_format.load import load

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.analyses.load_cases.gathered import assemble_load_cases
+from heuncli.analyses.load_cases.assembly import assemble_load_cases
 from heuncli.output.fe_decks.naming import DeckNames
 from heuncli.output.fe_decks.registry import DECKS
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.asked_instants import parse
+from heuncli.study.ask.at_option import parse
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.app.commands.reporting.cases import solve_report_cases
-from heuncli.app.commands.reporting.request import ReportRequest
+from heuncli.app.commands.report.cases import solve_report_cases
+from heuncli.app.commands.report.request import ReportRequest
 from heuncli.output.client_report.as_html import render_html
 from heuncli.output.client_report.as_markdown import render_markdown
 from heuncli.output.client_report.contents import make_report

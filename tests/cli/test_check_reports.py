@@ -10,7 +10,7 @@ import pytest
 import xmlschema
 from junitparser import Error, Failure, JUnitXml, Skipped
 
-from heuncli.app.commands.check.checked import CheckResult
+from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.app.commands.check.junit import render_junit
 from heuncli.base.errors import Problem
 from heuncli.output.snapshots.outcomes import Outcome

@@ -20,7 +20,7 @@ import pytest
 import yaml
 
 import heuncli
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.base import files
 from heuncli.base.errors import LimitError
 from heuncli.motion.integration import evaluator
@@ -43,7 +43,7 @@ pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no tim
 
 
 def test_modules_at_work_that_a_limit_names_are_there() -> None:
-    assert all(importlib.util.find_spec(prefix) for prefix, _ in alarm.PHASES)
+    assert all(importlib.util.find_spec(prefix) for prefix, _ in timeout.PHASES)
 
 
 def as_own(function: FunctionType) -> FunctionType:
@@ -63,7 +63,7 @@ def forever(*_: Any, **__: Any) -> Any:
 @as_own
 def rung(*_: Any, **__: Any) -> Any:
     """What takes too long, and where the alarm rings at once, however far the limit is."""
-    signal.setitimer(signal.ITIMER_REAL, 0.001, alarm.ALARM_INTERVAL)
+    signal.setitimer(signal.ITIMER_REAL, 0.001, timeout.ALARM_INTERVAL)
     forever()
 
 
@@ -105,7 +105,7 @@ def foreign(*_: Any, **__: Any) -> Any:
         ),
         ("heuncli.app.commands.run.scene._report", "run swinging.yaml", "before the work was done"),
         (
-            "heuncli.analyses.probing.study.growing",
+            "heuncli.analyses.motion_diagnostics.study.growing",
             "probe swinging.yaml",
             "while the neighbourhood of the motion was looked at",
         ),
@@ -143,7 +143,7 @@ def test_an_alarm_that_an_object_swallows_on_its_way_out_says_nothing(capsys: py
         forever()
 
     with pytest.raises(LimitError, match="was reached"):
-        alarm.run_with_limit(work, 0.05, grace=0.0)
+        timeout.run_with_limit(work, 0.05, grace=0.0)
     assert capsys.readouterr().err == ""
 
 
@@ -164,7 +164,7 @@ def test_the_alarm_rings_in_heuns_own_code_alone() -> None:
         finished.append("work")
 
     with pytest.raises(LimitError, match="was reached"):
-        alarm.run_with_limit(work, 0.05, grace=0.0)
+        timeout.run_with_limit(work, 0.05, grace=0.0)
     assert finished == ["library"]
 
 
@@ -177,11 +177,11 @@ def test_what_is_cleared_away_behind_an_alarm_is_not_interrupted() -> None:
         try:
             forever()
         finally:
-            time.sleep(3.0 * alarm.EXCEPTION_INTERVAL)
+            time.sleep(3.0 * timeout.EXCEPTION_INTERVAL)
             cleared.append("all")
 
     with pytest.raises(LimitError, match="was reached"):
-        alarm.run_with_limit(work, 0.05, grace=0.0)
+        timeout.run_with_limit(work, 0.05, grace=0.0)
     assert cleared == ["all"]
 
 
@@ -194,7 +194,7 @@ def test_an_exception_that_a_library_makes_of_the_alarm_is_the_limit() -> None:
             raise RuntimeError(f"a validator could not be built: {error}") from None
 
     with pytest.raises(LimitError, match=r"the time limit of 0\.05 s was reached"):
-        alarm.run_with_limit(work, 0.05, grace=0.0)
+        timeout.run_with_limit(work, 0.05, grace=0.0)
 
 
 def ended_hard(folder: Path, work: Callable[[], object]) -> tuple[int, str]:
@@ -202,8 +202,8 @@ def ended_hard(folder: Path, work: Callable[[], object]) -> tuple[int, str]:
     child = os.fork()
     if child == 0:
         os.dup2(os.open(folder / "err", os.O_WRONLY | os.O_CREAT), 2)
-        alarm.HARD_END = 0.2
-        alarm.run_with_limit(work, 0.05, grace=0.0)
+        timeout.HARD_END = 0.2
+        timeout.run_with_limit(work, 0.05, grace=0.0)
         os._exit(0)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), (folder / "err").read_text()
 
@@ -218,7 +218,7 @@ def test_work_that_does_not_stop_ends_the_process(folder: Path, forking: bool) -
         foreign()
 
     def work() -> None:
-        with alarm.pause_watch() if forking else contextlib.nullcontext():
+        with timeout.pause_watch() if forking else contextlib.nullcontext():
             files.write(written(), str(folder / "out.json"))
 
     code, err = ended_hard(folder, work)
@@ -244,7 +244,7 @@ def test_of_several_specs_only_the_one_that_does_not_stop_is_lost(
 ) -> None:
     (folder / "rest.yaml").write_text(REST)
     monkeypatch.setattr("heuncli.loads.equilibrium.search.slopes", foreign)
-    monkeypatch.setattr(alarm, "HARD_END", 0.2)
+    monkeypatch.setattr(timeout, "HARD_END", 0.2)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "0.5")
     assert done.returncode == 4
     assert "1 passed, 0 failed, 1 spec not solved" in done.stdout

@@ -10,8 +10,8 @@ from typing import get_args
 
 import pytest
 
-from heuncli.analyses.variants.asking import Word
-from heuncli.analyses.variants.once import REASONS
+from heuncli.analyses.variants.cached_evaluator import REASONS
+from heuncli.analyses.variants.evaluation import Word
 from tests.shared.command import Heun
 from tests.shared.variant_scenes import CANTILEVER, PENDULUM, ROOT, TENSION, TWO_BARS
 

@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.app.cli.entry import enter
 from heuncli.app.cli.output import encode_text
-from heuncli.base.foreign_text import escape, escape_all
+from heuncli.base.text_safety import escape, escape_all
 from heuncli.base.wrapping import wrap_text
 from tests.shared.command import HANGING, Heun
 

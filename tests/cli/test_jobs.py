@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult
+from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult
 from heuncli.app.cli import jobs
 from heuncli.app.commands.check import command
 from heuncli.base.errors import LimitError

@@ -15,14 +15,14 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import Recipe, VariantEvaluator, VariantResult
 from heuncli.analyses.variants.axes import parse_axis_values
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, VariantResult
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.commands.sweep.cluster import flow as cluster
-from heuncli.app.commands.sweep.cluster import lots as cluster_lots
-from heuncli.app.commands.sweep.cluster.door import ClusterGone
-from heuncli.app.commands.sweep.cluster.flow import WORKER_DIED, solve_variants
+from heuncli.app.commands.sweep.cluster import batches as cluster_lots
+from heuncli.app.commands.sweep.cluster import scheduler as cluster
+from heuncli.app.commands.sweep.cluster.connection import ClusterGone
+from heuncli.app.commands.sweep.cluster.scheduler import WORKER_DIED, solve_variants
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
@@ -113,7 +113,7 @@ def test_rows_are_those_of_a_local_sweep(heun: Heun, dask: DaskCluster, folder: 
 def test_a_worker_that_is_killed_costs_nothing(
     dask: DaskCluster, recipe: Recipe, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("heuncli.app.commands.sweep.cluster.members.SECONDS", 0.2)
+    monkeypatch.setattr("heuncli.app.commands.sweep.cluster.workers.SECONDS", 0.2)
     monkeypatch.setattr(cluster_lots, "SECONDS", 0.2)
     dask.with_workers(2)
     answers: dict[int, VariantResult] = {}
@@ -184,7 +184,7 @@ def test_a_variant_that_ends_its_workers_is_found_out(
         monkeypatch.setattr(module, "WORKERS", 1)  # of more that are lost: tests of the lots
     ending = (
         "import os\n"
-        "from heuncli.app.commands.sweep.cluster import worker as cluster_worker\n"
+        "from ? import worker as cluster_worker\n"
         "def answer_of(asker, values, plain=cluster_worker.answer_of):\n"
         "    os._exit(9) if values['m'] == '5' else None\n"
         "    return plain(asker, values)\n"

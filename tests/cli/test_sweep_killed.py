@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import pytest
 
-from heuncli.analyses.variants.asking import VariantEvaluator
+from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.app.commands.sweep import workers
 from tests.shared.command import Heun
 from tests.shared.sweeps import (

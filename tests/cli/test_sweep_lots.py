@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.asking import Recipe, VariantEvaluator
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.app.commands.sweep.cluster import worker as cluster_worker
-from heuncli.app.commands.sweep.cluster.lots import (
+from heuncli.app.commands.sweep.cluster.batches import (
     DEPTH,
     FIRST_SIZE,
     GROWTH,

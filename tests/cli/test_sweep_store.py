@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.sweep_store.store.store import Store
-from heuncli.analyses.variants.asking import MeasureValue, VariantEvaluator, VariantResult
+from heuncli.analyses.sweep_store.store import Store
+from heuncli.analyses.variants.evaluation import MeasureValue, VariantEvaluator, VariantResult
 from heuncli.base.errors import OutputError
 from tests.shared import triangles
 from tests.shared.command import HANGING, Done, Heun

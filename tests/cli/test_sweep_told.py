@@ -18,13 +18,13 @@ import pyarrow.parquet as pq
 import pytest
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure, SweptRow
-from heuncli.analyses.variants.asking import MeasureValue, VariantResult
 from heuncli.analyses.variants.axes import ParameterAxis, RandomVariable, parse_axis_values
 from heuncli.analyses.variants.draws import make_draws
+from heuncli.analyses.variants.evaluation import MeasureValue, VariantResult
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
-from heuncli.app.commands.sweep.telling import as_parquet, told
-from heuncli.app.commands.sweep.telling.page import make_tables
-from heuncli.app.commands.sweep.telling.told import SweepOutput
+from heuncli.app.commands.sweep.output import as_parquet, writer
+from heuncli.app.commands.sweep.output.page import make_tables
+from heuncli.app.commands.sweep.output.writer import SweepOutput
 from heuncli.output.tables.text_table import format_plain
 from heuncli.study.quantities.table_units import Units, parse_units
 from tests.shared.command import Heun
@@ -254,14 +254,14 @@ def test_words_stand_for_what_is_not_known() -> None:
     assert [line.split()[1] for line in lines[2:5]] == ["open", "?", "?"]
     assert lines[5].split() == ["4", "does-not-fit:", "joint", "C", "cannot", "be", "closed"]
     assert any(line.startswith(("  open: ", "open: ")) for line in lines)
-    text = "".join(told.iter_pieces(head_of(plan, "N"), rows, SweepOutput("csv")))
+    text = "".join(writer.iter_pieces(head_of(plan, "N"), rows, SweepOutput("csv")))
     reasons = [row["reason"] for row in csv.DictReader(io.StringIO(text))]
     assert reasons[0].startswith("m0 [N]: open") and "horizon" in reasons[1] and "singular" in reasons[2]
 
 
 def test_a_parameter_that_is_called_as_a_column_is_told_apart() -> None:
     plan = make_axes_plan([axis("number=1,2kg")])
-    text = "".join(told.iter_pieces(head_of(plan, "N"), rows_of(plan, [1.0, 2.0]), SweepOutput("csv")))
+    text = "".join(writer.iter_pieces(head_of(plan, "N"), rows_of(plan, [1.0, 2.0]), SweepOutput("csv")))
     assert text.splitlines()[0].startswith("number,number (parameter) [kg],m0 [N],")
 
 
@@ -296,11 +296,11 @@ def test_memory_does_not_grow_with_the_rows(
 
     monkeypatch.setattr(as_parquet, "GROUP", 1000)
     how = SweepOutput(form, str(tmp_path / f"out.{form}"))
-    told.write_sweep(head_of(plan, "N"), rows(1), how)  # what is loaded for it
+    writer.write_sweep(head_of(plan, "N"), rows(1), how)  # what is loaded for it
     peaks = []
     for count in (fewer, more):
         tracemalloc.start()
-        told.write_sweep(head_of(plan, "N"), rows(count), how)
+        writer.write_sweep(head_of(plan, "N"), rows(count), how)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.01 * peaks[0] + 20_000, peaks
@@ -314,7 +314,7 @@ def test_statistics_take_floats_alone(tmp_path: Path) -> None:
     answer = VariantResult((MeasureValue(1.5, 1e-9, 0.25),))
     rows = (SweptRow(k, plan.find_values(k), answer) for k in range(20_000))
     tracemalloc.start()
-    told.write_sweep(head_of(plan, "N"), rows, SweepOutput("json", str(tmp_path / "out.json")))
+    writer.write_sweep(head_of(plan, "N"), rows, SweepOutput("json", str(tmp_path / "out.json")))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 20_000 * 150, peak
@@ -342,7 +342,7 @@ def test_parquet_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
 
     (tmp_path / "out.parquet").write_text("old")
     with pytest.raises(KeyboardInterrupt):
-        told.write_sweep(head_of(plan, "N"), rows(), SweepOutput("parquet", str(tmp_path / "out.parquet")))
+        writer.write_sweep(head_of(plan, "N"), rows(), SweepOutput("parquet", str(tmp_path / "out.parquet")))
     assert [path.name for path in tmp_path.iterdir()] == ["out.parquet"]
     assert (tmp_path / "out.parquet").read_text() == "old"
 
@@ -351,11 +351,11 @@ def test_parquet_has_row_groups(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(as_parquet, "GROUP", 2)
     plan = make_axes_plan([axis("n=1:5/5")])
     path = tmp_path / "out.parquet"
-    told.write_sweep(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, None, 4.0, 5.0]), SweepOutput("parquet", str(path)))
+    writer.write_sweep(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, None, 4.0, 5.0]), SweepOutput("parquet", str(path)))
     assert pq.ParquetFile(path).num_row_groups == 3
     assert pq.read_table(path).column("m0 [N]").to_pylist() == [1.0, 2.0, None, 4.0, 5.0]
     empty = tmp_path / "none.parquet"
-    told.write_sweep(head_of(plan, "N"), [], SweepOutput("parquet", str(empty)))
+    writer.write_sweep(head_of(plan, "N"), [], SweepOutput("parquet", str(empty)))
     assert pq.read_table(empty).num_rows == 0 and importlib.util.find_spec("pyarrow") is not None
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.analyses.balancing.asked import BalanceOptions, FlywheelRequest, WeightRequest
+from heuncli.analyses.balancing.options import BalanceOptions, FlywheelRequest, WeightRequest
 from heuncli.analyses.balancing.results import Flywheel
 from heuncli.analyses.balancing.study import balance
 from heuncli.base.errors import SolveError

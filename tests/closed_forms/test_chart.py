@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.analyses.charting import runs as chart_runs
-from heuncli.analyses.charting.motion import make_motion
-from heuncli.analyses.charting.plan import ChartOptions
-from heuncli.analyses.charting.reference import find_reference
-from heuncli.analyses.charting.results import ChartResults, ChartRow, ChartRun
-from heuncli.analyses.charting.runs import ChartRunner
-from heuncli.analyses.charting.study import chart
+from heuncli.analyses.work_precision import runs as chart_runs
+from heuncli.analyses.work_precision.motion import make_motion
+from heuncli.analyses.work_precision.plan import ChartOptions
+from heuncli.analyses.work_precision.reference import find_reference
+from heuncli.analyses.work_precision.results import ChartResults, ChartRow, ChartRun
+from heuncli.analyses.work_precision.runs import ChartRunner
+from heuncli.analyses.work_precision.study import chart
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.run.request import MotionTask

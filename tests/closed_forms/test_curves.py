@@ -14,9 +14,9 @@ import pytest
 
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.results.results import Array
-from heuncli.scene.expressions.beside import find_max_curvature
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.paths import find_cusp, make_path, make_roller_path
+from heuncli.scene.expressions.roller_path import find_max_curvature
 from tests.shared.cams import table
 from tests.shared.scenes import near, solved
 

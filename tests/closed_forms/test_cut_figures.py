@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
+from heuncli.scene.shapes.composite_solid import CompositeSolid, make_composite_solid
 from tests.shared.solids import SOLIDS, axis_of, beyond, difference, planes, unit
 
 X, Y, Z = np.eye(3)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.analyses.lagrange.results import InertiaCurve
 from heuncli.app.commands.lagrange.options import parse_range
 from heuncli.base.errors import SolveError

@@ -14,7 +14,7 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Shape, Vec
 from heuncli.scene.meshes.reading import read_closed_mesh
-from heuncli.scene.shapes.forms import make_composite_solid
+from heuncli.scene.shapes.composite_solid import make_composite_solid
 from heuncli.study.workflow import solve
 from tests.shared import triangles as t
 

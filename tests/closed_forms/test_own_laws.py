@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError, SpecError
-from heuncli.scene.expressions import composed
+from heuncli.scene.expressions import composition
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from tests.shared.scenes import near, solved
 
@@ -186,8 +186,8 @@ def test_a_coordinate_told_otherwise(text: str) -> None:
     scope = Scope(joints={"own": "pin", "j": "pin"}, tables=tables, in_time=True)
     f = compile_expression(text, scope)
     g = compile_expression("3 + j.angle*abs(t - 1)", scope)
-    scaled = composed.scale_coordinate(f, ("own", "rate"), 2.5)
-    limited = composed.limit_magnitude(composed.multiply_expressions(g, scaled), 7.0)
+    scaled = composition.scale_coordinate(f, ("own", "rate"), 2.5)
+    limited = composition.limit_magnitude(composition.multiply_expressions(g, scaled), 7.0)
     for t in (0.5, 1.5):
         for rate in (-1.3, 0.3, 2.0, 5.0):
             for angle in (-2.0, 0.7, 1.4):
@@ -198,7 +198,9 @@ def test_a_coordinate_told_otherwise(text: str) -> None:
                 whole = (3 + angle * abs(t - 1)) * wanted
                 found = limited.value(t, [own[use] for use in limited.uses])
                 assert found == pytest.approx(min(max(whole, -7.0), 7.0), rel=1e-15)
-    assert composed.multiply_expressions(compile_expression("2", scope), compile_expression("3", scope)).constant == 6.0
+    assert (
+        composition.multiply_expressions(compile_expression("2", scope), compile_expression("3", scope)).constant == 6.0
+    )
 
 
 PULSE = """

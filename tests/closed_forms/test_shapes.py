@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.shapes.forms import make_composite_solid
+from heuncli.scene.shapes.composite_solid import make_composite_solid
 from heuncli.scene.shapes.inertia import split_pseudo_inertia
 from tests.shared.solids import SOLIDS, beyond, difference, moved, rotation
 

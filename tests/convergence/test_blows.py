@@ -208,8 +208,9 @@ def test_the_highest_just_after_a_blow() -> None:
     after = run.resample(np.array([0.0317])).coordinates["shaft"]["rate"][0]
     assert found["value"] == pytest.approx(after, rel=1e-12) and found["at"] == pytest.approx(0.0317, abs=1e-12)
     near(block["bodies"]["w"]["angular_velocity_jump"][2], 5 * 0.5 / J, 10.0, 1e-12)
-    assert float(measure.format_measures([measure.parse_measure("impulses.0.energy_jump")], run, "table")) == pytest.approx(
-        float(block["energy_jump"]), rel=1e-14)  # fmt: skip
+    assert float(
+        measure.format_measures([measure.parse_measure("impulses.0.energy_jump")], run, "table")
+    ) == pytest.approx(float(block["energy_jump"]), rel=1e-14)
 
 
 # ---- chaos

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.load_cases.gathered import BALANCE_TOLERANCE
+from heuncli.analyses.load_cases.assembly import BALANCE_TOLERANCE
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_units
 from heuncli.results.results import Array

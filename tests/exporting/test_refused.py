@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.analyses.load_cases.gathered import require_balance
+from heuncli.analyses.load_cases.assembly import require_balance
 from heuncli.analyses.load_cases.solid_mesh import read_mesh
 from heuncli.analyses.load_cases.unit_systems import SI, parse_units
 from heuncli.base.errors import Finding, SolveError

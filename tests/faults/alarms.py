@@ -23,7 +23,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import enter
 from heuncli.base import signals
 from tests.shared.folders import SPECS
@@ -156,13 +156,13 @@ def _become(name: str, folder: Path, at: float | None, work: Callable[[], int]) 
         own = os.getpid()
 
         def timer(seconds: float) -> Callable[[], None]:
-            """As alarm._timer, by the time of the processor; in processes forked from this one from their beginning."""
+            """As timeout._timer, by processor time; in processes forked from this one from their beginning."""
             if at is None:
                 return lambda: None
             used = resource.getrusage(resource.RUSAGE_SELF)
             left = at - (used.ru_utime + used.ru_stime) if os.getpid() == own else at / 4.0
-            signal.signal(signal.SIGPROF, alarm._handle_alarm)
-            signal.setitimer(signal.ITIMER_PROF, max(left, 1e-6), alarm.ALARM_INTERVAL)
+            signal.signal(signal.SIGPROF, timeout._handle_alarm)
+            signal.setitimer(signal.ITIMER_PROF, max(left, 1e-6), timeout.ALARM_INTERVAL)
             told, sys.unraisablehook = sys.unraisablehook, hush
 
             def undo() -> None:
@@ -174,10 +174,10 @@ def _become(name: str, folder: Path, at: float | None, work: Callable[[], int]) 
         told = sys.unraisablehook
 
         def hush(what: sys.UnraisableHookArgs) -> None:
-            if not isinstance(what.exc_value, alarm.TimeUp):
+            if not isinstance(what.exc_value, timeout.TimeUp):
                 told(what)
 
-        alarm._start_timer = timer
+        timeout._start_timer = timer
         signals.install_handlers()
         code = work()
         sys.stdout.flush()

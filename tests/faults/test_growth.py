@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.base.announcements import current_listener, progress_listener
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
+from heuncli.base.progress_messages import current_listener, progress_listener
 from heuncli.base.tolerances import MOST_STEPS
 from heuncli.motion.integration.run import slow_runs
 from heuncli.motion.integration.run.pace import FIRST_LOOK, project_steps

@@ -15,10 +15,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.linalg import expm
 
-from heuncli.analyses.charting.motion import make_motion
-from heuncli.analyses.charting.plan import ChartOptions
-from heuncli.analyses.charting.results import ChartRun
-from heuncli.analyses.charting.study import chart
+from heuncli.analyses.work_precision.motion import make_motion
+from heuncli.analyses.work_precision.plan import ChartOptions
+from heuncli.analyses.work_precision.results import ChartRun
+from heuncli.analyses.work_precision.study import chart
 from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.scene.file_format.load import load

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.output.snapshots.changes import find_changes
-from heuncli.output.snapshots.keep import take_run_snapshot
-from heuncli.output.snapshots.kept import RunSnapshot
+from heuncli.output.snapshots.golden_file import RunSnapshot
+from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

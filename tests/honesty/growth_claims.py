@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from heuncli.analyses.probing.results import GrowthResults
-from heuncli.analyses.probing.study import probe
+from heuncli.analyses.motion_diagnostics.results import GrowthResults
+from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.shared.hunts import asked_of

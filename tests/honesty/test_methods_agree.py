@@ -15,7 +15,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.base.method_rows import METHODS, MethodRow
 from heuncli.motion.integration.check.distance import MotionPoints
-from heuncli.motion.integration.check.shared_blows import is_between_impulses
+from heuncli.motion.integration.check.matching_impulses import is_between_impulses
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.study.ask.study import Study

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from heuncli.analyses.variants.asking import measure_study
+from heuncli.analyses.variants.evaluation import measure_study
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import measure_value

@@ -8,8 +8,8 @@ import random
 import numpy as np
 import pytest
 
-from heuncli.analyses.probing.results import DEAD_CENTRE, Probe
-from heuncli.analyses.probing.study import probe
+from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, Probe
+from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.shared.chains import chain

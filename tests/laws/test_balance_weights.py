@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.asked import WeightRequest
+from heuncli.analyses.balancing.options import WeightRequest
 from heuncli.analyses.balancing.results import BalanceResults, CounterweightResult
 from heuncli.base.errors import SolveError
 from heuncli.base.records import replace

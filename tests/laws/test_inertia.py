@@ -8,7 +8,7 @@ import pytest
 from heuncli.base.errors import SpecError
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.turns import symmetric_eigenvalues
+from heuncli.scene.file_format.rotations import symmetric_eigenvalues
 from heuncli.scene.shapes.inertia import pseudo_inertia, split_pseudo_inertia
 from tests.shared.solids import carried, rotation
 

@@ -8,7 +8,7 @@ import pytest
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Matrix, Shape, Vec
 from heuncli.scene.meshes.reading import read_closed_mesh
-from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
+from heuncli.scene.shapes.composite_solid import CompositeSolid, make_composite_solid
 from tests.shared import polyhedra
 from tests.shared import triangles as t
 from tests.shared.solids import beyond, carried, difference, rotation, unit, vec
@@ -156,8 +156,18 @@ def test_a_box_of_triangles_is_a_box() -> None:
 
 @pytest.mark.parametrize("inner", [0.0, 0.3])
 def test_a_cylinder_of_triangles_errs_as_the_square_of_its_facets(inner: float) -> None:
-    exact = make_composite_solid([Shape("cylinder", from_=(0.0, 0.0, 0.0), to=(0.0, 0.0, 1.2), radius=0.5, inner_radius=inner or None,
-                        density=2.0)])  # fmt: skip
+    exact = make_composite_solid(
+        [
+            Shape(
+                "cylinder",
+                from_=(0.0, 0.0, 0.0),
+                to=(0.0, 0.0, 1.2),
+                radius=0.5,
+                inner_radius=inner or None,
+                density=2.0,
+            )
+        ]
+    )
     n, d = unit(np.array([0.7, 0.2, 0.5])), np.array([0.1, 0.3, 0.6])
     errors = []
     for count in (40, 80, 160):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.app.commands.lagrange import course_page
 from heuncli.app.commands.lagrange.options import parse_range
 from heuncli.scene.file_format.load import load

@@ -10,8 +10,8 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.shapes import forms, quadrature
-from heuncli.scene.shapes.forms import make_composite_solid
+from heuncli.scene.shapes import composite_solid, quadrature
+from heuncli.scene.shapes.composite_solid import make_composite_solid
 from tests.oracle.masses import Plane, cloud
 from tests.shared import polyhedra
 from tests.shared.solids import (
@@ -217,10 +217,12 @@ def test_many_planes_are_cut_a_share_at_a_time(name: str, monkeypatch: pytest.Mo
     f, n = make_composite_solid([SOLIDS[name]]), np.array([0.6, 0.0, 0.8])
     d, side = np.linspace(*f.extent(n), 40), np.repeat([-1.0, 0.0, 0.0, 1.0], 10)
     whole, sections = f.piece_inertias(n, d, side), f.cross_sections(n, d, side)
-    monkeypatch.setattr(forms, "MAX_PLANES_AT_ONCE", 7)
+    monkeypatch.setattr(composite_solid, "MAX_PLANES_AT_ONCE", 7)
     asked: list[int] = []
     monkeypatch.setattr(
-        forms.CompositeSolid, "one_sided_sections", counted(forms.CompositeSolid.one_sided_sections, asked)
+        composite_solid.CompositeSolid,
+        "one_sided_sections",
+        counted(composite_solid.CompositeSolid.one_sided_sections, asked),
     )
     assert np.allclose(f.piece_inertias(n, d, side), whole, rtol=1e-14, atol=1e-14)
     again = f.cross_sections(n, d, side)
@@ -232,7 +234,7 @@ def test_many_planes_are_cut_a_share_at_a_time(name: str, monkeypatch: pytest.Mo
 def counted(limits: Any, asked: list[int]) -> Any:
     """The same, with how many planes it is asked for."""
 
-    def of(self: forms.Form, n: Array, d: Array, side: Array) -> Any:
+    def of(self: composite_solid.Form, n: Array, d: Array, side: Array) -> Any:
         asked.append(len(d))
         return limits(self, n, d, side)
 

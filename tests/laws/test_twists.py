@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.probing.numerics.twists import closure_rows, compute_twists, mass_matrix
+from heuncli.analyses.motion_diagnostics.numerics.twists import closure_rows, compute_twists, mass_matrix
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.linearisation.linearise import linearise

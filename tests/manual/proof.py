@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from heuncli.analyses.published.cases import read_case
 from heuncli.analyses.published.files import list_names
-from heuncli.app.commands.check.references_told import format_digits, format_largest_difference, list_kinds
+from heuncli.app.commands.check.references_page import format_digits, format_largest_difference, list_kinds
 from tests.manual.tables import Table
 from tests.shared.manual import README
 from tests.shared.published import compared_case

@@ -22,7 +22,7 @@ from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_sh
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.words import FORCE_WORDS, SHAPE_WORDS
+from heuncli.scene.file_format.foreign_words import FORCE_WORDS, SHAPE_WORDS
 from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from heuncli.base.nearest import list_words, suggest
+from heuncli.base.spelling import list_words, suggest
 from tests.shared.folders import ROOT
 
 

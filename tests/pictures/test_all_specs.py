@@ -12,7 +12,7 @@ from heuncli.app.commands.plot.sources import solve_source
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
-from heuncli.output.drawing.picture import to_svg
+from heuncli.output.drawing.shapes import to_svg
 from heuncli.output.figures.histories import make_history
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.load import load

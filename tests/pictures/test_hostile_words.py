@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from tests.shared.command import HANGING, Heun
 from tests.shared.plotted import SVG
 

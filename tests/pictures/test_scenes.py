@@ -14,7 +14,7 @@ from heuncli.output.drawing.canvas import make_terminal_style
 from heuncli.output.drawing.figure import Figure, PlaceLabel, Polygon, Strokes
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
-from heuncli.output.drawing.picture import Text, to_svg
+from heuncli.output.drawing.shapes import Text, to_svg
 from heuncli.output.drawing.words import HEIGHT_FACTOR, estimate_width
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.scenes import make_assembly_figure, make_scene_figure

@@ -10,10 +10,10 @@ import pytest
 
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, VerticalMark
+from heuncli.output.drawing.label_placement import WordBox
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
-from heuncli.output.drawing.picture import Mark, Text
-from heuncli.output.drawing.room import WordBox
+from heuncli.output.drawing.shapes import Mark, Text
 from heuncli.output.drawing.words import BASE_FACTOR, HEIGHT_FACTOR, SMALL_SIZE, estimate_width
 
 NARROW = WordBox(86.0, 0.0, 794.0, 400.0)

@@ -9,7 +9,7 @@ import math
 
 import pytest
 
-from heuncli.analyses.charting.results import (
+from heuncli.analyses.work_precision.results import (
     KINDS,
     ChartResults,
     ChartRow,
@@ -17,9 +17,9 @@ from heuncli.analyses.charting.results import (
     mark_front,
     round_as_shown,
 )  # fmt: skip
-from heuncli.app.commands.charting import page as report
-from heuncli.app.commands.charting.letters import assign_letters, draw_text_chart
-from heuncli.app.commands.charting.scale import Scale, choose_scales
+from heuncli.app.commands.chart import page as report
+from heuncli.app.commands.chart.scale import Scale, choose_scales
+from heuncli.app.commands.chart.text_chart import assign_letters, draw_text_chart
 from heuncli.base.records import replace
 from heuncli.base.tolerances import LOST
 from heuncli.output.tables.export import dump_json

@@ -8,13 +8,13 @@ from random import Random
 
 import pytest
 
-from heuncli.app.commands.charting.labels import LabelBox, crosses, is_inside, place_labels
-from heuncli.app.commands.charting.picture import assign_levels, draw_figure
+from heuncli.app.commands.chart.figure import assign_levels, draw_figure
+from heuncli.app.commands.chart.label_placement import LabelBox, crosses, is_inside, place_labels
 from heuncli.base.errors import HeunError
-from heuncli.base.foreign_text import escape
 from heuncli.base.records import replace
+from heuncli.base.text_safety import escape
 from heuncli.output.drawing import matplotlib_file
-from heuncli.output.drawing.picture import Line, Mark, Text, VectorDrawing, to_svg
+from heuncli.output.drawing.shapes import Line, Mark, Text, VectorDrawing, to_svg
 from tests.shared.fake_charts import FAILS, TOO_LONG, chart, run
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.base.nearest import reset_effort
+from heuncli.base.spelling import reset_effort
 from heuncli.output.tables.export import to_json
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load

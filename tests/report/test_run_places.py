@@ -12,8 +12,8 @@ from heuncli.base.errors import SpecError
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.export import to_csv
 from heuncli.results.path_hints import iter_readings
+from heuncli.results.path_words import join_path, split_path
 from heuncli.results.results_paths import find_values
-from heuncli.results.run_places import join_path, split_path
 from heuncli.study.quantities.labels import make_labels
 from tests.shared.scenes import near, study
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.reporting.cases import solve_report_cases
-from heuncli.app.commands.reporting.request import ReportRequest
+from heuncli.app.commands.report.cases import solve_report_cases
+from heuncli.app.commands.report.request import ReportRequest
 from heuncli.output.client_report.as_html import render_html
 from heuncli.output.client_report.as_markdown import render_markdown
 from heuncli.output.client_report.contents import make_report
-from heuncli.output.client_report.reported import ReportData
+from heuncli.output.client_report.report_data import ReportData
 from tests.shared.page_reader import OURS, PageReader
 
 FOLDER = Path(__file__).parents[2] / "specs"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from tests.shared.command import TURNED, Heun
 from tests.shared.page_reader import OURS, PageReader
 

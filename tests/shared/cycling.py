@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.balancing.asked import BalanceOptions
+from heuncli.analyses.balancing.options import BalanceOptions
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow
 from heuncli.analyses.balancing.study import balance
 from heuncli.results.results import Array

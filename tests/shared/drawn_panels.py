@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.drawing.layout import lay_out
-from heuncli.output.drawing.picture import to_svg
+from heuncli.output.drawing.shapes import to_svg
 from heuncli.results.results import Array
 from tests.shared.plotted import SVG, PlottedPanel, panels_of
 

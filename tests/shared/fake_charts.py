@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.analyses.charting.results import (
+from heuncli.analyses.work_precision.results import (
     COMPLETED,
     FAILED,
     NOT_RUN,

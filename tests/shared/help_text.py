@@ -7,13 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-from heuncli.app.cli import at_once
+from heuncli.app.cli import fast_path
 
-HELP = Path(at_once.HELP)
+HELP = Path(fast_path.HELP)
 CODE = "import sys; from heuncli.app.cli import app; sys.exit(app.read(['--help']))"
 
 
-def help_of_typer(columns: int = at_once.MIN_HELP_WIDTH) -> str:
+def help_of_typer(columns: int = fast_path.MIN_HELP_WIDTH) -> str:
     """What typer answers to `heun --help` on a terminal of that width."""
     environment = {**os.environ, "COLUMNS": str(columns)}
     return subprocess.run(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from heuncli.scene.file_format.source import parse_source
-from heuncli.scene.importers.described import DescribedBody, DescribedEntry, DescribedMachine
+from heuncli.scene.importers.description import DescribedBody, DescribedEntry, DescribedMachine
 from heuncli.scene.importers.spec_text import format_spec
 from tests.shared.imported import described
 from tests.shared.pinocchio_answers import Asked, LinkMotion

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.load_cases.gathered import assemble_load_cases
+from heuncli.analyses.load_cases.assembly import assemble_load_cases
 from heuncli.analyses.load_cases.model import LoadCases, LoadedBody
 from heuncli.results.results import Array
-from heuncli.study.ask.asked_instants import parse
+from heuncli.study.ask.at_option import parse
 from heuncli.study.ask.study import Study
 
 

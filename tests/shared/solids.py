@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape, Vec
-from heuncli.scene.shapes.forms import CompositeSolid, make_composite_solid
+from heuncli.scene.shapes.composite_solid import CompositeSolid, make_composite_solid
 
 
 def vec(x: Array) -> Vec:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.base.foreign_text import escape
-from heuncli.output.web_page.inlined import assemble_page, to_safe_json
+from heuncli.base.text_safety import escape
+from heuncli.output.web_page.page_assembly import assemble_page, to_safe_json
 from tests.shared.command import TURNED, Heun
 from tests.shared.moving_pages import PageElements, data_of
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.output.web_page import inlined
-from heuncli.output.web_page.inlined import (
+from heuncli.output.web_page import page_assembly
+from heuncli.output.web_page.page_assembly import (
     EXPORT,
     FOLDER,
     IMPORT,
@@ -49,7 +49,7 @@ def test_wheels_carry_all_of_its_files() -> None:
 
 def test_every_script_is_used_once_and_after_what_it_needs() -> None:
     order = sort_scripts()
-    assert sorted(order) == SCRIPTS and order[-1] == inlined.MAIN_SCRIPT
+    assert sorted(order) == SCRIPTS and order[-1] == page_assembly.MAIN_SCRIPT
     for place, name in enumerate(order):
         needed = {found[2] for found in IMPORT.finditer(read_page_file(f"{name}.js"))}
         assert needed <= set(order[:place])

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.base.nearest import reset_effort, suggest
+from heuncli.base.spelling import reset_effort, suggest
 from heuncli.results.path_hints import find_similar_path
 from heuncli.scene.file_format.brackets import QUOTED
 from heuncli.scene.file_format.load import load

@@ -11,7 +11,7 @@ from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.rules.products import shape_mass
-from heuncli.scene.shapes.forms import make_composite_solid
+from heuncli.scene.shapes.composite_solid import make_composite_solid
 from tests.shared.solids import SOLIDS
 
 SCENE = """\

@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from heuncli.analyses.balancing.choice import CyclePlan
-from heuncli.analyses.balancing.followed import FollowedRun
-from heuncli.analyses.balancing.nodes import CycleNodes, EvenNodes, PieceNodes
+from heuncli.analyses.balancing.cycle_nodes import CycleNodes, EvenNodes, PieceNodes
+from heuncli.analyses.balancing.cycle_plan import CyclePlan
+from heuncli.analyses.balancing.followed_run import FollowedRun
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.records import fields, record, replace

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli.analyses.balancing.cycle import Cycle
-from heuncli.analyses.balancing.nodes import CycleNodes
+from heuncli.analyses.balancing.cycle_nodes import CycleNodes
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.kinetostatics.reactions import project_to_plane

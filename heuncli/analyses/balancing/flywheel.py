@@ -17,7 +17,7 @@ from heuncli.analyses.balancing.cycle import Cycle
 from heuncli.analyses.balancing.effects import compute_mass_effects
 from heuncli.analyses.balancing.legendre import legendre_polynomials
 from heuncli.analyses.balancing.load_torque import estimate_power_rounding, sum_load_powers
-from heuncli.analyses.balancing.loaded import CycleNumbers, LoadedScene
+from heuncli.analyses.balancing.loaded_scene import CycleNumbers, LoadedScene
 from heuncli.analyses.balancing.results import Flywheel
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
@@ -223,10 +223,16 @@ def estimate_errors(
     relative_error = energy_error / energy if energy > 0.0 else 0.0
     rate_error = energy_error / (inertia * mean) if inertia > 0.0 else 0.0
     return {
-        "energy": energy_error, "even": work_errors.constant_torque, "own": work_errors.inertia, "present": present * relative_error,
-        "added": inertia * relative_error + work_errors.inertia, "textbook": energy_error / (delta * mean**2) + work_errors.inertia,
-        "start": rate_error, "fastest": rate_error, "slowest": rate_error,
-    }  # fmt: skip
+        "energy": energy_error,
+        "even": work_errors.constant_torque,
+        "own": work_errors.inertia,
+        "present": present * relative_error,
+        "added": inertia * relative_error + work_errors.inertia,
+        "textbook": energy_error / (delta * mean**2) + work_errors.inertia,
+        "start": rate_error,
+        "fastest": rate_error,
+        "slowest": rate_error,
+    }
 
 
 def compute_wheel_numbers(scene: LoadedScene) -> CycleNumbers:
@@ -276,10 +282,17 @@ def make_work_curve(numbers: CycleNumbers, bodies: int) -> tuple[WorkCurve, floa
     )
     is_constant = np.ptp(body_eps, axis=0) <= tolerances.SAME_VALUE * body_eps.max()
     curve = WorkCurve(
-        x, W, interpolated[:, 0], interpolated[:, 1], interpolated[:, 2], finer.weights,
-        nodes.evaluate(work, finer.places)[:, 0], nodes.evaluate(coefficients, finer.places)[:, 1], float(body_eps[0, is_constant].sum()),
+        x,
+        W,
+        interpolated[:, 0],
+        interpolated[:, 1],
+        interpolated[:, 2],
+        finer.weights,
+        nodes.evaluate(work, finer.places)[:, 0],
+        nodes.evaluate(coefficients, finer.places)[:, 1],
+        float(body_eps[0, is_constant].sum()),
         lambda at: (nodes.evaluate(work, at)[:, 0], *nodes.evaluate(coefficients, at).T),
-    )  # fmt: skip
+    )
     return curve, constant_torque, work_errors
 
 

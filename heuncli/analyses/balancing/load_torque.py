@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.balancing.choice import CyclePlan
-from heuncli.analyses.balancing.loaded import CycleNumbers, LoadedScene, make_loaded_scene
+from heuncli.analyses.balancing.cycle_plan import CyclePlan
+from heuncli.analyses.balancing.loaded_scene import CycleNumbers, LoadedScene, make_loaded_scene
+from heuncli.analyses.balancing.order_rows import CycleRotation, magnitudes, make_order_rows
+from heuncli.analyses.balancing.order_selection import MAX_ORDERS, OrderSelection, bound_higher_orders
 from heuncli.analyses.balancing.results import OrderRow
-from heuncli.analyses.balancing.rows import CycleRotation, magnitudes, make_order_rows
-from heuncli.analyses.balancing.wanted import MAX_ORDERS, OrderSelection, bound_higher_orders
 from heuncli.base.errors import SolveError
 from heuncli.base.records import record
 from heuncli.base.tolerances import ORDERS_SETTLED, SUM_ROUNDING
@@ -67,7 +67,8 @@ def compute_load_torque(
     if last_order >= MAX_ORDERS:
         order_bound = bound_higher_orders(nodes, total, last_order)
         notes += (
-            f"orders of the loads beyond {last_order:g} are not listed, each of {order_bound:.2g} N·m at most: --orders",
+            f"orders of the loads beyond {last_order:g} are not listed, each of {order_bound:.2g} N·m "
+            "at most: --orders",
         )
     return LoadTorque(rows, mean, mean_error, notes)
 

@@ -12,15 +12,15 @@ import math
 
 import numpy as np
 
-from heuncli.analyses.balancing.asked import BalanceOptions
 from heuncli.analyses.balancing.cycle import Cycle, scale_to_unit_rate
+from heuncli.analyses.balancing.cycle_magnitudes import compute_vector_magnitudes
+from heuncli.analyses.balancing.cycle_nodes import PieceNodes
 from heuncli.analyses.balancing.effects import MassEffects, compute_mass_effects
-from heuncli.analyses.balancing.nodes import PieceNodes
-from heuncli.analyses.balancing.over_cycle import compute_vector_magnitudes
-from heuncli.analyses.balancing.resolved import CycleResolver, make_empty_nodes, make_scales
+from heuncli.analyses.balancing.options import BalanceOptions
+from heuncli.analyses.balancing.order_rows import CycleRotation, magnitudes
+from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_empty_nodes, make_scales
 from heuncli.analyses.balancing.results import BalanceResults, Period
-from heuncli.analyses.balancing.rows import CycleRotation, magnitudes
-from heuncli.analyses.balancing.told import to_results
+from heuncli.analyses.balancing.summary import to_results
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.balancing.asked import DEFAULT_OPTIONS, BalanceOptions
-from heuncli.analyses.balancing.choice import CyclePlan, describe_cam_assumptions, plan_cycle
 from heuncli.analyses.balancing.cycle import find_cycle_axis, make_followed_scene
+from heuncli.analyses.balancing.cycle_plan import CyclePlan, describe_cam_assumptions, plan_cycle
 from heuncli.analyses.balancing.effects import compute_mass_effects
+from heuncli.analyses.balancing.options import DEFAULT_OPTIONS, BalanceOptions
+from heuncli.analyses.balancing.order_rows import CycleRotation
 from heuncli.analyses.balancing.results import BalanceResults
-from heuncli.analyses.balancing.rows import CycleRotation
-from heuncli.analyses.balancing.sampled import sample_cycle
-from heuncli.analyses.balancing.told import is_requested, to_results
+from heuncli.analyses.balancing.sampling import sample_cycle
+from heuncli.analyses.balancing.summary import is_requested, to_results
 from heuncli.base.records import replace
-from heuncli.multibody.coupled_start.prepared import prepare_coupled
+from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.error_places import attach_locations
@@ -45,14 +45,14 @@ def compute_balance(spec: Spec, options: BalanceOptions) -> BalanceResults:
     results = replace(results, notes=(*results.notes, *describe_cam_assumptions(scene.mechanism)))
     results = add_load_torque(results, spec, scene, plan, options)
     if options.weights:
-        from heuncli.analyses.balancing.weights import find_counterbalance  # where they are asked for
+        from heuncli.analyses.balancing.counterweight_study import find_counterbalance  # where they are asked for
 
         counterbalance = find_counterbalance(spec, scene, plan, cycle, reference_point, options)
         results = replace(
             results, counterbalance=counterbalance, notes=tuple(dict.fromkeys((*results.notes, *counterbalance.notes)))
         )
     if options.flywheel is not None:
-        from heuncli.analyses.balancing.wheel import add_flywheel  # where one is asked for
+        from heuncli.analyses.balancing.flywheel_study import add_flywheel  # where one is asked for
 
         results = add_flywheel(results, spec, scene, plan, options.flywheel)
     return results

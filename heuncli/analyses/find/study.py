@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from heuncli.analyses.find.edges import close_edges
-from heuncli.analyses.find.places import (
+from heuncli.analyses.find.meetings import (
     SideGroup,
     group_by_side,
     iter_enclosing_places,

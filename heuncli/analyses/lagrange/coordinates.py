@@ -15,8 +15,8 @@ from heuncli.analyses.lagrange import rodrigues
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, is_length
-from heuncli.base.nearest import suggest
 from heuncli.base.records import record
+from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.linearisation.linearise import LinearisedEquations
 from heuncli.motion.linearisation.reduced_equations import find_massless_spins, orthogonal_complement
@@ -184,10 +184,14 @@ def require_known(requested: Sequence[str], rows: Mapping[str, Array]) -> None:
     """Raise SolveError [no-coordinate] for names that no coordinate has."""
     wrong = [name for name in requested if name not in rows]
     if wrong:
-        raise SolveError(*(
-            Problem(PROBLEM_CODE, f"no coordinate is called {name}", hint=suggest(name, list(rows), "coordinates") or "")
-            for name in wrong
-        ))  # fmt: skip
+        raise SolveError(
+            *(
+                Problem(
+                    PROBLEM_CODE, f"no coordinate is called {name}", hint=suggest(name, list(rows), "coordinates") or ""
+                )
+                for name in wrong
+            )
+        )
 
 
 def require_independent(names: Sequence[str], rates: Array, count: int, scaled_rows: Mapping[str, Array]) -> None:

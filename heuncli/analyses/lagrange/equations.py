@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.analyses.lagrange.coordinates import CoordinateChoice, compute_accelerations
-from heuncli.analyses.lagrange.freed import FreedScene
+from heuncli.analyses.lagrange.freed_scene import FreedScene
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.actions import Action

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.lagrange.freed import FreedScene, free_drives
+from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation

@@ -14,18 +14,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli.analyses.lagrange.coordinate_units import get_units
 from heuncli.analyses.lagrange.coordinates import CoordinateChoice, choose_coordinates, make_candidate_rows
 from heuncli.analyses.lagrange.equations import compute_forces_by_cause, invert_inertia, make_partials
-from heuncli.analyses.lagrange.freed import FreedScene, free_drives
+from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives
 from heuncli.analyses.lagrange.instant import Instant
-from heuncli.analyses.lagrange.kinds import get_units
 from heuncli.analyses.lagrange.rate_slopes import RateSlopes, compute_rate_slopes
 from heuncli.analyses.lagrange.results import StateSpace
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, RATES
-from heuncli.base.nearest import suggest
 from heuncli.base.records import record, replace
+from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.actions import collect_applied_loads
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
@@ -336,9 +336,14 @@ class OutputRow:
 
 
 def compute_outputs(
-    scene: FreedScene, instant: Instant, choice: CoordinateChoice, linear_equations: LinearisedEquations, free: Sequence[int], matrices: Matrices,
+    scene: FreedScene,
+    instant: Instant,
+    choice: CoordinateChoice,
+    linear_equations: LinearisedEquations,
+    free: Sequence[int],
+    matrices: Matrices,
     requested: Sequence[str],
-) -> tuple[Array, Array, tuple[str, ...], list[str]]:  # fmt: skip
+) -> tuple[Array, Array, tuple[str, ...], list[str]]:
     """Return C, D, the names and the units of the outputs; by default the coordinates."""
     A, B = matrices
     n = len(free)

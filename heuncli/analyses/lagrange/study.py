@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.lagrange import rodrigues
-from heuncli.analyses.lagrange.blows import compute_impulses
+from heuncli.analyses.lagrange.apparent_inertia import compute_apparent_inertias
 from heuncli.analyses.lagrange.coordinates import (
     CoordinateChoice,
     choose_coordinates,
@@ -24,10 +24,10 @@ from heuncli.analyses.lagrange.equations import (
     invert_inertia,
     make_partials,
 )
+from heuncli.analyses.lagrange.impulses import compute_impulses
 from heuncli.analyses.lagrange.instant import Instant, make_instant
 from heuncli.analyses.lagrange.results import LagrangeResults, SectionForces
 from heuncli.analyses.lagrange.section_forces import compute_section_forces
-from heuncli.analyses.lagrange.seen import compute_apparent_inertias
 from heuncli.analyses.lagrange.state_space import compute_state_space
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.records import record

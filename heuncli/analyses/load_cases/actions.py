@@ -76,9 +76,11 @@ def _drop_field_rounding(field: AccelerationField, r: float) -> AccelerationFiel
     a, g, w, u = field.origin, field.gravity, field.angular_velocity, field.angular_acceleration
     threshold = ROUNDING * max(float(np.abs(x).max()) for x in (a, g, r * u, r * w * w))
     return AccelerationField(
-        _drop_rounding(a, threshold), _drop_rounding(g, threshold), _drop_rounding(w, ROUNDING * float(np.abs(w).max())),
+        _drop_rounding(a, threshold),
+        _drop_rounding(g, threshold),
+        _drop_rounding(w, ROUNDING * float(np.abs(w).max())),
         np.where(r * np.abs(u) <= threshold, 0.0, u),
-    )  # fmt: skip
+    )
 
 
 def _iter_body_actions(recovery: Recovery, spec: Spec, body: int) -> Iterator[BodyAction]:

@@ -72,6 +72,12 @@ def find_body_modes(spec: Spec, excluded: Sequence[str] = ()) -> BodyModes:
         attitudes, centres = linear_equations.attitudes[order], linear_equations.centres[order]
         local_centres = np.array([body.center for body in bodies]).reshape(-1, 3)
         return BodyModes(
-            linearised_state.scene, replace(to_results(spec, spec_modes), omitted_paths=tuple(excluded)), tuple(body.name for body in bodies),
-            centres - np.einsum("bij,bj->bi", attitudes, local_centres), attitudes, centres, twists[..., :3], twists[..., 3:],
-        )  # fmt: skip
+            linearised_state.scene,
+            replace(to_results(spec, spec_modes), omitted_paths=tuple(excluded)),
+            tuple(body.name for body in bodies),
+            centres - np.einsum("bij,bj->bi", attitudes, local_centres),
+            attitudes,
+            centres,
+            twists[..., :3],
+            twists[..., 3:],
+        )

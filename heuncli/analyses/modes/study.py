@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from heuncli.analyses.modes.rest_digits import widen_errors
+from heuncli.analyses.modes.equilibrium_errors import widen_errors
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple

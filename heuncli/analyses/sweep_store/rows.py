@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from heuncli.analyses.variants.asking import VariantResult
+from heuncli.analyses.variants.evaluation import VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from heuncli.analyses.sweep_store.store.store import StoredSweep
+from heuncli.analyses.sweep_store.store import StoredSweep
 from heuncli.base.errors import Problem, UsageError
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 
 
 def split_number(word: str, option: str) -> tuple[str, int | None]:
@@ -38,4 +38,7 @@ def format_sweep(sweep: StoredSweep) -> str:
     """Format a sweep of a store in one line."""
     head = sweep.head
     spec_and_names = f"{escape(head.path)}: {', '.join(head.plan.names)}"
-    return f"{sweep.start_time}  {spec_and_names}; {sweep.variant_count} of {head.plan.size} variants; {', '.join(m.text for m in head.measures)}"
+    return (
+        f"{sweep.start_time}  {spec_and_names}; {sweep.variant_count} of {head.plan.size} variants; "
+        f"{', '.join(m.text for m in head.measures)}"
+    )

@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 
 from heuncli.analyses.tune.descent import descend, descend_from
-from heuncli.analyses.tune.freedom import find_tolerance_ranges
-from heuncli.analyses.tune.overview import OVERVIEW_PHASE, search_globally
+from heuncli.analyses.tune.global_search import OVERVIEW_PHASE, search_globally
 from heuncli.analyses.tune.results import Ending, ToleranceRange, Trial, TrialOutcome, TuneResults
+from heuncli.analyses.tune.tolerance_ranges import find_tolerance_ranges
 from heuncli.analyses.tune.trials import Trials
 
 MIN_SEPARATION = 0.2  # of the box: distance at which another minimum may lie

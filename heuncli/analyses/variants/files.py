@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.variants.asking import CASE, Recipe
+from heuncli.analyses.variants.evaluation import CASE, Recipe
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.errors import HeunError
 from heuncli.scene.file_format.named_files import NamedFiles, TrackedFiles

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
-from heuncli.analyses.variants.asking import CASE, Recipe
+from heuncli.analyses.variants.evaluation import CASE, Recipe
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.named_tuples import NamedTuple

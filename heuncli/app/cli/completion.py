@@ -163,6 +163,11 @@ def _complete_files(ctx: typer.Context, incomplete: str) -> list[str]:
 
 
 BY_WORD: dict[str, Callable[[typer.Context, str], list[str]]] = {
-    "spec": _complete_files, "set": _complete_from_spec(complete_overrides), "case": _complete_from_spec(complete_cases), "only": _complete_from_spec(complete_only),
-    "measure": _complete_from_spec(complete_measures), "collective": _complete_from_spec(complete_collectives), "body": _complete_from_spec(complete_bodies),
-}  # fmt: skip
+    "spec": _complete_files,
+    "set": _complete_from_spec(complete_overrides),
+    "case": _complete_from_spec(complete_cases),
+    "only": _complete_from_spec(complete_only),
+    "measure": _complete_from_spec(complete_measures),
+    "collective": _complete_from_spec(complete_collectives),
+    "body": _complete_from_spec(complete_bodies),
+}

@@ -11,14 +11,14 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from heuncli.app.cli import alarm, at_once, memory, plain
+from heuncli.app.cli import fast_path, memory, plain, timeout
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.registry import ParsedCommand
-from heuncli.base.announcements import progress_listener
 from heuncli.base.errors import HeunError, LimitError, Problem
 from heuncli.base.errors import UsageError as UsageError  # re-exported for the commands
 from heuncli.base.files import ReaderGoneError
-from heuncli.base.foreign_text import escape
+from heuncli.base.progress_messages import progress_listener
+from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import forget_files_read
 from heuncli.version import VERSION
 
@@ -96,7 +96,7 @@ def select_exit_code(codes: Sequence[int]) -> int:
 
 
 def _run_command(argv: list[str]) -> int:
-    if (text := at_once.find_text(argv)) is not None:
+    if (text := fast_path.find_text(argv)) is not None:
         emit(text)
         return 0
     parsed = plain.read(argv) or _parse_with_typer(argv)
@@ -108,7 +108,7 @@ def _run_command(argv: list[str]) -> int:
     memory.require_minimum()
     limit = getattr(request, "time_limit", None)
     with progress_listener(None if getattr(request, "quiet", False) else lambda text: print_stderr(f"heun: {text}")):
-        return alarm.run_with_limit(lambda: command.main(request), limit, command.grace, command.phase)
+        return timeout.run_with_limit(lambda: command.main(request), limit, command.grace, command.phase)
 
 
 def _require_limit(option: str, limit: float | None) -> None:

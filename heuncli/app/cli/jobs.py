@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.base import signals
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.named_tuples import NamedTuple
@@ -72,7 +72,7 @@ class ProcessDeath(NamedTuple):
         bug_hint: the hint if no limit ended it
         """
         if self.is_time_up:
-            return Problem("time-limit", "the time limit was reached, and the work did not stop", hint=alarm.HINT)
+            return Problem("time-limit", "the time limit was reached, and the work did not stop", hint=timeout.HINT)
         return Problem("bug", f"the process that {work} was {self.description}, twice", hint=bug_hint)
 
 
@@ -171,7 +171,7 @@ def run_as_completed(
     Processes are started as items come, and end with this generator.
     """
     pool = _Pool(work, pop_next_item, jobs)
-    with alarm.pause_watch(), CleanupOnSignal(pool.kill):
+    with timeout.pause_watch(), CleanupOnSignal(pool.kill):
         try:
             yield from pool.iter_results(stop_descriptor)
         finally:
@@ -219,7 +219,7 @@ def _serve(pipe: Connection, work: Callable[[Item], Answer], parent_ends: Sequen
     for name in ("SIGTERM", "SIGHUP"):
         signal.signal(getattr(signal, name), signal.SIG_DFL)
     signals.clear_cleanups()
-    alarm.silence()
+    timeout.silence()
     try:
         while True:
             pipe.send(work(pipe.recv()))

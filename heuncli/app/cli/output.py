@@ -12,11 +12,11 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TextIO
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.files import ReaderGoneError
-from heuncli.base.foreign_text import escape_all, escape_lines
+from heuncli.base.text_safety import escape_all, escape_lines
 
 DESCRIPTOR = 1  # of standard output
 ESCAPED = "heun.escaped"
@@ -34,19 +34,19 @@ def emit(text: str | Iterable[str], target: str | None = None, *, late: bool = F
     pieces = [text] if isinstance(text, str) else text
     to_stdout = target is None or target == files.STDOUT
     if target is None or to_stdout or (place := files.find_target(target)).descriptor == DESCRIPTOR:  # /dev/stdout
-        alarm.disarm(late=late)
+        timeout.disarm(late=late)
         _write_stdout(pieces)
     elif place.is_replaceable:
         files.write(_disarm_after(encode_blocks(pieces), late), target)
     else:
-        alarm.disarm(late=late)
+        timeout.disarm(late=late)
         files.write(encode_blocks(pieces), target)
 
 
 def _disarm_after(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
     """Yield the content, then end the time limit. Raises LimitError if it has passed, unless `late`."""
     yield from content
-    alarm.disarm(late=late)
+    timeout.disarm(late=late)
 
 
 def encode_blocks(pieces: Iterable[str], encoding: str = "utf-8") -> Iterator[bytes]:
@@ -80,7 +80,7 @@ def _escape(error: UnicodeError) -> tuple[str, int]:
 
 def save(content: bytes, target: str) -> None:
     """Write bytes to a file, even after the time limit."""
-    alarm.disarm(late=True)
+    timeout.disarm(late=True)
     files.write(content, target)
 
 

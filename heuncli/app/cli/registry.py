@@ -16,8 +16,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from heuncli.app.cli.alarm import DEFAULT_PHASE, GRACE
 from heuncli.app.cli.options import Request
+from heuncli.app.cli.timeout import DEFAULT_PHASE, GRACE
 from heuncli.base.named_tuples import NamedTuple
 
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from heuncli.app.cli.output import print_stderr
 from heuncli.base.errors import Problem, UsageError
-from heuncli.base.foreign_text import escape
-from heuncli.output.snapshots.warned import collect_warnings
+from heuncli.base.text_safety import escape
+from heuncli.output.snapshots.run_warnings import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.asked_values import collect_results as collect_results  # re-exported for the commands
-from heuncli.study.ask.asked_values import require_choice as require_choice
-from heuncli.study.ask.asked_values import require_positive as require_positive
-from heuncli.study.ask.asked_values import require_tolerance as require_tolerance
+from heuncli.study.ask.option_values import collect_results as collect_results  # re-exported for the commands
+from heuncli.study.ask.option_values import require_choice as require_choice
+from heuncli.study.ask.option_values import require_positive as require_positive
+from heuncli.study.ask.option_values import require_tolerance as require_tolerance
 from heuncli.study.model.options import Options
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def parse_instants(words: str, study: Study) -> Array:
 
     Raises UsageError, also for extremes, which tables show anyway.
     """
-    from heuncli.study.ask.asked_instants import (  # where they are asked for
+    from heuncli.study.ask.at_option import (  # where they are asked for
         find_requested_times,
         make_extreme_requests,
         parse,

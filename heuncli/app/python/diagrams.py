@@ -8,12 +8,12 @@ from pathlib import Path
 
 from heuncli.app.python.arguments import FILE, check_arguments
 from heuncli.base.errors import Problem, UsageError
-from heuncli.output.drawing.as_file import encode_drawing, find_form
+from heuncli.output.drawing.drawing_files import encode_drawing, find_form
 from heuncli.output.drawing.layout import lay_out
-from heuncli.output.drawing.picture import VectorDrawing, to_svg
+from heuncli.output.drawing.shapes import VectorDrawing, to_svg
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.histories import make_history
-from heuncli.output.snapshots.asked_units import read_display_units
+from heuncli.output.snapshots.display_units import read_display_units
 from heuncli.output.snapshots.measure import require_known_paths
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.study.ask.study import Study

@@ -11,7 +11,7 @@ from heuncli.base.errors import Problem, UsageError
 if TYPE_CHECKING:
     import pandas as pd
 
-    from heuncli.app.python.asked_run import LockedRun
+    from heuncli.app.python.locked_run import LockedRun
     from heuncli.app.python.signals import Signal
 
 INSTALL = 'pip install "heuncli[pandas]"; study[PATH].values needs NumPy alone'

@@ -11,19 +11,19 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from heuncli.app.python.arguments import NUMBERS, check_arguments
-from heuncli.app.python.asked_run import LockedRun, UnknownPath, find_distinct_instants
+from heuncli.app.python.locked_run import LockedRun, UnknownPath, find_distinct_instants
 from heuncli.base.errors import Problem, SpecError, UsageError
-from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
 from heuncli.study.ask.measure import MeasureRequest, Peak, find_exceeded_horizon
+from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
 from heuncli.study.quantities.series import make_component_names
-from heuncli.study.quantities.stated import find_measure_error, find_unit
 
 if TYPE_CHECKING:
-    from heuncli.app.python.measured import Number
+    from heuncli.app.python.number import Number
 
 LISTS = (IMPULSES, "certain_sums")  # blocks of the results that are lists of blocks
 SUMS = "certain_sums"

@@ -18,7 +18,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.loads.equilibrium.coordinates import Coordinates, make_coordinates
-from heuncli.loads.equilibrium.geared import find_coupled_pairs
+from heuncli.loads.equilibrium.coupled_coordinates import find_coupled_pairs
 from heuncli.loads.equilibrium.pose import (
     Pose,
     contact_force,
@@ -33,8 +33,8 @@ from heuncli.loads.equilibrium.reasons import (
     runaway_problem,
     singular_pose_problem,
 )
+from heuncli.loads.equilibrium.rosenbrock_step import RosenbrockStep, uncorrected_step
 from heuncli.loads.equilibrium.slopes import PERTURBED_POSES, RestLaw, make_rest_law, separate_indifferent
-from heuncli.loads.equilibrium.way import RosenbrockStep, uncorrected_step
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates as joint_coordinates
 from heuncli.motion.integration.evaluator import Evaluator

@@ -22,6 +22,7 @@ from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses, torsion_constant
 from heuncli.results.results import Array, Block, Mask
+from heuncli.scene.shapes.composite_solid import CompositeSolid
 from heuncli.scene.shapes.figure_kinds import (
     CuttingPlanes,
     Figure,
@@ -31,7 +32,6 @@ from heuncli.scene.shapes.figure_kinds import (
     UnknownFigure,
 )
 from heuncli.scene.shapes.figures import find_figure
-from heuncli.scene.shapes.forms import CompositeSolid
 
 SectionValues = Mapping[str, float]
 

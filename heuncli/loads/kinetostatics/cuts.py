@@ -22,7 +22,7 @@ from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.multibody.mechanism.model import GROUND, Mechanism, PointLoad
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
-from heuncli.scene.shapes.forms import CompositeSolid
+from heuncli.scene.shapes.composite_solid import CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_vectors
 
@@ -186,7 +186,10 @@ def _make_section_cuts(
         side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]])
     else:
         if s[-1] <= MIN_RUN_FACTOR * plane_tolerance:
-            message = f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by {plane_tolerance:.3g} m"
+            message = (
+                f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by "
+                f"{plane_tolerance:.3g} m"
+            )
             raise SpecError(Problem("short-run", message, location, hint="is the body's largest coordinate right?"))
         selected, side = _choose_run_sides(jumps)
         points, s, d = points[selected], s[selected], d[selected]
@@ -202,10 +205,24 @@ def _make_section_cuts(
         end = section.reduce_to
         moment_reference = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
     cuts = Cuts(
-        name=name, body=body, n=n, e1=e1, e2=cross_vectors(n, e1), points=points, s=s, side=side, plane_tolerance=plane_tolerance, pieces=pieces,
-        centroids=centroids, moment_reference=moment_reference, line=section.reduce_to == "line", properties=section.properties,
-        strength=section.strength, warnings=warnings, form=form,
-    )  # fmt: skip
+        name=name,
+        body=body,
+        n=n,
+        e1=e1,
+        e2=cross_vectors(n, e1),
+        points=points,
+        s=s,
+        side=side,
+        plane_tolerance=plane_tolerance,
+        pieces=pieces,
+        centroids=centroids,
+        moment_reference=moment_reference,
+        line=section.reduce_to == "line",
+        properties=section.properties,
+        strength=section.strength,
+        warnings=warnings,
+        form=form,
+    )
     if section.properties is not None and section.properties.kind == "auto":
         _require_properties(location, cuts)
     return cuts
@@ -280,9 +297,15 @@ def _choose_run_sides(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
 
 
 def _make_pieces(
-    location: SourceLocation, name: str, section: Section, form: CompositeSolid | None, n: Array, points: Array, side: Array,
+    location: SourceLocation,
+    name: str,
+    section: Section,
+    form: CompositeSolid | None,
+    n: Array,
+    points: Array,
+    side: Array,
     reach: tuple[float, float],
-) -> tuple[Array, Array | None, tuple[str, ...]]:  # fmt: skip
+) -> tuple[Array, Array | None, tuple[str, ...]]:
     """Make pieces, centroids and warnings of the cuts; reach: from the smallest to the largest n.x of joints and
     loads.
     """

@@ -76,7 +76,7 @@ class JointPoints:
 
     def contact_point(self, joint: Joint, centre: Array) -> Array:
         """Return where a roller touches the path along which its centre runs, world axes, (n_t, 3)."""
-        from heuncli.scene.expressions.beside import left_normal  # few joints are
+        from heuncli.scene.expressions.roller_path import left_normal  # few joints are
 
         assert joint.path is not None
         n = left_normal(self.states.world_direction(joint.a, joint.path.normal), self.states.ways[:, joint.path_index])

@@ -126,9 +126,13 @@ def compute_stresses(moduli: SectionModuli, loads: Mapping[str, Array], strength
     )
     shear, mises = m.largest(stress_fields)
     block: Block = {
-        "normal_max": stress_fields.axial + bending, "normal_min": stress_fields.axial - bending, "shear_torsion": np.abs(stress_fields.torsion),
-        "shear_mean": np.hypot(loads["Q1"], loads["Q2"]) / m.area, "shear_max": shear, "mises": mises,
-    }  # fmt: skip
+        "normal_max": stress_fields.axial + bending,
+        "normal_min": stress_fields.axial - bending,
+        "shear_torsion": np.abs(stress_fields.torsion),
+        "shear_mean": np.hypot(loads["Q1"], loads["Q2"]) / m.area,
+        "shear_max": shear,
+        "mises": mises,
+    }
     if strength is not None:
         block["utilisation"] = mises / strength
     return block

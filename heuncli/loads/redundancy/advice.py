@@ -46,7 +46,8 @@ def propose_replacements(scene: PreparedScene, model: Block) -> list[str]:
             break
         if _count_remaining(scene, replacements, model) == 0:
             return [
-                f"determinate with {format_replacements(scene, replacements, ' and ')}: the same motion, and no reaction is open"
+                f"determinate with {format_replacements(scene, replacements, ' and ')}: the same "
+                "motion, and no reaction is open"
             ]
     return propose_stepwise(scene, choices, model, redundant)
 
@@ -66,7 +67,8 @@ def propose_stepwise(scene: PreparedScene, choices: Choices, model: Block, redun
         return ["no looser joints were found that leave less open; `stiffness` on the joints concerned makes a split"]
     if redundant_left == 0:
         return [
-            f"determinate with {format_replacements(scene, replacements, ', ')}: the same motion, and no reaction is open"
+            f"determinate with {format_replacements(scene, replacements, ', ')}: the same motion, and "
+            "no reaction is open"
         ]
     rest = f"{redundant_left} of {redundant} are left; for those give joints their `stiffness`"
     return [f"with {format_replacements(scene, replacements, ', ')} only {rest}"]

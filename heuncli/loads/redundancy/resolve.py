@@ -16,9 +16,8 @@ from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.foundation import ElementKeys
 from heuncli.loads.kinetostatics.joint_axes import find_joint_axes, rotate_shares
 from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.loads.redundancy.certain_sums import find_determinate_sums
-from heuncli.loads.redundancy.neighbours import find_neighbour_poses
-from heuncli.loads.redundancy.open_components import (
+from heuncli.loads.redundancy.determinate_sums import find_determinate_sums
+from heuncli.loads.redundancy.indeterminate_components import (
     find_indeterminate_wrench,
     is_coordinate_indeterminate,
     list_indeterminate_names,
@@ -28,6 +27,7 @@ from heuncli.loads.redundancy.open_components import (
     mask_indeterminate,
     select_coordinate_share,
 )
+from heuncli.loads.redundancy.neighbours import find_neighbour_poses
 from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress, find_self_stress
 from heuncli.loads.redundancy.split import StressChoice, apply_choices, split_stress
 from heuncli.motion.integration.evaluator import Evaluation

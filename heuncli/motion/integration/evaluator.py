@@ -150,14 +150,23 @@ class Evaluator:
             still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
             residual = np.where(still, 0.0, residual)
         return Evaluation(
-            times=instants, states=projected_states, bodies=tables["bodies"], freedoms=tables["freedoms"], loads=tables["loads"], rows=rows,
-            parts=tables["parts"], gap=whole["gap"][:, 0], massless_count=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
-            residual=residual, allowed_residual=self.allowed_residual(whole["gap"][:, 0]),
+            times=instants,
+            states=projected_states,
+            bodies=tables["bodies"],
+            freedoms=tables["freedoms"],
+            loads=tables["loads"],
+            rows=rows,
+            parts=tables["parts"],
+            gap=whole["gap"][:, 0],
+            massless_count=whole["idle"][:, 0],
+            pivot=whole["pivot"][:, 0],
+            residual=residual,
+            allowed_residual=self.allowed_residual(whole["gap"][:, 0]),
             holding=closed,
             causes=unpack_columns(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))
             if causes
             else None,
-        )  # fmt: skip
+        )
 
     def _recover(self, inputs: dict[str, Array], outputs: dict[str, Array], hold_rows: bool, causes: bool) -> None:
         """Call the kernel in batches of instants; the output arrays, the states among them, are written in place.

@@ -90,10 +90,22 @@ def _joint_condition(mechanism: Mechanism, k: int, joint: Joint, t0: float, prob
         _not_computable_problem(drive, t0) for jet in driven.values() if drive and not all(map(math.isfinite, jet))
     ]
     zero_free = drive.quantity if drive and drive.zero_assembled else None
-    angle, spin = _initial_coordinate(joint, driven.get("angle"), ("angle", "rad", joint.angle), ("rate", "rad/s", joint.rate),
-                         joint.to_axis_given or zero_free == "angle", problems)  # fmt: skip
-    travel, slip = _initial_coordinate(joint, driven.get("travel"), ("travel", "m", joint.travel), ("speed", "m/s", joint.speed),
-                          zero_free == "travel", problems)  # fmt: skip
+    angle, spin = _initial_coordinate(
+        joint,
+        driven.get("angle"),
+        ("angle", "rad", joint.angle),
+        ("rate", "rad/s", joint.rate),
+        joint.to_axis_given or zero_free == "angle",
+        problems,
+    )
+    travel, slip = _initial_coordinate(
+        joint,
+        driven.get("travel"),
+        ("travel", "m", joint.travel),
+        ("speed", "m/s", joint.speed),
+        zero_free == "travel",
+        problems,
+    )
     length, stretch = joint.length, (0.0, 0.0)
     if jet := driven.get("length"):
         length = length if drive and drive.from_start else jet.value

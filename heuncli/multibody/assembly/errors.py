@@ -28,10 +28,14 @@ def does_not_fit(mechanism: Mechanism, distance: Array, angle: Array, size: floa
         gap = f"{between} stay turned by {math.degrees(angle[k]):.3g} deg from what it allows"
     if all(_is_held(mechanism, i, is_distance) for i in (joint.a, joint.b)):
         what = "position" if is_distance else "orientation"
-        return SolveError(Problem(
-            "held-conflict", f"joint {joint.name} ({joint.kind}): {gap}; both are held",
-            hint=f"leave out the {what} of one of them" + _other_hints(mechanism, k, joints), entry_path=f"joints.{joint.name}",
-        ))  # fmt: skip
+        return SolveError(
+            Problem(
+                "held-conflict",
+                f"joint {joint.name} ({joint.kind}): {gap}; both are held",
+                hint=f"leave out the {what} of one of them" + _other_hints(mechanism, k, joints),
+                entry_path=f"joints.{joint.name}",
+            )
+        )
     return SolveError(Problem(
         "does-not-fit", f"joint {joint.name} ({joint.kind}) cannot be closed: {gap}",
         hint="check the points and lengths; hold fewer values; or draw the bodies nearer with near:"

@@ -16,7 +16,7 @@ from heuncli.base.errors import SolveError
 from heuncli.base.records import replace
 from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
-from heuncli.scene.expressions.beside import left_normal
+from heuncli.scene.expressions.roller_path import left_normal
 
 UNCONSTRAINED = JointConstraint("none", "free")
 Assemble = Callable[[list[JointCondition]], Assembly]

@@ -17,7 +17,7 @@ from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.multibody.assembly.row_reduction import least_squares
 from heuncli.multibody.coupled_start.freedoms import FreedomMotion, Freedoms
-from heuncli.multibody.coupled_start.held import Rows, held_poses, held_rates
+from heuncli.multibody.coupled_start.held_values import Rows, held_poses, held_rates
 from heuncli.multibody.mechanism.model import Assembly
 from heuncli.multibody.response import MeasuredState
 from heuncli.multibody.tree.prepare import PreparedScene

@@ -11,11 +11,11 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import replace
+from heuncli.multibody.coupled_start.body_release import ReleasedBodies
 from heuncli.multibody.coupled_start.errors import poses_do_not_fit, rates_do_not_fit, too_many
 from heuncli.multibody.coupled_start.fit import CoupledFit, StartRows
 from heuncli.multibody.coupled_start.freedoms import Freedoms, find_coupled_bodies
-from heuncli.multibody.coupled_start.released import ReleasedBodies
-from heuncli.multibody.coupled_start.told import format_coupling_changes, format_unprescribed_motions
+from heuncli.multibody.coupled_start.start_sentences import format_coupling_changes, format_unprescribed_motions
 from heuncli.multibody.mechanism.model import Assembly
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene

@@ -38,7 +38,7 @@ from heuncli.scene.file_format import models as m
 from heuncli.scene.shapes.inertia import split_pseudo_inertia
 
 if TYPE_CHECKING:
-    from heuncli.scene.shapes.forms import CompositeSolid
+    from heuncli.scene.shapes.composite_solid import CompositeSolid
 
 
 def make_forms(spec: m.Spec, stages: Stages = NO_CACHE) -> dict[str, CompositeSolid]:
@@ -46,7 +46,7 @@ def make_forms(spec: m.Spec, stages: Stages = NO_CACHE) -> dict[str, CompositeSo
     shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
     if not shapes:
         return {}
-    from heuncli.scene.shapes.forms import make_composite_solid  # 8 ms that only they are worth
+    from heuncli.scene.shapes.composite_solid import make_composite_solid  # 8 ms that only they are worth
 
     return {name: stages.run(make_composite_solid, body_shapes, key=name) for name, body_shapes in shapes.items()}
 

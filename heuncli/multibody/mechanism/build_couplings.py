@@ -166,6 +166,12 @@ def build_rope(entry: c.Rope, drawing: CoupledDrawing) -> tuple[CoupledRow, ...]
 
 
 BUILDERS: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
-    "ratio": build_ratio, "gear": build_gear, "screw": build_screw, "belt": build_belt, "differential": build_differential, "cam": build_cam,
-    "wheel": build_wheel, "rope": build_rope,
-}  # fmt: skip
+    "ratio": build_ratio,
+    "gear": build_gear,
+    "screw": build_screw,
+    "belt": build_belt,
+    "differential": build_differential,
+    "cam": build_cam,
+    "wheel": build_wheel,
+    "rope": build_rope,
+}

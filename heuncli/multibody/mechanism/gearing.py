@@ -207,9 +207,13 @@ def find_coaxial_gear(
     factor = -same * (1.0 if joints[arm].a == base else -1.0)  # of the carrier on the base, about the gear's axis
     D = gear.point - point
     return GearMember(
-        gear.body, True, carrier_point + (D @ axis) * carrier_axis, same * carrier_axis, (*gear.coordinates, Coordinate(arm, "angle", factor)),
+        gear.body,
+        True,
+        carrier_point + (D @ axis) * carrier_axis,
+        same * carrier_axis,
+        (*gear.coordinates, Coordinate(arm, "angle", factor)),
         gear.travel,
-    )  # fmt: skip
+    )
 
 
 # The pitch point

@@ -1,7 +1,7 @@
 """Belts and chains: two strands along the lines tangent to both pulleys, in the axes of their carrier.
 
     nu . x = (r_1 - r_2) / D, crossed (r_1 + r_2) / D       nu: from the centre to a strand, x: to the other
-    T_1 = T_0 + lambda / 2,  T_2 = T_0 - lambda / 2         the first strand is the tight one when the first pulley drives
+    T_1 = T_0 + lambda / 2,  T_2 = T_0 - lambda / 2    the first strand is the tight one when the first pulley drives
 
 The belt is inextensible and does not slip. Its own mass, and so its centrifugal force at speed, is left out.
 """

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from heuncli.multibody.mechanism.couplings import CoupledRow
 from heuncli.multibody.mechanism.model import RopeLoad
-from heuncli.scene.expressions.composed import (
+from heuncli.scene.expressions.composition import (
     add_expressions,
     apply_step,
     combine_expressions,

@@ -19,9 +19,9 @@ from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import GROUND, Joint
 from heuncli.multibody.reduction.model import Reduction
-from heuncli.multibody.reduction.slots import make_state_embedding
 from heuncli.multibody.reduction.smaller_scene import BodyParts, BodyPlacement, make_smaller_scene
 from heuncli.multibody.reduction.spins import find_constant_spins
+from heuncli.multibody.reduction.state_embedding import make_state_embedding
 from heuncli.multibody.reduction.welded_bodies import format_body_names
 from heuncli.multibody.response import Jacobian, jacobian, make_workspace, settle_state
 from heuncli.multibody.tree.layout import Island, Layout
@@ -53,7 +53,10 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
     layout_at_start = replace(smaller.layout, y0=embedding.restrict(0.0, layout.y0))
     names = [i for i, part in enumerate(placements) if part.body == GROUND]
     verb = "is" if len(names) == 1 else "are"
-    explanation = f"{format_body_names(mechanism, names)} {verb} held by joints among themselves and with the ground, whatever else moves"
+    explanation = (
+        f"{format_body_names(mechanism, names)} {verb} held by joints among themselves and with the "
+        "ground, whatever else moves"
+    )
     explanation += " and acts: part of the ground"
     return Reduction(
         replace(smaller, layout=layout_at_start),

@@ -66,13 +66,22 @@ def transform_part(part: CouplingPart, transform: SceneTransform) -> CouplingPar
     """Transform a part of a coupling."""
     cam = None if part.cam is None else _transform_cam(part.cam, part, transform)
     return replace(
-        part, a=transform.body(part.a), b=transform.body(part.b), c=transform.body(part.c),
-        p=transform.point(point_body(part), part.p), q=transform.point(part.b, part.q), e=transform.direction(first_direction_body(part), part.e),
-        g=part.g if part.kind == "strand" else transform.direction(second_direction_body(part), part.g),  # of a strand no direction
+        part,
+        a=transform.body(part.a),
+        b=transform.body(part.b),
+        c=transform.body(part.c),
+        p=transform.point(point_body(part), part.p),
+        q=transform.point(part.b, part.q),
+        e=transform.direction(first_direction_body(part), part.e),
+        g=part.g
+        if part.kind == "strand"
+        else transform.direction(second_direction_body(part), part.g),  # of a strand no direction
         coordinates=tuple(x._replace(joint=transform.joint(x.joint)) for x in part.coordinates),
-        separating_force=transform.direction(part.c, part.separating_force), other_axis=transform.direction(part.b, part.other_axis),
-        on_a=None if part.on_a is None else transform.point(part.c, part.on_a), cam=cam,
-    )  # fmt: skip
+        separating_force=transform.direction(part.c, part.separating_force),
+        other_axis=transform.direction(part.b, part.other_axis),
+        on_a=None if part.on_a is None else transform.point(part.c, part.on_a),
+        cam=cam,
+    )
 
 
 def _transform_cam(cam: CamShape, part: CouplingPart, transform: SceneTransform) -> CamShape:

@@ -25,7 +25,7 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import Body, BushingLoad, Mechanism, PairLoad, PointLoad, RopeLoad, ThreadLoad
 from heuncli.multibody.reduction.model import Reduction
-from heuncli.multibody.reduction.slots import rotate_vector
+from heuncli.multibody.reduction.state_embedding import rotate_vector
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.tables import Table, to_sym3
@@ -85,7 +85,8 @@ def format_explanation(body: Body, spin: Spin) -> str:
     """Explain what was done to a body, and why that changes nothing."""
     return (
         f"bodies.{body.name} is symmetric about its axis and nothing turns it about that: its spin of {spin.rate:.4g} "
-        f"rad/s stays, and one of {spin.rate - spin.rate_reduction:.4g} rad/s with {spin.replacement_moment / spin.moment:.3g} times the "
+        f"rad/s stays, and one of {spin.rate - spin.rate_reduction:.4g} rad/s with "
+        f"{spin.replacement_moment / spin.moment:.3g} times the "
         "inertia moves the axis alike"
     )
 

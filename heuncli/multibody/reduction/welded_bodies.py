@@ -19,13 +19,13 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import replace
 from heuncli.multibody.mechanism.model import GROUND, Body, Mechanism
 from heuncli.multibody.reduction.model import Reduction
-from heuncli.multibody.reduction.slots import make_state_embedding
 from heuncli.multibody.reduction.smaller_scene import (
     BodyParts,
     BodyPlacement,
     bodies_with_varying_loads,
     make_smaller_scene,
 )
+from heuncli.multibody.reduction.state_embedding import make_state_embedding
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
@@ -139,7 +139,10 @@ def iter_explanations(mechanism: Mechanism, parts: BodyParts) -> Iterable[str]:
         members = [i for i, part in enumerate(parts.placements) if part.body == root and i != root]
         if members and root == GROUND:
             verb = "is" if len(members) == 1 else "are"
-            yield f"{format_body_names(mechanism, members)} {verb} welded to the ground and cannot move: part of the ground"
+            yield (
+                f"{format_body_names(mechanism, members)} {verb} welded to the ground and cannot move: "
+                "part of the ground"
+            )
         elif members:
             yield f"{format_body_names(mechanism, [root, *members])} are welded together: they move as one body"
 

@@ -91,7 +91,10 @@ def find_undercut(cam_flank: Flank, cam: Coupling, axis: Array) -> Problem | Non
     else:
         what = f"would have a radius of {cam_flank.radius.min():.4g} m: the face does not reach it"
         hint = "a larger disc (a face further out), or a lift that bends less: base + lift + lift'' stays above zero"
-    message = f"the flank of cam {cam.name} is cut away at angles {format_angles(cam_flank, is_undercut)} of its disc: there it {what}"
+    message = (
+        f"the flank of cam {cam.name} is cut away at angles {format_angles(cam_flank, is_undercut)} of "
+        f"its disc: there it {what}"
+    )
     return Problem("cam-undercut", message, hint=hint, entry_path=entry_path)
 
 

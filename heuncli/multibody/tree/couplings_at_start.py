@@ -6,7 +6,7 @@ from heuncli.base.records import replace
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Assembly, Mechanism, RopeLoad
 from heuncli.multibody.mechanism.stretching import rope_load
-from heuncli.multibody.tree.rope_ways import route_rope
+from heuncli.multibody.tree.rope_routes import route_rope
 from heuncli.scene.file_format import couplings as spec
 
 

@@ -259,9 +259,16 @@ class _LayoutBuilder:
         )
         reach, slope, bend = path.bounds
         return replace(
-            row, path=self._add_pieces(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
-            bend=bend, radius=path.radius, normal=path.normal,
-        )  # fmt: skip
+            row,
+            path=self._add_pieces(path),
+            pieces=len(path.coefficients),
+            period=path.period,
+            reach=reach,
+            slope=slope,
+            bend=bend,
+            radius=path.radius,
+            normal=path.normal,
+        )
 
     def _add_pieces(self, path: Path) -> int:
         """Add the pieces of a path; return the index of the first."""

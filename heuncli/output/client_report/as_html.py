@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.client_report.parts import (
     Chapter,
     ClientReport,
@@ -24,8 +24,8 @@ from heuncli.output.client_report.parts import (
     Verbatim,
 )
 from heuncli.output.drawing.layout import lay_out
-from heuncli.output.drawing.picture import escape_xml as escaped_for_xml
-from heuncli.output.drawing.picture import to_svg
+from heuncli.output.drawing.shapes import escape_xml as escaped_for_xml
+from heuncli.output.drawing.shapes import to_svg
 
 STYLE = Path(__file__).with_name("report.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
@@ -140,5 +140,10 @@ def _render_verbatim(part: Verbatim) -> str:
 
 
 RENDERERS: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _render_sentence, Facts: _render_facts, Listing: _render_listing, ReportTable: _render_table, Drawing: _render_drawing, Verbatim: _render_verbatim,
-}  # fmt: skip
+    Sentence: _render_sentence,
+    Facts: _render_facts,
+    Listing: _render_listing,
+    ReportTable: _render_table,
+    Drawing: _render_drawing,
+    Verbatim: _render_verbatim,
+}

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.client_report.parts import (
     ClientReport,
     Drawing,
@@ -96,5 +96,10 @@ def _render_verbatim(part: Verbatim) -> str:
 
 
 RENDERERS: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _render_sentence, Facts: _render_facts, Listing: _render_listing, ReportTable: _render_table, Drawing: _render_drawing, Verbatim: _render_verbatim,
-}  # fmt: skip
+    Sentence: _render_sentence,
+    Facts: _render_facts,
+    Listing: _render_listing,
+    ReportTable: _render_table,
+    Drawing: _render_drawing,
+    Verbatim: _render_verbatim,
+}

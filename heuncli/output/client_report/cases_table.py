@@ -21,7 +21,7 @@ from heuncli.output.client_report.extremes import (
 )
 from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, LoadNumber
 from heuncli.output.client_report.parts import ReportCell, ReportTable, join_names
-from heuncli.output.client_report.reported import ReportData, ReportedRun
+from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.tables.extremes_tables import MARK, MAX_FULL_GROUPS, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.output.tables.text_table import TextColumn

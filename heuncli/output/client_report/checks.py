@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from heuncli.output.client_report.parts import Part, ReportCell, ReportTable, Sentence
-from heuncli.output.client_report.reported import AS_IT_STANDS, ReportData
+from heuncli.output.client_report.report_data import AS_IT_STANDS, ReportData
 from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.output.tables.text_table import TextColumn
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 
 NO_CHECKS, NO_REPORTED_CHECKS = "The spec expects nothing.", "The spec expects nothing of what is reported."
 HOLDS, FAILS = "holds", "FAILS"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from heuncli.output.client_report.checks import make_check_parts
+from heuncli.output.client_report.events_section import make_event_parts
 from heuncli.output.client_report.first_page import make_first_page
-from heuncli.output.client_report.happenings import make_event_parts
 from heuncli.output.client_report.histories import make_history_parts
 from heuncli.output.client_report.load_table import make_load_parts
 from heuncli.output.client_report.machine import make_drawing_parts, make_model_parts
 from heuncli.output.client_report.parts import Chapter, ClientReport, Part, Sentence, Verbatim, has_content
-from heuncli.output.client_report.reported import ReportData
+from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.client_report.sections import make_section_parts
 from heuncli.output.client_report.trust import make_open_parts, make_trust_parts
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.client_report.reported import ReportData, ReportedRun
+from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.snapshots.columns import format_place
 from heuncli.output.snapshots.envelopes import Bound
-from heuncli.output.snapshots.kept import BEYOND, NumberSnapshot
+from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
 from heuncli.results.results import Array, CutPosition
 from heuncli.study.quantities.digits import OPEN, UNKNOWN, Style, choose_style, format_error, write_times
 from heuncli.study.quantities.table_units import Units
@@ -185,7 +185,10 @@ class GreatestOfCases(NamedTuple):
     def format_value(self) -> str:
         """Format the largest value with its unit and its error."""
         unit = f" {self.unit}" if self.unit != "1" else ""
-        return f"{self.number_style.write(self.high.value * self.size)}{unit} (± {format_error(self.error * self.size)}{unit})"
+        return (
+            f"{self.number_style.write(self.high.value * self.size)}{unit} (± "
+            f"{format_error(self.error * self.size)}{unit})"
+        )
 
     @property
     def position_text(self) -> str:

@@ -11,7 +11,7 @@ from heuncli.base.method_rows import find_method
 from heuncli.output.client_report.extremes import GreatestOfCases, find_greatest_of_cases, find_uncertain_cases
 from heuncli.output.client_report.load_groups import iter_joining_forces
 from heuncli.output.client_report.parts import Facts, Mood, Part, Sentence, join_names
-from heuncli.output.client_report.reported import ReportData
+from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.tables.extremes_tables import MARK
 from heuncli.output.tables.impulse_tables import find_largest_impulses
 from heuncli.output.tables.plurals import format_count
@@ -25,8 +25,8 @@ def make_first_page(data: ReportData) -> list[Part]:
 
 def _iter_identity(data: ReportData) -> Iterator[tuple[str, str]]:
     """Yield the lines that identify the report: project, author, files with digests, cases, options, versions."""
-    for label, text in zip(("project", "author", "date"), (data.imprint.project, data.imprint.author, data.imprint.date),
-                           strict=True):  # fmt: skip
+    imprint = data.imprint
+    for label, text in (("project", imprint.project), ("author", imprint.author), ("date", imprint.date)):
         if text:
             yield label, text
     yield "spec", data.spec.path
@@ -127,7 +127,10 @@ def _iter_utilisation(data: ReportData) -> Iterator[Sentence]:
         spread.name for spread in utilisations if spread.high.value <= 1.0 < spread.high.value + spread.error
     ]
     largest = max(utilisations, key=_value_of_greatest)
-    text = f"Largest utilisation of strength{qualifier}: {largest.format_value()} in section {largest.name}{largest.position_text}."
+    text = (
+        f"Largest utilisation of strength{qualifier}: {largest.format_value()} in section "
+        f"{largest.name}{largest.position_text}."
+    )
     text += f" Beyond strength: {join_names(over_strength)}." if over_strength else ""
     text += f" Beyond it, if the stated error is added: {join_names(near_strength)}." if near_strength else ""
     is_certain = not (qualifier or near_strength) and all(run.is_searched for run in data.runs)
@@ -169,7 +172,8 @@ def _iter_largest_loads(data: ReportData) -> Iterator[Sentence]:
     if foundation_force is not None:
         qualifier = _format_qualifier(data, ["foundation.force"])
         yield Sentence(
-            f"Largest force on the foundation{qualifier}: {foundation_force.format_value()}{foundation_force.position_text}."
+            f"Largest force on the foundation{qualifier}: "
+            f"{foundation_force.format_value()}{foundation_force.position_text}."
         )
 
 
@@ -189,7 +193,10 @@ def _iter_impact_sentences(data: ReportData) -> Iterator[Sentence]:
             continue
         unit, size = data.units.find("N·s")
         largest = size * max(find_largest_impulses(impact, data.labels)[0] for impact in impacts)
-        text = f"{format_count(len(impacts), 'blow')}; the largest impulse of a joint, on the ground or of all bodies together:"
+        text = (
+            f"{format_count(len(impacts), 'blow')}; the largest impulse of a joint, on the ground or of "
+            "all bodies together:"
+        )
         yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {largest:.6g} {unit}.")
 
 
@@ -197,7 +204,10 @@ def _iter_open(data: ReportData) -> Iterator[Sentence]:
     """Yield the sentences on the load components that are indeterminate."""
     paths = list(dict.fromkeys(path for run in data.runs for path in run.snapshot.open))
     if paths:
-        text = f"{format_count(len(paths), 'component')} of loads are open: the supports are redundant, and rigid bodies do"
+        text = (
+            f"{format_count(len(paths), 'component')} of loads are open: the supports are redundant, and "
+            "rigid bodies do"
+        )
         yield Sentence(f"{text} not say how they share ({join_names(paths)}).", "unsure")
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))
     for split in splits:

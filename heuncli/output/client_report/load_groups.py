@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.client_report.reported import ReportData
+from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.tables.table_blocks import FAMILIES, format_component
 from heuncli.output.tables.table_plans import TablePlan
 from heuncli.results.results import Results

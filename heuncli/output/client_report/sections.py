@@ -19,7 +19,7 @@ from heuncli.output.client_report.extremes import (
 )
 from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.output.client_report.parts import Drawing, Part, ReportCell, ReportTable, Sentence, join_names
-from heuncli.output.client_report.reported import ReportData, ReportedRun
+from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.output.tables.table_blocks import FAMILIES
@@ -61,7 +61,8 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
         case = f", load case {run.name}" if run.name else ""
         yield Drawing(
             figure,
-            f"Section {name}{case}{_format_open_cases(data, name)}: the piece beyond the cut ON the part before it; N > 0 tension",
+            f"Section {name}{case}{_format_open_cases(data, name)}: the piece beyond the cut ON the "
+            "part before it; N > 0 tension",
         )
     if len(cut_runs) > len(drawn_runs):
         yield Sentence(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.output.client_report.parts import Facts, Listing, Part, ReportCell, ReportTable, Sentence
-from heuncli.output.client_report.reported import ReportData, ReportedRun
+from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.heading import make_heading
 from heuncli.output.tables.text_table import TextColumn

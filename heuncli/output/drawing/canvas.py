@@ -11,8 +11,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import (
     Scaling,
 )
+from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
 from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.room import WordBox, WordField, count_columns
 
 BRAILLE = 0x2800
 DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # by row and column of a cell

@@ -7,12 +7,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import PlaceLabel
+from heuncli.output.drawing.label_placement import WordBox, WordField
 from heuncli.output.drawing.pens import GREY, find_colour
-from heuncli.output.drawing.picture import Line, Shape, Text
-from heuncli.output.drawing.room import WordBox, WordField
 from heuncli.output.drawing.scales import PanelBox
+from heuncli.output.drawing.shapes import Line, Shape, Text
 from heuncli.output.drawing.words import BASE_FACTOR, HEIGHT_FACTOR, SMALL_SIZE, estimate_width
 
 N_DIRECTIONS = 16  # in which places are tried

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.figure import (
     Arrow,
@@ -30,12 +30,12 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
+from heuncli.output.drawing.label_placement import WordBox, make_omitted_note
 from heuncli.output.drawing.labels import place_labels
 from heuncli.output.drawing.pens import BLACK, DIM, FAINT, GREY, GRID, WHITE, find_colour, find_pen, mix_with_white
-from heuncli.output.drawing.picture import Area, Line, Mark, Shape, Text, VectorDrawing
-from heuncli.output.drawing.room import WordBox, make_omitted_note
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shades import find_shade
+from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, VectorDrawing
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import (
@@ -378,9 +378,21 @@ def _draw_cells(item: Cells, box: PanelBox) -> Iterator[Shape]:
 
 
 DRAW_FUNCTIONS: dict[type, Callable[[Any, PanelBox], Iterator[Shape]]] = {
-    Trace: _draw_trace, Band: _draw_band, Strokes: _draw_strokes, Polygon: _draw_polygon, Arrow: _draw_arrow, Spot: _draw_spot, Words: _draw_words,
-    Symbol: _draw_symbol, Link: _draw_link, PlaceLabel: _skip_label, VerticalMark: _draw_vertical_mark, Blank: _draw_blank, Bars: _draw_bars, Cells: _draw_cells,
-}  # fmt: skip
+    Trace: _draw_trace,
+    Band: _draw_band,
+    Strokes: _draw_strokes,
+    Polygon: _draw_polygon,
+    Arrow: _draw_arrow,
+    Spot: _draw_spot,
+    Words: _draw_words,
+    Symbol: _draw_symbol,
+    Link: _draw_link,
+    PlaceLabel: _skip_label,
+    VerticalMark: _draw_vertical_mark,
+    Blank: _draw_blank,
+    Bars: _draw_bars,
+    Cells: _draw_cells,
+}
 
 
 def split_at_gaps(points: Array) -> list[Array]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.drawing.canvas import DOT_ROWS, NO_PEN, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (
     Arrow,
@@ -29,8 +29,8 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
+from heuncli.output.drawing.label_placement import count_columns
 from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.room import count_columns
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
 
@@ -202,6 +202,18 @@ def _find_cell(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAW_FUNCTIONS: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _draw_trace, Band: _draw_band, Strokes: _draw_strokes, Polygon: _draw_polygon, Arrow: _draw_arrow, Spot: _draw_spot, Words: _draw_words,
-    Symbol: _draw_symbol, Link: _draw_link, PlaceLabel: _skip_label, VerticalMark: _draw_vertical_mark, Blank: _draw_blank, Bars: _draw_bars, Cells: _draw_cells,
-}  # fmt: skip
+    Trace: _draw_trace,
+    Band: _draw_band,
+    Strokes: _draw_strokes,
+    Polygon: _draw_polygon,
+    Arrow: _draw_arrow,
+    Spot: _draw_spot,
+    Words: _draw_words,
+    Symbol: _draw_symbol,
+    Link: _draw_link,
+    PlaceLabel: _skip_label,
+    VerticalMark: _draw_vertical_mark,
+    Blank: _draw_blank,
+    Bars: _draw_bars,
+    Cells: _draw_cells,
+}

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
+from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
 from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.room import count_columns, make_omitted_note
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import order_items
 

@@ -7,7 +7,7 @@ import io
 from typing import Any
 
 from heuncli.base.errors import Problem, SpecError
-from heuncli.output.drawing.picture import MARKER_SHAPES, Area, Line, Mark, Text, VectorDrawing, find_corners
+from heuncli.output.drawing.shapes import MARKER_SHAPES, Area, Line, Mark, Text, VectorDrawing, find_corners
 
 PER_INCH = 96.0  # pixels
 FIXED_AXES: dict[str, Any] = {"scalex": False, "scaley": False}  # keep the limits of the axes

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import Item, Spot, VerticalMark
+from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
 from heuncli.output.drawing.pens import BLACK, GREY, find_pen
-from heuncli.output.drawing.picture import Line, Mark, Shape, Text
-from heuncli.output.drawing.room import WordBox, WordField, count_columns
 from heuncli.output.drawing.scales import PanelBox
+from heuncli.output.drawing.shapes import Line, Mark, Shape, Text
 
 SMALL_SIZE = 11.0  # font size
 WIDTH_FACTOR, HEIGHT_FACTOR = 0.6, 1.2  # of the font size: maximum mean width of letters, height of a line

@@ -11,8 +11,8 @@ import re
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh
-from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
 from heuncli.results.results import Array
 
 SET_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}\Z")

@@ -7,7 +7,7 @@ from textwrap import wrap
 
 import numpy as np
 
-from heuncli.analyses.load_cases.gathered import BALANCE_TOLERANCE
+from heuncli.analyses.load_cases.assembly import BALANCE_TOLERANCE
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.output.fe_decks.naming import DeckNodes, NodeLoad, plain_text
 from heuncli.results.results import Array
@@ -102,7 +102,8 @@ def _case_lines(cases: LoadCases, case: LoadCase, number: int) -> Iterator[str]:
     yield f"{number}  {plain_text(case.name)}, t = {case.time:.9g} s"
     if case.averaging_time is not None:
         yield (
-            f"a blow as its mean over {case.averaging_time:.6g} s; the peak of a half sine is pi/2 of it. Weight and the other "
+            f"a blow as its mean over {case.averaging_time:.6g} s; the peak of a half sine is pi/2 of "
+            "it. Weight and the other "
             "loads of that instant are not in it"
         )
     force, moment = (

@@ -12,7 +12,7 @@ from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spo
 from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
 from heuncli.output.figures.bars import BarLine, BarRange, Extreme, WholeBar
 from heuncli.output.figures.error_bands import is_visible
-from heuncli.output.figures.happenings import format_instant
+from heuncli.output.figures.event_marks import format_instant
 from heuncli.results.results import Array, Mask
 from heuncli.study.quantities.digits import OPEN, choose_style, write_numbers
 from heuncli.study.quantities.table_units import Units

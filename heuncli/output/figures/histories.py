@@ -34,7 +34,7 @@ from heuncli.output.figures.courses import (
     require_one_number,
 )
 from heuncli.output.figures.error_bands import is_visible
-from heuncli.output.figures.happenings import format_instant, make_marks
+from heuncli.output.figures.event_marks import format_instant, make_marks
 from heuncli.output.figures.measured_points import MeasuredPoints, draw_points
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.thinning import find_visible_points
@@ -43,7 +43,7 @@ from heuncli.study.ask.measure import Peak
 from heuncli.study.ask.smoothed_friction import make_friction_warning
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction
 from heuncli.study.quantities.digits import format_error
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.quantities.table_units import Units
 
 MAX_DIGITS = 5  # maximum in labels of extremes

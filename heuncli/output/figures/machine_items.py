@@ -15,8 +15,8 @@ from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
-from heuncli.output.figures.lettered import iter_letters
-from heuncli.output.machine_geometry.acting import find_scene_joint_kind
+from heuncli.output.figures.letter_names import iter_letters
+from heuncli.output.machine_geometry.joint_symbols import find_scene_joint_kind
 from heuncli.output.machine_geometry.machine import BodyGeometry, JointGeometry, LineGeometry, Machine
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.silhouettes import (

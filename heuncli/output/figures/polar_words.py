@@ -49,7 +49,10 @@ def make_notes(curve: TipCurve, largest: LargestVector | None, units: Units) -> 
         yield f"{curve.name}: open or not known, and not drawn"
         return
     magnitude_text = f"{format_certain(size * largest.magnitude, size * largest.error)} {unit}"
-    yield f"{curve.name}: {f'{magnitude_text} all along' if largest.is_constant else f'largest {magnitude_text} {_describe_largest(curve, largest)}'}"
+    if largest.is_constant:
+        yield f"{curve.name}: {magnitude_text} all along"
+    else:
+        yield f"{curve.name}: largest {magnitude_text} {_describe_largest(curve, largest)}"
     normal_components = project_vectors(curve.vectors, curve.plane.normal)
     largest_normal = float(np.nanmax(np.abs(normal_components), initial=0.0))
     if largest_normal > tolerances.TOLD_ACROSS * largest.magnitude:

@@ -10,15 +10,15 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.multibody.coupled_start.prepared import prepare_coupled
+from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, PlaceLabel, Scaling
 from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures import machine_items, rope_items, traces
+from heuncli.output.figures.acting_loads import NO_LOADS, ActingLoads, collect_loads, draw_key, draw_loads
 from heuncli.output.figures.courses import FigureSource, require_claimed
 from heuncli.output.figures.machine_items import PosedMachine
-from heuncli.output.figures.pulls import NO_LOADS, ActingLoads, collect_loads, draw_key, draw_loads
 from heuncli.output.figures.traces import PointPath
 from heuncli.output.figures.windows import Window, choose_window, clip_items
 from heuncli.output.machine_geometry.machine import Machine, make_machine

@@ -28,7 +28,7 @@ from heuncli.output.drawing.pens import PENS
 from heuncli.output.figures.certain import format_certain
 from heuncli.output.figures.error_bands import is_visible
 from heuncli.output.figures.refusals import NotDrawable
-from heuncli.output.figures.swept import (
+from heuncli.output.figures.sweep_tables import (
     SweepNumbers,
     SweepSelection,
     SweepTable,
@@ -127,7 +127,10 @@ def _group_rows(picked_table: SweepSelection, others: Sequence[SweepVariable]) -
     combinations = np.unique(np.column_stack([variable.values for variable in others]), axis=0)
     if len(combinations) > len(PENS):
         names = ", ".join(variable.name for variable in picked_table.variables)
-        message = f"{picked_table.table.origin}: {len(picked_table.variables)} variables ({names}) would make {len(combinations)} curves"
+        message = (
+            f"{picked_table.table.origin}: {len(picked_table.variables)} variables ({names}) would make "
+            f"{len(combinations)} curves"
+        )
         hint_example = make_example(others[0])
         raise NotDrawable(
             message, f"hold some, as {hint_example}, until two vary or at most {len(PENS)} curves are left"
@@ -204,7 +207,10 @@ def _draw_fields(picked_table: SweepSelection, units: Units) -> FigureParts:
     """Draw a field over two variables, and below it the scale of its shades."""
     x_variable, y_variable = picked_table.variables
     if len(x_variable.levels) * len(y_variable.levels) > MAX_CELLS:
-        message = f"{picked_table.table.origin}: {len(x_variable.levels)} by {len(y_variable.levels)} cells; at most {MAX_CELLS:,}"
+        message = (
+            f"{picked_table.table.origin}: {len(x_variable.levels)} by {len(y_variable.levels)} cells; at "
+            f"most {MAX_CELLS:,}"
+        )
         raise NotDrawable(message, f"hold one, as {make_example(x_variable)}")
     x, y = make_axis(x_variable, cells=True), make_axis(y_variable, cells=True)
     panels: list[Panel] = []
@@ -259,7 +265,10 @@ def _draw_scatter(picked_table: SweepSelection, units: Units) -> FigureParts:
     """Draw each variable against each measure, a point for each variant. Raises NotDrawable."""
     count = len(picked_table.variables) * len(picked_table.table.measures)
     if count > MAX_PANELS:
-        message = f"{picked_table.table.origin}: {len(picked_table.variables)} variables by {len(picked_table.table.measures)} measures: {count} panels"
+        message = (
+            f"{picked_table.table.origin}: {len(picked_table.variables)} variables by "
+            f"{len(picked_table.table.measures)} measures: {count} panels"
+        )
         raise NotDrawable(message, f"name some of the measures, such as '{picked_table.table.measures[0].text}'")
     stride = -(-picked_table.table.n_rows // MAX_SPOTS)
     chosen = picked_table.variables[:1] if picked_table.has_named_axis else picked_table.variables

@@ -19,7 +19,7 @@ from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE
 from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.search import extremes
 
 

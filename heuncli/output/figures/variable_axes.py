@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Scaling
 from heuncli.output.drawing.ticks import choose_ends, is_zero_near
-from heuncli.output.figures.swept import SweepVariable
+from heuncli.output.figures.sweep_tables import SweepVariable
 from heuncli.results.results import Array
 
 MAX_LETTERS, MAX_NAMES = 100, 12  # of names below an axis; more names are numbered

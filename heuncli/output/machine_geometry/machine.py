@@ -14,9 +14,9 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.machine_geometry.acting import JointSymbol, iter_joint_symbols
 from heuncli.output.machine_geometry.discs import Disc
 from heuncli.output.machine_geometry.elements import ElementGeometry, collect_elements
+from heuncli.output.machine_geometry.joint_symbols import JointSymbol, iter_joint_symbols
 from heuncli.output.machine_geometry.marks import Mark, iter_marks
 from heuncli.output.machine_geometry.pitch_lines import BeltGeometry
 from heuncli.output.machine_geometry.ropes import RopeGeometry, collect_ropes

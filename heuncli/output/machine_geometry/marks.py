@@ -15,7 +15,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.mechanism.model import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.multibody.tree.rope_ways import body_pose
+from heuncli.multibody.tree.rope_routes import body_pose
 from heuncli.multibody.tree.starts import joint_start
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, order_span_ends

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.rope_ways import Z, find_pins, normalize
+from heuncli.multibody.tree.rope_routes import Z, find_pins, normalize
 from heuncli.output.machine_geometry.discs import Disc
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.results.results import Array

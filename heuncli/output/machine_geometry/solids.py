@@ -114,7 +114,10 @@ def compute_mesh_corners(mesh: Shape) -> Array:
 
 def _make_mesh_surface(shape: Shape) -> Surface:
     """Make the surface of a mesh, simplified if it is fine, with its sharp edges."""
-    from heuncli.output.machine_geometry.thinned import find_sharp_edges, simplify_mesh  # few scenes have them
+    from heuncli.output.machine_geometry.mesh_simplification import (  # few scenes have them
+        find_sharp_edges,
+        simplify_mesh,
+    )
 
     assert shape.mesh is not None
     corners, triangles = compute_mesh_corners(shape), shape.mesh.triangles

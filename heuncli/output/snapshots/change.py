@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.kept import Value
+from heuncli.output.snapshots.golden_file import Value
 
 
 class Change(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.kept import Value
+from heuncli.output.snapshots.golden_file import Value
 
 
 def format_value(value: Value | str | None, unit: str) -> str:

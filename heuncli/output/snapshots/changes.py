@@ -13,7 +13,7 @@ from itertools import chain
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.course_changes import find_course_changes, have_different_instants
-from heuncli.output.snapshots.kept import (
+from heuncli.output.snapshots.golden_file import (
     BOUNDS,
     N_EVEN,
     EventSnapshot,

@@ -12,8 +12,8 @@ from heuncli.base.errors import Problem, SolveError, UsageError
 from heuncli.study.ask.histories import CODE, make_histories
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
-from heuncli.study.load_cycles.counted import Collective, Counting, LoadHistory, UnfitCounting, make_collective
-from heuncli.study.quantities.stated import find_measure_error, find_unit
+from heuncli.study.load_cycles.collective import Collective, Counting, LoadHistory, UnfitCounting, make_collective
+from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
 
 NO_PEAK = Peak(math.nan, None)
 
@@ -71,7 +71,10 @@ def require_closed(histories: Sequence[LoadHistory]) -> None:
         gap, first, last = history.values[-1] - history.values[0], history.values[0], history.values[-1]
         if abs(gap) > 2.0 * history.error:
             ends_text = f"it begins with {first:.6g} {history.unit} and ends with {last:.6g}, off by {abs(gap):.2g}"
-            message = f"{history.path}: --repeat is of a motion that comes back: {ends_text}; the error is {history.error:.1g}"
+            message = (
+                f"{history.path}: --repeat is of a motion that comes back: {ends_text}; the error is "
+                f"{history.error:.1g}"
+            )
             hint = "make the duration one period: --set analysis.duration=...; or begin where the motion has settled"
             problems.append(Problem(CODE, message, hint=hint, entry_path="analysis"))
     if problems:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.kept import (
+from heuncli.output.snapshots.golden_file import (
     BEYOND,
     OPEN,
     UNKNOWN,

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 
 from heuncli.base import tolerances
 from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.kept import N_EVEN, NumberSnapshot, RunSnapshot
+from heuncli.output.snapshots.golden_file import N_EVEN, NumberSnapshot, RunSnapshot
 
 N_TENTHS = N_EVEN - 1
 SAME_INSTANTS = 1e-6  # as a share of the run

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.kept import BEYOND, UNKNOWN, Value
+from heuncli.output.snapshots.golden_file import BEYOND, UNKNOWN, Value
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.search.extremes import find_jump_sides
 

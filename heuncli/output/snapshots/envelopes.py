@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.kept import BEYOND, NumberSnapshot, RunSnapshot
+from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot, RunSnapshot
 
 
 class Bound(NamedTuple):

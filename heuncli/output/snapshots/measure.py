@@ -14,12 +14,11 @@ from typing import Any, TypeVar
 
 from heuncli.base.errors import Finding, Problem, SpecError, UsageError
 from heuncli.output.tables.export import dump_json
+from heuncli.results.path_words import find_position_word, split_path
 from heuncli.results.results_paths import find_values
-from heuncli.results.run_places import find_position_word, split_path
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import find_path_error
-from heuncli.study.ask.asked_values import collect_results
 from heuncli.study.ask.measure import (
     NOT_CLAIMED,
     MeasureRequest,
@@ -28,6 +27,7 @@ from heuncli.study.ask.measure import (
     find_exceeded_horizon,
     measure_value,
 )
+from heuncli.study.ask.option_values import collect_results
 from heuncli.study.ask.smoothed_friction import make_friction_warning
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction

@@ -73,10 +73,18 @@ def make_outcome(case: Case, path: str, case_name: str = "") -> Outcome:
     block |= {"passed": case.is_met, "message": case.failure or ""}
     has_bounds = case.upper_bound is not None or case.lower_bound is not None
     return Outcome(
-        EXPECTED, case.path, case.failure, case.location.line, case.location.column, case=case_name, when=case.when,
-        expected_text=_format_expected(case), found_text=_format_numbers(case.found_values), tolerance_text="" if has_bounds else f"{case.tolerance:.3g}",
+        EXPECTED,
+        case.path,
+        case.failure,
+        case.location.line,
+        case.location.column,
+        case=case_name,
+        when=case.when,
+        expected_text=_format_expected(case),
+        found_text=_format_numbers(case.found_values),
+        tolerance_text="" if has_bounds else f"{case.tolerance:.3g}",
         block=_to_lists(block),
-    )  # fmt: skip
+    )
 
 
 def _to_lists(value: Any) -> Any:

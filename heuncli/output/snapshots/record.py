@@ -20,7 +20,7 @@ from heuncli.output.snapshots.columns import (
     iter_series_columns,
 )
 from heuncli.output.snapshots.course_sums import CourseSums
-from heuncli.output.snapshots.kept import (
+from heuncli.output.snapshots.golden_file import (
     UNKNOWN,
     EventSnapshot,
     ImpactSnapshot,
@@ -151,8 +151,11 @@ def _make_sums(view: ResultView, page: Page) -> dict[str, SumSnapshot]:
         while name in snapshots:
             name += "'"
         factors = {path: float(np.ravel(factor)[0]) for path, factor in block["terms"].items()}
-        snapshots[name] = SumSnapshot(factors=factors, error=max(motion, WRITTEN) * largest_magnitude(np.array([*factors.values()])),
-                             value=_make_sum_value(block, view, page.results.time))  # fmt: skip
+        snapshots[name] = SumSnapshot(
+            factors=factors,
+            error=max(motion, WRITTEN) * largest_magnitude(np.array([*factors.values()])),
+            value=_make_sum_value(block, view, page.results.time),
+        )
     return snapshots
 
 

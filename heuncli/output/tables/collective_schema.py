@@ -22,30 +22,48 @@ def make_collective_schema() -> dict[str, Any]:
     share = make_object_schema({"slope": NUMBER, "shares": add_description(NUMBER_LIST, "of each class in the damage")})
     equivalent = make_object_schema({"slope": NUMBER, "cycles": NUMBER, "range": NUMBER, "error": NUMBER})
     ranges = {
-        "limits": add_description(NUMBER_LIST, "of the classes, n + 1"), "cycles": add_description(NUMBER_LIST, "in each class, n"),
+        "limits": add_description(NUMBER_LIST, "of the classes, n + 1"),
+        "cycles": add_description(NUMBER_LIST, "in each class, n"),
         "damage": {"type": "array", "items": share},
-    }  # fmt: skip
+    }
     crossings = {
-        "reference": NUMBER, "levels": NUMBER_LIST, "counted": add_description(NUMBER_LIST, "as E1049, 5.1"), "up": NUMBER_LIST, "down": NUMBER_LIST,
-    }  # fmt: skip
+        "reference": NUMBER,
+        "levels": NUMBER_LIST,
+        "counted": add_description(NUMBER_LIST, "as E1049, 5.1"),
+        "up": NUMBER_LIST,
+        "down": NUMBER_LIST,
+    }
     matrix = {
         "ranges": add_description(NUMBER_LIST, "limits"),
         "means": add_description(NUMBER_LIST, "limits"),
         "cycles": add_description(NUMBER_ROWS, "by range, mean"),
     }
-    return make_object_schema({
-        "unit": add_description({"type": "string"}, "SI, of ranges, means and levels"),
-        "magnitude": add_description({"type": "boolean"}, "whether it is one, which has no sign"),
-        "time": add_description(NUMBER_LIST, "first and last instant [s]"),
-        "repeat": add_description({"type": ["integer", "string"]}, "how often the motion is run through, or closed"),
-        "error": add_description(NUMBER, "of each value of the history"),
-        "lowest": NUMBER, "highest": NUMBER, "turning_points": {"type": "integer"},
-        "cycles": add_description(NUMBER, "how many, halves as halves, without those below the error"),
-        "below_error": add_description(make_object_schema({"cycles": NUMBER, "range": NUMBER}), "no larger than that range, in no class"),
-        "equivalent": add_description({"type": "array", "items": equivalent}, "damage-equivalent ranges"),
-        "ranges": make_object_schema(ranges), "matrix": make_object_schema(matrix), "crossings": make_object_schema(crossings),
-        "rainflow": add_description(make_object_schema({"from": NUMBER_LIST, "to": NUMBER_LIST, "count": NUMBER_LIST}), "every cycle, and half cycle"),
-    })  # fmt: skip
+    return make_object_schema(
+        {
+            "unit": add_description({"type": "string"}, "SI, of ranges, means and levels"),
+            "magnitude": add_description({"type": "boolean"}, "whether it is one, which has no sign"),
+            "time": add_description(NUMBER_LIST, "first and last instant [s]"),
+            "repeat": add_description(
+                {"type": ["integer", "string"]}, "how often the motion is run through, or closed"
+            ),
+            "error": add_description(NUMBER, "of each value of the history"),
+            "lowest": NUMBER,
+            "highest": NUMBER,
+            "turning_points": {"type": "integer"},
+            "cycles": add_description(NUMBER, "how many, halves as halves, without those below the error"),
+            "below_error": add_description(
+                make_object_schema({"cycles": NUMBER, "range": NUMBER}), "no larger than that range, in no class"
+            ),
+            "equivalent": add_description({"type": "array", "items": equivalent}, "damage-equivalent ranges"),
+            "ranges": make_object_schema(ranges),
+            "matrix": make_object_schema(matrix),
+            "crossings": make_object_schema(crossings),
+            "rainflow": add_description(
+                make_object_schema({"from": NUMBER_LIST, "to": NUMBER_LIST, "count": NUMBER_LIST}),
+                "every cycle, and half cycle",
+            ),
+        }
+    )
 
 
 def make_object_schema(properties: dict[str, Any], optional: set[str] | None = None) -> dict[str, Any]:

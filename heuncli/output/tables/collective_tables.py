@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
 from heuncli.results.results import Array
-from heuncli.study.load_cycles.counted import REFERENCE, Collective
+from heuncli.study.load_cycles.collective import REFERENCE, Collective
 from heuncli.study.quantities.digits import Style, choose_style, format_error, write_numbers, write_times
 from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
@@ -84,12 +84,18 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         collective.history.error * size,
     )
     unit_suffix = f" {unit}" if unit != "1" else ""
-    yield f"{format_cycles(collective.total_cycles)} of {collective.points} turning points between {low} and {high}{unit_suffix}"
+    yield (
+        f"{format_cycles(collective.total_cycles)} of {collective.points} turning points between {low} "
+        f"and {high}{unit_suffix}"
+    )
     if not collective.total_cycles:
         yield NO_CYCLES
     if collective.below_error.cycles:
         small = format_error(collective.below_error.range * size)
-        yield f"below the error: {format_cycles(collective.below_error.cycles)}, no larger than {small}{unit_suffix}; in no class, no sum"
+        yield (
+            f"below the error: {format_cycles(collective.below_error.cycles)}, no larger than "
+            f"{small}{unit_suffix}; in no class, no sum"
+        )
     if collective.history.is_magnitude:
         yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE
     if has_impacts:
@@ -205,16 +211,26 @@ def to_json_block(collective: Collective) -> dict[str, Any]:
         "below_error": collective.below_error._asdict(),
         "equivalent": [shares._asdict() for shares in collective.equivalents],
         "ranges": {
-            "limits": collective.matrix.ranges, "cycles": collective.counts,
-            "damage": [{"slope": s, "shares": shares} for s, shares in zip(options.slopes, collective.shares, strict=True)],
+            "limits": collective.matrix.ranges,
+            "cycles": collective.counts,
+            "damage": [
+                {"slope": s, "shares": shares} for s, shares in zip(options.slopes, collective.shares, strict=True)
+            ],
         },
-        "matrix": {"ranges": collective.matrix.ranges, "means": collective.matrix.means, "cycles": collective.matrix.counts},
+        "matrix": {
+            "ranges": collective.matrix.ranges,
+            "means": collective.matrix.means,
+            "cycles": collective.matrix.counts,
+        },
         "crossings": {
-            "reference": REFERENCE, "levels": collective.crossings.levels, "counted": collective.crossings.count_by_reference(REFERENCE),
-            "up": collective.crossings.upward, "down": collective.crossings.downward,
+            "reference": REFERENCE,
+            "levels": collective.crossings.levels,
+            "counted": collective.crossings.count_by_reference(REFERENCE),
+            "up": collective.crossings.upward,
+            "down": collective.crossings.downward,
         },
         "rainflow": {"from": collective.cycles.begin, "to": collective.cycles.end, "count": collective.cycles.counts},
-    }  # fmt: skip
+    }
 
 
 def iter_csv_lines(collectives: Sequence[Collective]) -> Iterator[str]:

@@ -388,4 +388,7 @@ def _format_positions(run: CutRun) -> list[str]:
 def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:
     if len(shown_cuts) == len(run.s):
         return ""
-    return f"; {len(shown_cuts)} of {len(run.s)} cuts shown, jumps and extremes among them; every cut: --all, or --format csv"
+    return (
+        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, jumps and extremes among them; every cut: "
+        "--all, or --format csv"
+    )

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import LimitError, Problem
-from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
 from heuncli.results.cut_rows import cut_indices
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, IMPULSES, find_row

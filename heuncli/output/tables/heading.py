@@ -133,7 +133,8 @@ def _describe_run(results: Results) -> str:
         if results.model.get("step"):
             method = f"{results.model['method']} in steps of {results.model['step']:.4g} s, "
         parts.append(
-            f"{method}{format_count(int(work['steps']), 'step')}, {format_count(int(work['evaluations']), 'evaluation')}"
+            f"{method}{format_count(int(work['steps']), 'step')}, "
+            f"{format_count(int(work['evaluations']), 'evaluation')}"
         )
     elif len(times) == 1:
         parts.append("nothing integrated")

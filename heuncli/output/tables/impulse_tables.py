@@ -14,8 +14,8 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables import cut_runs
-from heuncli.output.tables.blow_table import make_impact_table
 from heuncli.output.tables.certain_sums import make_sums_table
+from heuncli.output.tables.impact_table import make_impact_table
 from heuncli.output.tables.instants_tables import make_instants_tables
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import IMPULSES

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 
 # Characters with a meaning anywhere in a line. Brackets alone, such as those of units, have none: a link needs more.
 MARKUP = r"(?i)([\\`*_{<#|~&$]|!(?=\[)|\](?=[(\[:])|\[(?=\^)|:(?=//)|(?<=www)\.|(?<=[a-z0-9])@(?=[a-z0-9]))"

@@ -140,7 +140,8 @@ JOINTS = TablePlan(
     "joint",
     ("force", "moment", "axial", "radial", "tilting", "tension", "torque", "pressure", "drive"),
     lambda results, labels: (
-        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_format_axes(results)}, moment about the "to" point'
+        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_format_axes(results)}, '
+        'moment about the "to" point'
     ),
     _make_joint_note,
 )
@@ -234,7 +235,8 @@ IMPULSES = (
     ),
     FOUNDATION._replace(
         heading=lambda results, labels: (
-            f"FOUNDATION  impulse and its moment ON the ground, world axes, moment about {_format_moment_point(results, labels)}"
+            "FOUNDATION  impulse and its moment ON the ground, world axes, moment about "
+            f"{_format_moment_point(results, labels)}"
         )
     ),
     AXIS._replace(
@@ -245,7 +247,8 @@ IMPULSES = (
     ),
     JOINTS._replace(
         heading=lambda results, labels: (
-            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_format_axes(results)}, moment about the "to" point'
+            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_format_axes(results)}, '
+            'moment about the "to" point'
         )
     ),
     STOPS._replace(

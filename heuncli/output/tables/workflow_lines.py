@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
-from heuncli.base.foreign_text import escape_lines
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape_lines
 
 MAX_OF_KIND = 9  # of a kind: GitHub shows ten, and the last one gives the number of further ones
 MESSAGE_ESCAPES = {"%": "%25", "\r": "%0D", "\n": "%0A"}

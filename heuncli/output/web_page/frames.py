@@ -69,7 +69,8 @@ def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES)
     largest_turn = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
     if largest_turn > tolerances.TORN:
         notes.append(
-            f"Between two frames a body turns up to {math.degrees(largest_turn):.0f}°: only the frames show where it is."
+            f"Between two frames a body turns up to {math.degrees(largest_turn):.0f}°: only the "
+            "frames show where it is."
         )
     return PageFrames(times, tuple(notes))
 

@@ -12,7 +12,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
-from heuncli.output.machine_geometry.coupled_pulls import CouplingForce, iter_coupling_forces
+from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
 from heuncli.output.machine_geometry.machine import BodyGeometry, Machine, make_machine
 from heuncli.output.machine_geometry.marks import Mark
 from heuncli.output.machine_geometry.poses import Poses
@@ -70,32 +70,52 @@ def make_page_scene(
         "topologies": topologies.to_lists(),
         "joints": [
             {
-                "name": j.name, "kind": j.kind, "a": body_numbers[j.a], "p": _to_floats(j.p), "b": body_numbers[j.b],
-                "q": _to_floats(j.q), "axis": _to_floats(j.axis), "rope": j.name in ropes,
+                "name": j.name,
+                "kind": j.kind,
+                "a": body_numbers[j.a],
+                "p": _to_floats(j.p),
+                "b": body_numbers[j.b],
+                "q": _to_floats(j.q),
+                "axis": _to_floats(j.axis),
+                "rope": j.name in ropes,
             }
             for j in machine.joints
         ],
         "lines": [
-            {"name": x.name, "kind": x.kind, "a": body_numbers[x.a], "p": _to_floats(x.p), "b": body_numbers[x.b], "q": _to_floats(x.q)}
+            {
+                "name": x.name,
+                "kind": x.kind,
+                "a": body_numbers[x.a],
+                "p": _to_floats(x.p),
+                "b": body_numbers[x.b],
+                "q": _to_floats(x.q),
+            }
             for x in machine.lines
         ],
         "paths": [pack_points(path) for path in machine.paths],
         "belts": [
-            {"body": body_numbers[belt.carrier], "strands": pack_points(belt.strands), "run": pack_points(belt.compute_travel(results.coordinates))}
+            {
+                "body": body_numbers[belt.carrier],
+                "strands": pack_points(belt.strands),
+                "run": pack_points(belt.compute_travel(results.coordinates)),
+            }
             for belt in machine.belts
         ],
         "ropes": [_make_rope(rope, poses, body_numbers) for rope in machine.ropes],
         "marks": [_make_mark(mark, poses) for mark in machine.marks],
         "acting": [
-            {"joint": joint_numbers[joint_load.joint], "symbols": joint_load.symbols, "slides": joint_load.slides} for joint_load in machine.joint_symbols
+            {"joint": joint_numbers[joint_load.joint], "symbols": joint_load.symbols, "slides": joint_load.slides}
+            for joint_load in machine.joint_symbols
         ],
         "symbols": {name: _make_symbol(name) for name in sorted(_collect_symbols(machine))},
         "ground": [{"name": name, "at": _to_floats(point)} for name, point in machine.ground_points.items()],
         "gravity": _to_floats(np.array(spec.gravity)),
-        "pulls": [_make_coupling_force(pull, belts) for pull in iter_coupling_forces(machine, poses, results.couplings)],
+        "pulls": [
+            _make_coupling_force(pull, belts) for pull in iter_coupling_forces(machine, poses, results.couplings)
+        ],
         "normal": _find_common_pin_axis(machine, poses) if normal is None else _to_floats(normal),
         **_compute_extent(machine, poses),
-    }  # fmt: skip
+    }
 
 
 def _to_floats(vector: Array) -> list[float]:

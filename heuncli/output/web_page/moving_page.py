@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.foreign_text import escape
 from heuncli.base.records import replace
+from heuncli.base.text_safety import escape
 from heuncli.output.machine_geometry.poses import extract_poses
 from heuncli.output.machine_geometry.views import find_motion_plane
 from heuncli.output.tables.heading import make_heading
@@ -16,9 +16,9 @@ from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.output.web_page.cuts import make_sections
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, resample_at_frames
 from heuncli.output.web_page.geometry import make_page_machine, make_page_scene
-from heuncli.output.web_page.inlined import assemble_page
 from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables
 from heuncli.output.web_page.packing import pack_values
+from heuncli.output.web_page.page_assembly import assemble_page
 from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
 from heuncli.study.ask.study import Study

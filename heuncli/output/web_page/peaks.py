@@ -51,9 +51,12 @@ def find_peaks(study: Study, labels: Labels, certain: Certainty) -> Peaks:
     single_loads = [load for load in ordered if not load.cut_run]
     errors = np.array([_find_error(load, labels, certain) for load in ordered])
     search = ColumnSearch(
-        _stack_columns, [[k] for k in range(len(single_loads))], errors, np.array([load.is_squared for load in ordered]),
+        _stack_columns,
+        [[k] for k in range(len(single_loads))],
+        errors,
+        np.array([load.is_squared for load in ordered]),
         _collect_cut_run_loads if len(single_loads) < len(ordered) else None,
-    )  # fmt: skip
+    )
     extremes = study.search_extremes(search, REPORTS, whole=True)
     minimum_times = np.where([load.is_squared for load in ordered], np.nan, extremes.low_at)  # magnitudes: maximum only
     times = np.concatenate([minimum_times, extremes.high_at])

@@ -18,8 +18,8 @@ from typing import Any
 from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import RATES, TYPES
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import find_similar, suggest
 from heuncli.base.records import record
+from heuncli.base.spelling import find_similar, suggest
 from heuncli.base.units import RATE, UNITS, Dimension, canonical_symbol, describe, parse_unit, si_expression_hint
 from heuncli.results.results_schema import REPORT_OF, ROWS, SHARED_BLOCKS
 from heuncli.scene.expressions.calculations import CalculationCache

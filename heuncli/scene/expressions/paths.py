@@ -15,8 +15,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.results.results import Array
-from heuncli.scene.expressions.beside import bound_derivatives, project_to_plane, roller_centre
 from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.expressions.roller_path import bound_derivatives, project_to_plane, roller_centre
 
 PERIODIC = 2  # a table's kind (scene/expressions/programs.py)
 SAMPLES_PER_PIECE = 8  # samples of each piece

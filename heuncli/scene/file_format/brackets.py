@@ -203,7 +203,10 @@ def unclosed_error(text: str, open_brackets: list[int], index: int) -> MismatchE
 def wrong_closing_error(text: str, open_index: int, index: int, margin: int) -> MismatchError:
     """Make the error for a closing bracket of the wrong kind."""
     closing = CLOSING[text[open_index]]
-    message = f"found '{text[index]}' where '{closing}' is needed, for the '{text[open_index]}' of {format_position(text, open_index)}"
+    message = (
+        f"found '{text[index]}' where '{closing}' is needed, for the '{text[open_index]}' of "
+        f"{format_position(text, open_index)}"
+    )
     hint = f"write '{closing}', or close the '{text[open_index]}' before"
     return MismatchError(Mismatch(index, message, hint), find_next_key(text, index, margin))
 

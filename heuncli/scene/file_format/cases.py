@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from heuncli.base.errors import Problem, SpecError
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.names import as_mapping
 from heuncli.scene.file_format.overrides import Setting, apply_settings
 from heuncli.scene.file_format.source import SourceFile

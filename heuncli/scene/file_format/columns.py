@@ -19,7 +19,7 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import MAX_WORD_LENGTH, find_similar, list_words
+from heuncli.base.spelling import MAX_WORD_LENGTH, find_similar, list_words
 from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.headings import name_in_heading
 

@@ -14,12 +14,13 @@ from pydantic_core import core_schema
 
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
-from heuncli.base.nearest import spend_effort, suggest
 from heuncli.base.number_range import is_in_range
 from heuncli.base.records import record, replace
+from heuncli.base.spelling import spend_effort, suggest
 from heuncli.scene.expressions.grammar import NO_NAMES
 from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format.entries import Entry, OneOf, Preprocessor, Tag
+from heuncli.scene.file_format.foreign_words import FORM_HINTS
 from heuncli.scene.file_format.quantity import (
     Scope,
     describe_kind,
@@ -28,7 +29,6 @@ from heuncli.scene.file_format.quantity import (
     read_function,
     read_number,
 )
-from heuncli.scene.file_format.words import FORM_HINTS
 
 TABLE_HINT = "such as tables: {NAME: {x: [...], y: [...], interpolation: cubic}}"
 HELD_TABLE = 1  # kind of a table (scene/expressions/programs.py) that is constant outside its range
@@ -229,7 +229,10 @@ class SmoothTable(ValueReader):
             table.dimensions, (self.over, self.dimension), ("x", "y"), strict=True
         ):
             if table_dimension is not None and expected is not None and table_dimension != expected:
-                message = f"the {axis} of table {table.name} is {u.describe(table_dimension)}, expected {u.describe(expected)}"
+                message = (
+                    f"the {axis} of table {table.name} is {u.describe(table_dimension)}, expected "
+                    f"{u.describe(expected)}"
+                )
                 raise Finding("dimension", message, f"{axis}_unit: {u.si_unit(expected)}, say")
         return table
 

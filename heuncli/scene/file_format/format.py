@@ -63,11 +63,11 @@ from heuncli.scene.file_format.fields import (
     Velocity,
     VelocityInTime,
 )
+from heuncli.scene.file_format.foreign_words import AMBIGUOUS_WORDS
 from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry
 from heuncli.scene.file_format.format_elastic import BushingEntry, MotorEntry
 from heuncli.scene.file_format.format_rolling import RollingEntry
 from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
-from heuncli.scene.file_format.words import AMBIGUOUS_WORDS
 
 Frame = Literal["world", "body"]
 Report = Literal[

@@ -6,10 +6,10 @@ import re
 from collections.abc import Collection
 from typing import Any
 
-from heuncli.base.nearest import find_similar, suggest
+from heuncli.base.spelling import find_similar, suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.entries import keys_of
-from heuncli.scene.file_format.words import (
+from heuncli.scene.file_format.foreign_words import (
     AMBIGUOUS_WORDS,
     COORDINATE_KEYS,
     FORM_HINTS,

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from heuncli.base.errors import Problem, SourceLocation, SpecError
-from heuncli.base.nearest import reset_effort, suggest
 from heuncli.base.records import replace
+from heuncli.base.spelling import reset_effort, suggest
 from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format import format as f
@@ -22,12 +22,12 @@ from heuncli.scene.file_format.names import NAMED_BLOCKS, SceneNames, as_mapping
 from heuncli.scene.file_format.overrides import Setting, apply_settings, iter_si_warnings, parse_settings
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
 from heuncli.scene.file_format.planar import complete_planar_scene
+from heuncli.scene.file_format.pydantic_errors import is_primary
 from heuncli.scene.file_format.quantity import Scope, describe_kind
 from heuncli.scene.file_format.resolve import ResolveInputs, resolve
 from heuncli.scene.file_format.rules.every import RULES, DraftDocument, Rule, Violation, iter_violations
 from heuncli.scene.file_format.semantics import list_instants
 from heuncli.scene.file_format.source import Path_, SourceFile, format_path, read_source
-from heuncli.scene.file_format.verdicts import is_primary
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -267,7 +267,7 @@ class SpecLoader:
         if not curve_items:
             return {}
         from heuncli.base.units import TIME
-        from heuncli.scene.file_format.measured import build_curve  # as for tables
+        from heuncli.scene.file_format.measured_curves import build_curve  # as for tables
         from heuncli.scene.file_format.rules.curves import find_x_quantity
         from heuncli.scene.file_format.rules.expect import iter_expected_quantities
 

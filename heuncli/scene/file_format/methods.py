@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from heuncli.base import tolerances
 from heuncli.base.method_rows import AUTO, METHODS, NAMES, find_method
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import suggest
-from heuncli.scene.file_format.words import METHOD_WORDS
+from heuncli.base.spelling import suggest
+from heuncli.scene.file_format.foreign_words import METHOD_WORDS
 
 
 class MethodProblem(NamedTuple):
@@ -64,7 +64,8 @@ def iter_step_problems(step: float, end_time: float | None) -> Iterator[MethodPr
         )
     elif end_time is not None and check_factor * end_time > max_steps * step:
         message = (
-            f"steps of {step:g} s are too many: {end_time / step:.3g} to {end_time:g} s, {check_factor} times as many in the check "
+            f"steps of {step:g} s are too many: {end_time / step:.3g} to {end_time:g} s, "
+            f"{check_factor} times as many in the check "
             f"run, and {max_steps:,} is the most"
         )
         smallest_step = check_factor * end_time / max_steps

@@ -12,13 +12,13 @@ from typing import Any
 
 from heuncli.base.errors import SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.expressions.composed import add_expressions, multiply_expressions
+from heuncli.scene.expressions.composition import add_expressions, multiply_expressions
 from heuncli.scene.expressions.programs import OWN, VAR, Expression
 from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import models as m
-from heuncli.scene.file_format.turns import unit_vector
+from heuncli.scene.file_format.rotations import unit_vector
 
 RATE_EXPRESSION = Expression(source="rate", constant=None, uses=((OWN, "rate"),), code=(VAR, 1))
 
@@ -90,6 +90,16 @@ def make_pin(name: str, joint: m.Joint[str, m.Vec]) -> m.Joint[str, m.Vec]:
     """Make a pin in the body `from` of a joint, coaxial with the joint."""
     unset: dict[str, Any] = dict.fromkeys(("angle", "rate", "travel", "speed", "length", "stiffness", "drive"))
     return m.Joint(
-        name=name, kind="pin", a=joint.a, p=joint.p, b=name, q=m.ZERO, axis=joint.axis, to_axis=joint.axis, to_axis_given=False,
-        tension_only=False, p_name=joint.p_name, **unset,
-    )  # fmt: skip
+        name=name,
+        kind="pin",
+        a=joint.a,
+        p=joint.p,
+        b=name,
+        q=m.ZERO,
+        axis=joint.axis,
+        to_axis=joint.axis,
+        to_axis_given=False,
+        tension_only=False,
+        p_name=joint.p_name,
+        **unset,
+    )

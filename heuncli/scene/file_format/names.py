@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import match_misspelt_keys
+from heuncli.base.spelling import match_misspelt_keys
 from heuncli.scene.expressions.grammar import RESERVED
 from heuncli.scene.file_format.entries import Entry, keys_of
 from heuncli.scene.file_format.format import BodyEntry, GroundEntry

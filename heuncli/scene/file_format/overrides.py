@@ -9,7 +9,7 @@ from typing import Any
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.names import NAMED_BLOCKS, as_mapping
 from heuncli.scene.file_format.source import Path_, parse_plain_scalar, parse_source

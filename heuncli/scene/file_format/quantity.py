@@ -212,4 +212,4 @@ def number_hint(value: Any) -> str:
 
 FINITE_HINT = "where there is no limit leave the key out; in [low, high] write null"
 
-__all__ = ["DependentError", "Scope", "read_function", "describe_kind", "read_number"]
+__all__ = ["DependentError", "Scope", "describe_kind", "read_function", "read_number"]

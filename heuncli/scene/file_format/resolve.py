@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.records import record
-from heuncli.scene.expressions.composed import (
+from heuncli.scene.expressions.composition import (
     add_expressions,
     limit_magnitude,
     multiply_expressions,
@@ -36,6 +36,7 @@ from heuncli.scene.file_format.resolve_couplings import (
     resolve_coupling,
     resolve_wheel,
 )
+from heuncli.scene.file_format.rotations import IDENTITY
 from heuncli.scene.file_format.semantics import (
     find_analysis_type,
     find_driven_coordinate,
@@ -47,7 +48,6 @@ from heuncli.scene.file_format.semantics import (
     list_instants,
     orientation_matrix,
 )
-from heuncli.scene.file_format.turns import IDENTITY
 
 if TYPE_CHECKING:
     from heuncli.scene.expressions.paths import Path
@@ -93,7 +93,9 @@ def resolve(document: f.Document, meaning: ResolveInputs, resolver: Resolver | N
         forces=active_resolver.resolve_entries("forces", "force"),
         impulses=active_resolver.resolve_entries("impulses", "impulse"),
         stops=active_resolver.resolve_entries("stops", "stop"),
-        couplings=active_resolver.resolve_entries("couplings", "coupling") | active_resolver.resolve_entries("rolling", "wheel") | motor_rotors.couplings,
+        couplings=active_resolver.resolve_entries("couplings", "coupling")
+        | active_resolver.resolve_entries("rolling", "wheel")
+        | motor_rotors.couplings,
         latches=active_resolver.resolve_entries("latches", "latch"),
         sections=active_resolver.resolve_entries("sections", "section"),
         tables=meaning.tables,
@@ -105,7 +107,7 @@ def resolve(document: f.Document, meaning: ResolveInputs, resolver: Resolver | N
         case=meaning.case,
         warnings=meaning.warnings,
         locations={**meaning.locations, **motor_rotors.locations} if motor_rotors.locations else meaning.locations,
-    )  # fmt: skip
+    )
 
 
 def format_title(document: f.Document, case: str | None) -> str:
@@ -147,13 +149,16 @@ class Resolver:
         analysis, kind = self.document.analysis, find_analysis_type(self.document)
         instants = list_instants(self.document)
         return m.Analysis(
-            kind, instants, instants[-1] if kind == "motion" else None,
-            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical_name(analysis.method),
+            kind,
+            instants,
+            instants[-1] if kind == "motion" else None,
+            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE,
+            canonical_name(analysis.method),
             analysis.step,
             (*self.make_conditions(analysis), *(self.iter_entry_conditions() if kind == "motion" else ())),
             analysis.tolerance is not None,
             analysis.impacts,
-        )  # fmt: skip
+        )
 
     def point(self, body: str, name: str) -> m.Vec:
         points = self.document.ground.points if body == GROUND else self.document.bodies[body].points

@@ -183,5 +183,11 @@ def resolve_passage(resolver: ReferenceResolver, entry: f.PassageEntry) -> c.Pas
 
 
 MEANINGS: dict[str, Callable[..., c.Coupling]] = {
-    "ratio": resolve_ratio, "gear": resolve_gear, "screw": resolve_screw, "belt": resolve_belt, "differential": resolve_differential, "cam": resolve_cam, "rope": resolve_rope,
-}  # fmt: skip
+    "ratio": resolve_ratio,
+    "gear": resolve_gear,
+    "screw": resolve_screw,
+    "belt": resolve_belt,
+    "differential": resolve_differential,
+    "cam": resolve_cam,
+    "rope": resolve_rope,
+}

@@ -17,7 +17,7 @@ from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format import models as m
-from heuncli.scene.file_format import turns
+from heuncli.scene.file_format import rotations
 from heuncli.scene.file_format.fields import EndEntry
 
 DEFAULT_SAMPLES = 201
@@ -53,15 +53,15 @@ def orientation_matrix(value: fs.Orientation) -> m.Matrix:
     if value.axis is not None and value.angle is not None:
         if not any(value.axis):
             raise Finding("orientation", "the axis is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
-        return turns.rotation_about(value.axis, value.angle)
+        return rotations.rotation_about(value.axis, value.angle)
     if value.quaternion is not None:
-        return turns.rotation_from_unit_quaternion(value.quaternion)
+        return rotations.rotation_from_unit_quaternion(value.quaternion)
     if value.rodrigues is not None:
-        return turns.rotation_from_rodrigues(value.rodrigues)
+        return rotations.rotation_from_rodrigues(value.rodrigues)
     if value.euler is not None:
-        return turns.rotation_from_euler(value.euler, value.sequence or "")
+        return rotations.rotation_from_euler(value.euler, value.sequence or "")
     assert value.matrix is not None
-    return turns.rotation_from_matrix(value.matrix)
+    return rotations.rotation_from_matrix(value.matrix)
 
 
 def inertia_tensor(owner: f.BodyEntry | f.PieceEntry) -> m.Matrix:

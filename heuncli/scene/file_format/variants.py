@@ -17,12 +17,12 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from heuncli.base.errors import SpecError
-from heuncli.base.nearest import reset_effort
-from heuncli.scene.file_format.first_reading import RecordingLoader
-from heuncli.scene.file_format.later_reading import IncrementalLoader
+from heuncli.base.spelling import reset_effort
+from heuncli.scene.file_format.incremental_loader import IncrementalLoader
 from heuncli.scene.file_format.load import SpecLoader
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
+from heuncli.scene.file_format.recording_loader import RecordingLoader
 from heuncli.scene.file_format.source import read_source
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from heuncli.scene.file_format.models import Matrix, Vec
-from heuncli.scene.file_format.turns import matrix_product
+from heuncli.scene.file_format.rotations import matrix_product
 
 EPS = 2.220446049250313e-16
 ROUNDING_ERROR = 4.0 * EPS  # relative to the largest term: error of a sum of three products of rounded numbers

@@ -10,10 +10,10 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.models import Matrix
 from heuncli.scene.file_format.source import parse_plain_scalar
-from heuncli.scene.importers.described import (
+from heuncli.scene.importers.description import (
     DescribedBody,
     DescribedEntry,
     DescribedMachine,

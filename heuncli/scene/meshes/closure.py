@@ -74,7 +74,10 @@ def find_edge_neighbours(soup: TriangleSoup, edges: MeshEdges) -> tuple[IndexArr
     single = edges.counts == 1
     if single.any():
         wrong_edges = edges.order[edges.starts[single]]
-        message = f"{_format_edge_count(len(wrong_edges))} open, {_format_hole_count(edges.ends[wrong_edges], len(soup.corners))}"
+        message = (
+            f"{_format_edge_count(len(wrong_edges))} open, "
+            f"{_format_hole_count(edges.ends[wrong_edges], len(soup.corners))}"
+        )
         raise Finding(
             "open-mesh",
             f"the surface is not closed: {message}: {_format_first_edge(soup, edges.ends[wrong_edges[0]])}",
@@ -83,7 +86,10 @@ def find_edge_neighbours(soup: TriangleSoup, edges: MeshEdges) -> tuple[IndexArr
     is_shared = edges.counts > 2
     if is_shared.any():
         wrong_edges = edges.order[edges.starts[is_shared]]
-        message = f"{_format_edge_count(len(wrong_edges))} shared by more than two triangles: {_format_first_edge(soup, edges.ends[wrong_edges[0]])}"
+        message = (
+            f"{_format_edge_count(len(wrong_edges))} shared by more than two triangles: "
+            f"{_format_first_edge(soup, edges.ends[wrong_edges[0]])}"
+        )
         raise Finding("mesh-crosses-itself", f"the surface touches itself: {message}", ONE_SOLID_HINT)
     one, other = edges.order[edges.starts], edges.order[edges.starts + 1]
     same_direction = edges.ends[one, 0] == edges.ends[other, 0]

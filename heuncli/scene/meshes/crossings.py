@@ -25,7 +25,7 @@ from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
 from heuncli.scene.meshes.boxes import iter_overlapping, sort_along_curve
-from heuncli.scene.meshes.drawn_in import move_faces_inward
+from heuncli.scene.meshes.inward_offset import move_faces_inward
 from heuncli.scene.meshes.model import IndexArray, connected_components, cross_columns, dot_columns, gather_corners
 from heuncli.scene.meshes.numbers import mesh_file_finding
 

@@ -10,7 +10,7 @@ from heuncli.base.errors import Finding
 from heuncli.base.number_range import are_in_range
 from heuncli.scene.meshes.closure import find_edge_neighbours, find_edges, find_open_corners, find_shells
 from heuncli.scene.meshes.crossings import require_no_crossing
-from heuncli.scene.meshes.drawn_in import separate_fans
+from heuncli.scene.meshes.inward_offset import separate_fans
 from heuncli.scene.meshes.model import TriangleMesh, TriangleSoup, make_tetrahedra, middle_of_extent
 from heuncli.scene.meshes.numbers import mesh_file_finding
 from heuncli.scene.meshes.obj import read_obj

@@ -21,7 +21,11 @@ import numpy as np
 from heuncli.base.records import record
 from heuncli.results.results import Array, Indices
 from heuncli.scene.meshes.model import cross_product_rows, middle_of_extent, stable_order, volume_moments
-from heuncli.scene.shapes.crossed_triangles import (
+from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
+from heuncli.scene.shapes.outlines import Outline, Planes
+from heuncli.scene.shapes.rotations import cross_vectors, perpendicular_pair
+from heuncli.scene.shapes.solids import ThickSolid
+from heuncli.scene.shapes.triangle_crossings import (
     MAX_CROSSINGS_AT_ONCE,
     TriangleCrossings,
     count_planes_below,
@@ -29,10 +33,6 @@ from heuncli.scene.shapes.crossed_triangles import (
     intersection_lines,
     number_loops,
 )
-from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
-from heuncli.scene.shapes.outlines import Outline, Planes
-from heuncli.scene.shapes.rotations import cross_vectors, perpendicular_pair
-from heuncli.scene.shapes.solids import ThickSolid
 
 MAX_LEVELS = 100  # with at most this many heights of corners, all are listed as changes of the cross-sections
 DIRECTION_COUNT = 24  # lines that enclose an outline: at most 1 % of its radius outside it
@@ -59,9 +59,17 @@ def mean_of_product3(x: Array, y: Array, z: Array) -> Array:
 def column_moments(u: Array, v: Array, w: Array, A: Array) -> Array:
     """Compute the moments 1, u, v, w, uu, uv, vv, uw, vw, ww of the columns under triangles, (10, q)."""
     means = [
-        sum_corners(w) / 3.0, mean_of_product2(u, w), mean_of_product2(v, w), 0.5 * mean_of_product2(w, w), mean_of_product3(u, u, w), mean_of_product3(u, v, w), mean_of_product3(v, v, w),
-        0.5 * mean_of_product3(u, w, w), 0.5 * mean_of_product3(v, w, w), mean_of_product3(w, w, w) / 3.0,
-    ]  # fmt: skip
+        sum_corners(w) / 3.0,
+        mean_of_product2(u, w),
+        mean_of_product2(v, w),
+        0.5 * mean_of_product2(w, w),
+        mean_of_product3(u, u, w),
+        mean_of_product3(u, v, w),
+        mean_of_product3(v, v, w),
+        0.5 * mean_of_product3(u, w, w),
+        0.5 * mean_of_product3(v, w, w),
+        mean_of_product3(w, w, w) / 3.0,
+    ]
     return A * np.array(means)
 
 
@@ -150,9 +158,23 @@ class Polyhedron(ThickSolid):
         w = w - top
         U, V, W = sum_corners(u) / 3.0, sum_corners(v) / 3.0, sum_corners(w) / 3.0
         means = [
-            np.ones(len(triangle_numbers)), U, V, W, mean_of_product2(u, u), mean_of_product2(u, v), mean_of_product2(v, v), mean_of_product2(u, w), mean_of_product2(v, w), mean_of_product2(w, w),
-            mean_of_product3(u, u, w), mean_of_product3(u, v, w), mean_of_product3(v, v, w), mean_of_product3(u, w, w), mean_of_product3(v, w, w), mean_of_product3(w, w, w),
-        ]  # fmt: skip
+            np.ones(len(triangle_numbers)),
+            U,
+            V,
+            W,
+            mean_of_product2(u, u),
+            mean_of_product2(u, v),
+            mean_of_product2(v, v),
+            mean_of_product2(u, w),
+            mean_of_product2(v, w),
+            mean_of_product2(w, w),
+            mean_of_product3(u, u, w),
+            mean_of_product3(u, v, w),
+            mean_of_product3(v, v, w),
+            mean_of_product3(u, w, w),
+            mean_of_product3(v, w, w),
+            mean_of_product3(w, w, w),
+        ]
         # surface.low planes lie below such a triangle: it counts for each of them
         sums = np.array(
             [np.bincount(surface.low[triangle_numbers], surface.A[triangle_numbers] * mean, k + 1) for mean in means]

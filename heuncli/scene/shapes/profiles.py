@@ -21,9 +21,9 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.scene.shapes.crossed_triangles import intersection_lines, number_loops
 from heuncli.scene.shapes.figure_kinds import CuttingPlanes, ProfileFigure
 from heuncli.scene.shapes.polyhedron import LocalSurface, Polyhedron
+from heuncli.scene.shapes.triangle_crossings import intersection_lines, number_loops
 
 
 @record
@@ -42,11 +42,17 @@ class OutlineEdges:
         (x, y), (u, v) = (self.p - centers[self.plane]).T, (self.q - centers[self.plane]).T
         c = x * v - u * y
         terms = (
-            0.5 * c, (x + u) * c / 6.0, (y + v) * c / 6.0, (x * x + x * u + u * u) * c / 12.0,
-            (2.0 * (x * y + u * v) + x * v + u * y) * c / 24.0, (y * y + y * v + v * v) * c / 12.0,
-            triple_product_integral(x, u, x, u, x, u) * c, triple_product_integral(x, u, x, u, y, v) * c, triple_product_integral(x, u, y, v, y, v) * c,
+            0.5 * c,
+            (x + u) * c / 6.0,
+            (y + v) * c / 6.0,
+            (x * x + x * u + u * u) * c / 12.0,
+            (2.0 * (x * y + u * v) + x * v + u * y) * c / 24.0,
+            (y * y + y * v + v * v) * c / 12.0,
+            triple_product_integral(x, u, x, u, x, u) * c,
+            triple_product_integral(x, u, x, u, y, v) * c,
+            triple_product_integral(x, u, y, v, y, v) * c,
             triple_product_integral(y, v, y, v, y, v) * c,
-        )  # fmt: skip
+        )
         return np.array([np.bincount(self.plane, term, len(centers)) for term in terms])
 
 

@@ -130,9 +130,14 @@ def truncate_study(study: Study, t: float) -> Study:
     impulses = tuple(impulse for impulse in run.impulse_events if impulse.time <= t)
     run = replace(run, times=times, states=setup.runner.resample(run, times), impulse_events=impulses)
     history = replace(
-        history, times=times, find_solutions=solutions.select, checked_run=replace(history.checked_run, run=run, evaluate=solutions.select), impulses=impulses,
-        jumps=tuple(x for x in history.jumps if x <= t), singular=tuple(x for x in history.singular if x <= t),
-    )  # fmt: skip
+        history,
+        times=times,
+        find_solutions=solutions.select,
+        checked_run=replace(history.checked_run, run=run, evaluate=solutions.select),
+        impulses=impulses,
+        jumps=tuple(x for x in history.jumps if x <= t),
+        singular=tuple(x for x in history.singular if x <= t),
+    )
     recovery = recover(setup, solutions, options.least_norm)
     impulse_results = find_impulses(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, impulse_results)

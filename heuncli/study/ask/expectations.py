@@ -137,7 +137,10 @@ def _describe_failure(expected_values: Array, found_values: Array, tolerance: fl
                 return "expected open, there is none"
             expected_values = np.full(found_values.shape, np.nan)
         else:
-            return f"{_describe_size(expected_values)} expected, {_describe_size(found_values)} found (give at, peak, or a component)"
+            return (
+                f"{_describe_size(expected_values)} expected, {_describe_size(found_values)} found (give "
+                "at, peak, or a component)"
+            )
     open_expected, open_found = np.isnan(expected_values), np.isnan(found_values)
     if (open_expected & ~open_found).any():
         known = int((open_expected & ~open_found).sum())

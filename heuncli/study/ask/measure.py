@@ -246,9 +246,12 @@ def search_peaks(
     if CUT in numbers.axes:
         name = numbers.keys[1]
         search = search._replace(
-            columns=make_no_columns, groups=[], cut_columns=lambda results: [(name, columns(results))], bent=numbers.is_nonlinear,
+            columns=make_no_columns,
+            groups=[],
+            cut_columns=lambda results: [(name, columns(results))],
+            bent=numbers.is_nonlinear,
             sides=BOTH_SIDES,
-        )  # fmt: skip
+        )
     bounds = study.search_extremes(search, find_reports(path), times=times)
     lowest, highest = bounds.places[0] if bounds.places else (None, None)
     return (

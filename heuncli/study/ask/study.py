@@ -279,9 +279,15 @@ class Study:
             self, search, reports, self.with_whole_cuts(search.bent) if search.cut_columns else None
         )
         bounds = extremes.search_extremes(
-            study_columns.sample, times, study_columns.groups, errors=search.errors, even=search.even, search_between=between,
-            max_groups=extremes.MAX_COLUMNS if whole else None, sides=sides,
-        )  # fmt: skip
+            study_columns.sample,
+            times,
+            study_columns.groups,
+            errors=search.errors,
+            even=search.even,
+            search_between=between,
+            max_groups=extremes.MAX_COLUMNS if whole else None,
+            sides=sides,
+        )
         bounds = study_columns.add_places(bounds)
         self.left_out.update(study_columns.unknown)
         self.later_warnings.update(dict.fromkeys(warn_left_out(study_columns.unknown)))

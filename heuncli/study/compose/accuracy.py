@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.loads.kinetostatics.balance import balance_residual
 from heuncli.loads.kinetostatics.energy import energy_drift, power_imbalance, work_scale
-from heuncli.motion.integration.contacts.blows import free_impulse_energy
+from heuncli.motion.integration.contacts.impulses import free_impulse_energy
 from heuncli.results.results import Accuracy, Array
 from heuncli.study.compose.recovery import ENERGY_REPORTS, Recovery
 from heuncli.study.model.setup import Setup

@@ -163,7 +163,7 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
         cuts = requested_cuts.at_attachments(attached)
         is_open: Mapping[str, Mask] = {}
         if stress is not None:
-            from heuncli.loads.redundancy.open_components import (
+            from heuncli.loads.redundancy.indeterminate_components import (
                 find_indeterminate_section,
                 list_indeterminate_section_names,
             )
@@ -199,7 +199,7 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
     spec_coupling, names = coupling_loads.coupling.entry, [body.name for body in mechanism.bodies]
     block = make_coupling_block(coupling_loads, names, find_pretension(coupling_loads, recovery.loads))
     if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.drives_told import DRIVE_ELEMENT_NUMBERS  # few scenes have them
+        from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
 
         is_impulse = bool(recovery.solutions.loads.shape[1] < len(layout.tables["loads"]))  # at an impulse no load acts
         block |= {

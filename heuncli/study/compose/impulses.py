@@ -19,8 +19,8 @@ from heuncli.base.records import fields, record, replace
 from heuncli.loads.kinetostatics.actions import Action, ActionEnd
 from heuncli.loads.kinetostatics.balance import balance_residual
 from heuncli.loads.kinetostatics.magnitudes import find_magnitudes
-from heuncli.motion.integration.check.shared_blows import match_impulses
-from heuncli.motion.integration.contacts.blows import DRIVES, ImpulseEvent
+from heuncli.motion.integration.check.matching_impulses import match_impulses
+from heuncli.motion.integration.contacts.impulses import DRIVES, ImpulseEvent
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Mechanism

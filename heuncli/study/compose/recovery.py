@@ -116,7 +116,7 @@ class Recovery:
         if not layout.mechanism.couplings:
             return resolution
         from heuncli.loads.kinetostatics.flanks import add_separating_forces  # few scenes have gears
-        from heuncli.loads.redundancy.open_flanks import add_flank_columns
+        from heuncli.loads.redundancy.indeterminate_flanks import add_flank_columns
 
         couplings = self.find_couplings(resolution)
         remaining_stress, stress = (
@@ -305,7 +305,7 @@ def recover(
         require_directions(setup.scene, solutions)
     found = Recovery(setup, solutions, least_norm, state_instants=state_instants)
     if setup.scene.mechanism.joint_friction and found.decided is not None:
-        from heuncli.loads.redundancy.rubbing import require_determinate_friction  # few scenes need it
+        from heuncli.loads.redundancy.friction_check import require_determinate_friction  # few scenes need it
 
         require_determinate_friction(setup.scene.layout, found.decided.all_stress, found.states, solutions.times)
     return found

@@ -129,7 +129,7 @@ def warn_of_threads(setup: Setup, impulses: Impulses | None) -> tuple[str, ...]:
     """Warn of threads that transmit impulses."""
     if impulses is None or not any(own.type == "screw" for own in setup.spec.couplings.values()):
         return ()
-    from heuncli.study.compose.rubbing_threads import warn_at_impulses  # few scenes have them
+    from heuncli.study.compose.threads import warn_at_impulses  # few scenes have them
 
     return tuple(warn_at_impulses(setup.spec, impulses))
 

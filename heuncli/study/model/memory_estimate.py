@@ -55,7 +55,8 @@ def require_memory(setup: Setup, budget: MemoryBudget, *, in_parts: bool = False
     fitting = int(truncate_to_two_digits(budget.memory / bytes_per_instant))
     largest = max(blocks, key=lambda block: blocks[block], default="")
     message = (
-        f"the results at {instants:,} instants would take about {format_bytes(instants * bytes_per_instant)} of memory; "
+        f"the results at {instants:,} instants would take about "
+        f"{format_bytes(instants * bytes_per_instant)} of memory; "
         f"{format_bytes(budget.memory)} may be taken"
     )
     hint = f"{fitting:,} instants would fit (analysis.samples)" if fitting >= 2 else "not even two instants would fit"
@@ -77,7 +78,8 @@ def require_memory_for_steps(setup: Setup, min_steps: int, budget: MemoryBudget)
     if takes <= budget.memory:
         return
     message = (
-        f"loads and drives jump or bend at {min_steps - 1:,} instants, each the end of a step; so many steps would take "
+        f"loads and drives jump or bend at {min_steps - 1:,} instants, each the end of a step; so "
+        "many steps would take "
         f"about {format_bytes(takes)} of memory; {format_bytes(budget.memory)} may be taken"
     )
     raise LimitError(Problem("too-much-memory", message, hint="a shorter duration, or tables of fewer points"))

@@ -79,7 +79,8 @@ def describe_length(layout: Layout, last: float) -> list[str]:
     if swings >= LONG_MOTION and is_conservative(layout):
         rounded = float(f"{swings:.2g}")
         return [
-            f"long and conservative, some {rounded:,.0f} turns or swings: what the check run tells of the error holds to "
+            f"long and conservative, some {rounded:,.0f} turns or swings: what the check run tells of "
+            "the error holds to "
             "their end; a symmetric method, Gauss6 with a given step, pays only beyond some 100,000"
         ]
     return []

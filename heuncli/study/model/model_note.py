@@ -169,7 +169,10 @@ def describe_contacts(layout: Layout, is_closed: Mask) -> str:
     closed_names = list(
         dict.fromkeys(contact.name for contact, is_held in zip(contacts, is_closed, strict=True) if is_held)
     )
-    return f"opens and closes: {list_some(names)}; closed at the start: {list_some(closed_names) if closed_names else 'none'}"
+    return (
+        f"opens and closes: {list_some(names)}; closed at the start: "
+        f"{list_some(closed_names) if closed_names else 'none'}"
+    )
 
 
 def describe_self_stresses(layout: Layout, stress: SelfStress) -> list[str]:

@@ -22,8 +22,12 @@ Ends = Mapping[str, Mapping[str, set[str]]]
 # blocks whose entries refer to bodies
 BODY_BLOCKS = ("joints", "drives", "forces", "impulses", "stops", "latches", "couplings")
 # reports that concern some bodies only, and their blocks; other reports concern all bodies
-BLOCKS_OF_REPORT = {"joints": (("joints",), ("stops",), ("couplings",)), "sections": (("sections",),), "forces": (("forces",),),
-    "points": (("points",),)}  # fmt: skip
+BLOCKS_OF_REPORT = {
+    "joints": (("joints",), ("stops",), ("couplings",)),
+    "sections": (("sections",),),
+    "forces": (("forces",),),
+    "points": (("points",),),
+}
 
 
 def find_bodies(item: Any, spec: Spec) -> set[str]:

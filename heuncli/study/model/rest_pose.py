@@ -10,7 +10,6 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.loads.equilibrium.digits import find_neighbour_poses
-from heuncli.loads.equilibrium.finer import VerifiedPose, find_verified_pose, perturbed_states
 from heuncli.loads.equilibrium.pose import make_bearing_pose
 from heuncli.loads.equilibrium.rest_check import require_at_rest
 from heuncli.loads.equilibrium.search import RestSearch
@@ -22,6 +21,7 @@ from heuncli.loads.equilibrium.steady_states import (
     require_constant,
     require_steady,
 )
+from heuncli.loads.equilibrium.verification import VerifiedPose, find_verified_pose, perturbed_states
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.linearisation.displacements import find_displacement
@@ -131,7 +131,8 @@ def describe_rest(mechanism: Mechanism, stability: Stability, without_slope: lis
         texts.append(f"indifferent: {what}; where along it is by the way it came")
     if stability.edge:
         texts.append(
-            f"at the edge of stability: {list_motions(stability.edge)}, which moved aside sets going what nothing brings back"
+            f"at the edge of stability: {list_motions(stability.edge)}, which moved aside sets going "
+            "what nothing brings back"
         )
     if stability.flat:
         texts.append(
@@ -181,5 +182,6 @@ def warn_ridge(layout: Layout, search_result: VerifiedPose) -> tuple[str, ...]:
         return ()
     warning = "the damped motion to the rest pose passes so near a ridge that its last digits decide where it ends"
     return (
-        f"{warning}: perhaps with {describe_other_pose(layout, search_result.equilibrium.pose, search_result.alternative.pose)}",
+        f"{warning}: perhaps with "
+        f"{describe_other_pose(layout, search_result.equilibrium.pose, search_result.alternative.pose)}",
     )

@@ -14,11 +14,11 @@ from heuncli.base.records import record, replace
 from heuncli.loads.redundancy.count import count_redundancy
 from heuncli.motion.integration.determined_motion import NOT_DETERMINED, find_determined_motion
 from heuncli.motion.integration.integrated_scene import integrate_reduced
-from heuncli.motion.integration.methods.followed import DRIVE_DETERMINED
+from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
 from heuncli.motion.integration.methods.method import Method
 from heuncli.motion.integration.methods.registry import load_method_by_name
 from heuncli.motion.integration.run.runner import Runner, make_runner
-from heuncli.multibody.coupled_start.prepared import prepare_coupled
+from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.build import build, make_forms
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Mechanism
@@ -119,7 +119,7 @@ def set_up(
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = make_runner(prepared, stages)
     if scene.mechanism.joint_friction and scene.layout.rows:
-        from heuncli.loads.redundancy.rubbing import (
+        from heuncli.loads.redundancy.friction_check import (
             require_determinate_friction_at_start,  # few scenes have such friction
         )
 

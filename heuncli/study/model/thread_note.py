@@ -31,4 +31,7 @@ def describe_thread(lead: float, friction: ThreadFriction) -> str:
     efficiency = f"efficiency {slope * (1.0 - slope * mu) / (slope + mu):.3g} of turning into thrust"
     if slope <= mu:
         return f"{SELF_LOCKING} {angles}: no thrust turns it; {efficiency}"
-    return f"not {SELF_LOCKING} {angles}: {efficiency}, {(slope - mu) / (1.0 + slope * mu) / slope:.3g} of thrust into turning"
+    return (
+        f"not {SELF_LOCKING} {angles}: {efficiency}, {(slope - mu) / (1.0 + slope * mu) / slope:.3g} of "
+        "thrust into turning"
+    )

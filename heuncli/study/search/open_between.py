@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.loads.redundancy.open_components import list_indeterminate_names, mask_indeterminate
+from heuncli.loads.redundancy.indeterminate_components import list_indeterminate_names, mask_indeterminate
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.compose.blocks import make_requested_blocks

@@ -43,7 +43,7 @@ def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states:
         numbers_by_quantity.setdefault("moment" if number.is_moment else "force", []).append(number.values)
     spec_coupling = loads.coupling.entry
     if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.drives_told import DRIVE_ELEMENT_NUMBERS  # few scenes have them
+        from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
 
         for name, values in DRIVE_ELEMENT_NUMBERS[spec_coupling.type](
             spec_coupling, loads.carried_load, struck=False

@@ -21,7 +21,7 @@ from heuncli.motion.integration.check.estimate import CheckedRun, evaluate_run, 
 from heuncli.motion.integration.check.instants import interleave
 from heuncli.motion.integration.check.runs import Runs, perturb_start
 from heuncli.motion.integration.check.singular_poses import find_singular_positions
-from heuncli.motion.integration.contacts.blows import ImpulseEvent
+from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_start
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.methods.method import Method
@@ -123,9 +123,18 @@ def integrate(
     singular = tuple(find_singular_positions(runner, checked.run))
     estimate, check_impulses = ErrorEstimate(motion=checked.motion, **checked.loads), checked.check_impulses
     return History(
-        checked.run.times, checked.evaluate, tolerance, estimate, checked, checked.run.impulse_events, check_impulses, jumps, singular,
-        seconds, checked.errors,
-    )  # fmt: skip
+        checked.run.times,
+        checked.evaluate,
+        tolerance,
+        estimate,
+        checked,
+        checked.run.impulse_events,
+        check_impulses,
+        jumps,
+        singular,
+        seconds,
+        checked.errors,
+    )
 
 
 def check_start(setup: Setup) -> tuple[float, ...]:
@@ -258,9 +267,17 @@ def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = Fa
     estimate = ErrorEstimate(motion=pose_error, **errors.estimate())
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
-        times, own_solution.select, tolerance, estimate, impulses=impulses[0], check_impulses=tuple(impulses[1:]), seconds=seconds,
-        errors=errors.errors_by_cause(), state_instants=None if setup.steady_spin_axes else errors.last, notes=notes,
-    )  # fmt: skip
+        times,
+        own_solution.select,
+        tolerance,
+        estimate,
+        impulses=impulses[0],
+        check_impulses=tuple(impulses[1:]),
+        seconds=seconds,
+        errors=errors.errors_by_cause(),
+        state_instants=None if setup.steady_spin_axes else errors.last,
+        notes=notes,
+    )
 
 
 def find_closed_contacts(runner: Runner, t: float, state: Array) -> Array:
@@ -294,7 +311,7 @@ def require_separate_points(runner: Runner, run: CheckedRun) -> None:
         if problem is not None:
             raise SolveError(problem)
     if any(isinstance(load, BushingLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.motion.integration.check.turned_over import find_half_turn
+        from heuncli.motion.integration.check.bushing_half_turns import find_half_turn
 
         if (problem := find_half_turn(runner, run.run, run.horizon)) is not None:
             raise SolveError(problem)

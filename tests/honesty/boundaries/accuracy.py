@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.charting.reference import count_valid_instants
-from heuncli.analyses.charting.results import COMPLETED, ChartRow, ChartRun, mark_front
+from heuncli.analyses.work_precision.reference import count_valid_instants
+from heuncli.analyses.work_precision.results import COMPLETED, ChartRow, ChartRun, mark_front
 from heuncli.motion.integration.check.runs import has_shared_steps
 from heuncli.motion.integration.run.pace import find_hopeless_steps
 from heuncli.output.tables.page import make_page

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from heuncli.analyses.probing.growth import to_results
-from heuncli.analyses.probing.numerics.shadows import DisturbanceGrowth
-from heuncli.analyses.probing.study import probe
+from heuncli.analyses.motion_diagnostics.growth import to_results
+from heuncli.analyses.motion_diagnostics.numerics.lyapunov import DisturbanceGrowth
+from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.honesty.boundaries.part import Part, Row

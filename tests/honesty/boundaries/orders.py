@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.analyses.balancing.asked import BalanceOptions
+from heuncli.analyses.balancing.options import BalanceOptions
 from heuncli.analyses.balancing.study import balance
 from heuncli.analyses.balancing.verdicts import classify_order
 from heuncli.base.errors import SolveError

@@ -10,7 +10,7 @@ from heuncli.multibody.mechanism.build import build
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.turns import rotation_from_matrix
+from heuncli.scene.file_format.rotations import rotation_from_matrix
 from heuncli.study.ask.expectations import compare
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read

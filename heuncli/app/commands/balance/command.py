@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from heuncli.analyses.balancing.study import balance
+from heuncli.app.cli.figure_files import require_save_form
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import emit, save
-from heuncli.app.cli.picture_files import require_save_form
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.balance import page as report
 from heuncli.app.commands.balance.options import parse_options
 from heuncli.app.commands.balance.request import BalanceRequest
-from heuncli.output.drawing.as_file import encode_drawing
+from heuncli.output.drawing.drawing_files import encode_drawing
 from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.table_units import Units

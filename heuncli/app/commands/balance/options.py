@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.balancing.asked import BalanceOptions, FlywheelRequest, WeightRequest
+from heuncli.analyses.balancing.options import BalanceOptions, FlywheelRequest, WeightRequest
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import require_choice
 from heuncli.app.commands.balance.request import BalanceRequest
 from heuncli.base.errors import Finding, Problem
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.base.units import LENGTH, RATE, TIME, Dimension
 from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import Scope

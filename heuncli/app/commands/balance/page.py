@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.analyses.balancing.balance_labels import format_cycle, format_reference_point, get_unit
 from heuncli.analyses.balancing.results import BalanceResults, Counterbalance, CycleLoad, OrderRow, Period
-from heuncli.analyses.balancing.told import select_largest
-from heuncli.analyses.balancing.words import format_cycle, format_reference_point, get_unit
-from heuncli.app.commands.balance.letters import draw_orders
+from heuncli.analyses.balancing.summary import select_largest
 from heuncli.app.commands.balance.remedies_page import make_remedy_tables
+from heuncli.app.commands.balance.text_chart import draw_orders
 from heuncli.base.records import replace
 from heuncli.base.tolerances import WRITTEN
 from heuncli.output.tables.export import FORMAT
@@ -205,16 +205,27 @@ def to_block(results: BalanceResults) -> dict[str, Any]:
     """Return the balance as the JSON has it."""
     effects = results.effects
     content: Block = {
-        "heun": FORMAT, "title": results.title, "spec": dict(results.spec), "version": VERSION,
+        "heun": FORMAT,
+        "title": results.title,
+        "spec": dict(results.spec),
+        "version": VERSION,
         "cycle": {
-            "coordinate": results.coordinate, "turns": results.turns, "rate": results.rate, "samples": results.samples,
-            "settled": results.is_resolved, **make_period_block(results.period),
+            "coordinate": results.coordinate,
+            "turns": results.turns,
+            "rate": results.rate,
+            "samples": results.samples,
+            "settled": results.is_resolved,
+            **make_period_block(results.period),
         },
-        "about": results.reference_point, "axis": results.axis, "words": dict(results.summaries), "notes": list(results.notes),
-        "mean": dict(results.mean), "mean_error": dict(results.mean_error),
+        "about": results.reference_point,
+        "axis": results.axis,
+        "words": dict(results.summaries),
+        "notes": list(results.notes),
+        "mean": dict(results.mean),
+        "mean_error": dict(results.mean_error),
         "harmonics": {name: [row.to_block() for row in rows] for name, rows in results.orders.items()},
         "residual": {name: residual.to_block() for name, residual in results.residual.items()},
-    }  # fmt: skip
+    }
     if results.period is None:
         content["per_rate"] = {
             "angle": effects.angles,
@@ -250,13 +261,20 @@ def make_weights_block(counterbalance: Counterbalance) -> Block:
     """Return the counterweights as the JSON has them, with the remaining orders and the cost."""
     return {
         "counterweights": [weight.to_block() for weight in counterbalance.weights],
-        "minimised": {"what": counterbalance.objective, "lever": counterbalance.lever, "several": counterbalance.several},
+        "minimised": {
+            "what": counterbalance.objective,
+            "lever": counterbalance.lever,
+            "several": counterbalance.several,
+        },
         "left": {
             "words": dict(counterbalance.summaries),
             "harmonics": {name: [row.to_block() for row in rows] for name, rows in counterbalance.orders.items()},
         },
-        "cost": {name: make_cost_block(loads) for name, loads in (("before", counterbalance.loads_without), ("after", counterbalance.loads_with))},
-    }  # fmt: skip
+        "cost": {
+            name: make_cost_block(loads)
+            for name, loads in (("before", counterbalance.loads_without), ("after", counterbalance.loads_with))
+        },
+    }
 
 
 def make_cost_block(loads: Mapping[str, CycleLoad]) -> Block:

@@ -49,11 +49,15 @@ def make_weights_table(counterbalance: Counterbalance) -> TextTable:
     masses = format_numbers([weight.mass for weight in counterbalance.weights])
     rows = tuple(
         (
-            f"{weight.body}.{weight.place}", products[k], f"{math.degrees(weight.angle):.4f}", format_direction(weight.reference_direction),
-            f"{weight.radius:.6g}", masses[k],
+            f"{weight.body}.{weight.place}",
+            products[k],
+            f"{math.degrees(weight.angle):.4f}",
+            format_direction(weight.reference_direction),
+            f"{weight.radius:.6g}",
+            masses[k],
         )
         for k, weight in enumerate(counterbalance.weights)
-    )  # fmt: skip
+    )
     notes = [
         f"left of force: {counterbalance.summaries['force']}",
         f"left of moment: {counterbalance.summaries['moment']}",

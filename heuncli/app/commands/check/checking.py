@@ -9,20 +9,19 @@ from functools import partial
 from itertools import starmap
 from pathlib import Path
 
-from heuncli.app.cli import alarm, memory
+from heuncli.app.cli import memory, timeout
 from heuncli.app.cli.entry import UsageError, format_problems, run_contained
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import format_warnings
 from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.checked import CheckResult
+from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.app.commands.check.folders import FoundSpec
-from heuncli.app.commands.check.kept_outcomes import NO_FILE, compare_golden
+from heuncli.app.commands.check.golden_outcomes import NO_FILE, compare_golden
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.base.errors import Finding, HeunError, SpecError
-from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.keep import take_run_snapshot
-from heuncli.output.snapshots.kept import (
+from heuncli.base.text_safety import escape
+from heuncli.output.snapshots.golden_file import (
     FORMAT,
     MAX_BYTES,
     REWRITE_HINT,
@@ -33,6 +32,7 @@ from heuncli.output.snapshots.kept import (
 )
 from heuncli.output.snapshots.outcomes import EXPECTED, Outcome, make_outcome
 from heuncli.output.snapshots.selection import find_default_reports
+from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Expect, Spec
 from heuncli.scene.file_format.reading import read_bytes
@@ -71,7 +71,7 @@ def check_spec(task: CheckTask, request: CheckRequest, jobs: int) -> CheckResult
         if task.spec.problem is not None:
             raise SpecError(task.spec.problem)
         work = partial(
-            alarm.run_with_limit, partial(_compare_spec, task, request, jobs, items), request.time_limit_each
+            timeout.run_with_limit, partial(_compare_spec, task, request, jobs, items), request.time_limit_each
         )
         checked = run_contained(work, ("check", path))
     except UsageError as error:
@@ -120,7 +120,7 @@ def _compare_spec(task: CheckTask, request: CheckRequest, jobs: int, items: list
             for outcome in golden_outcomes_found
             if outcome.note and not request.quiet
         ]
-    alarm.disarm()
+    timeout.disarm()
     return CheckResult(path, tuple(outcomes), messages=tuple(messages), golden=golden)
 
 
@@ -129,9 +129,12 @@ def _solve_scene(spec: Spec, task: CheckTask, request: CheckRequest, jobs: int) 
     selection = _select_results(spec, task.file is not None)
     available, bytes_each = memory.result_memory("table")
     options = Options(
-        requested_reports=selection.reports, entries=selection.entries, time_limit=alarm.remaining_time(), memory_budget=MemoryBudget(available / jobs, bytes_each),
+        requested_reports=selection.reports,
+        entries=selection.entries,
+        time_limit=timeout.remaining_time(),
+        memory_budget=MemoryBudget(available / jobs, bytes_each),
         reduce=not request.no_reduce,
-    )  # fmt: skip
+    )
     return solve(spec, options)
 
 

@@ -14,15 +14,15 @@ from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.checked import FAILED, CheckResult
+from heuncli.app.commands.check.check_result import FAILED, CheckResult
 from heuncli.app.commands.check.checking import CheckTask, check_spec
 from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs
-from heuncli.app.commands.check.picking import select_specs
+from heuncli.app.commands.check.page import FORMS, CheckSummary
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
-from heuncli.app.commands.check.told import FORMS, CheckSummary
+from heuncli.app.commands.check.spec_selection import select_specs
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 
 NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
 JOB_FORMATS = ("markdown", "github")  # formats that include errors: nobody sees standard error there

@@ -14,7 +14,7 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.check.folders import FoundSpec
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.base.errors import Finding, HeunError, Problem, SourceLocation
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import STANDARD_INPUT
 
 SUFFIX = ".json"

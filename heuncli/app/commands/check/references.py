@@ -7,20 +7,20 @@ from collections.abc import Sequence
 from functools import partial
 
 from heuncli.analyses.published.cases import read_case
-from heuncli.analyses.published.compared import compare_case
+from heuncli.analyses.published.comparison import compare_case
 from heuncli.analyses.published.files import list_names
-from heuncli.app.cli import alarm, jobs
+from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, run_contained, select_exit_code
 from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.check.checked import CheckResult
-from heuncli.app.commands.check.references_told import FORMS, ReferenceResult, iter_outcomes
+from heuncli.app.commands.check.check_result import CheckResult
+from heuncli.app.commands.check.page import CheckSummary, render_github
+from heuncli.app.commands.check.references_page import FORMS, ReferenceResult, iter_outcomes
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
-from heuncli.app.commands.check.told import CheckSummary, render_github
 from heuncli.base import files
 from heuncli.base.errors import HeunError, Problem
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.study.model.options import Options
 
 EXCLUDED_OPTIONS = (("--golden", "golden"), ("--update", "update"), ("--strict", "strict"), ("-k", "select"))
@@ -88,14 +88,14 @@ def check_case(name: str, request: CheckRequest) -> ReferenceResult:
     place = PLACE.format(name)
 
     def work() -> ReferenceResult:
-        options = Options(time_limit=alarm.remaining_time(), reduce=not request.no_reduce)
+        options = Options(time_limit=timeout.remaining_time(), reduce=not request.no_reduce)
         tables = compare_case(case, options)
-        alarm.disarm()
+        timeout.disarm()
         return ReferenceResult(case, tables, CheckResult(place, tuple(iter_outcomes(tables))))
 
     try:
         result = run_contained(
-            partial(alarm.run_with_limit, work, request.time_limit_each), ("check", "--references", name)
+            partial(timeout.run_with_limit, work, request.time_limit_each), ("check", "--references", name)
         )
     except HeunError as error:
         messages = tuple(format_problems(error.problems, label=f"{name}: "))

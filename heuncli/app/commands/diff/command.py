@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.target import choose_format
+from heuncli.app.commands.diff.page import FORMS, Difference, sort_changes
 from heuncli.app.commands.diff.request import FORMATS, DiffRequest
 from heuncli.app.commands.diff.sides import (
     RESULT,
@@ -16,11 +17,10 @@ from heuncli.app.commands.diff.sides import (
     restrict_to_common_instants,
     solve_side,
 )
-from heuncli.app.commands.diff.told import FORMS, Difference, sort_changes
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.changes import EXTRA, MISSING, find_changes
-from heuncli.output.snapshots.kept import RunSnapshot
+from heuncli.output.snapshots.golden_file import RunSnapshot
 
 CHANGED = 1
 SAMPLED = "results in JSON hold samples: what lies between these is not compared"

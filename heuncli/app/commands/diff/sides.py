@@ -9,15 +9,15 @@ from pathlib import PurePath
 from types import MappingProxyType
 from typing import Any
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError, run_contained
 from heuncli.app.cli.solving import format_warnings
 from heuncli.base.errors import Finding, HeunError, Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.keep import take_run_snapshot
-from heuncli.output.snapshots.kept import RunSnapshot, is_text_cut_off, validate_golden_data
-from heuncli.output.snapshots.sampled import find_common_instants, read_instants, read_run_snapshot
+from heuncli.output.snapshots.golden_file import RunSnapshot, is_text_cut_off, validate_golden_data
+from heuncli.output.snapshots.json_results import find_common_instants, read_instants, read_run_snapshot
 from heuncli.output.snapshots.selection import find_default_reports
+from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 from heuncli.study.model.options import Options
@@ -127,7 +127,7 @@ def solve_side(side: Side, even_at: Mapping[str, Sequence[float]], limit: float 
     """
     if side.kind != SPEC:
         return side, []
-    work = partial(alarm.run_with_limit, partial(_solve_spec, side.path, even_at), limit, subject=side.path)
+    work = partial(timeout.run_with_limit, partial(_solve_spec, side.path, even_at), limit, subject=side.path)
     runs, warnings, digest = run_contained(work, ("diff", side.path))
     return side._replace(runs=runs, digest=digest), warnings
 
@@ -138,11 +138,11 @@ def _solve_spec(path: str, even_at: Mapping[str, Sequence[float]]) -> tuple[dict
     warnings: list[str] = []
     for name, one in {"": spec, **cases}.items():
         reports = find_default_reports(one)
-        study = solve(one, Options(requested_reports=Selection(reports).reports, time_limit=alarm.remaining_time()))
+        study = solve(one, Options(requested_reports=Selection(reports).reports, time_limit=timeout.remaining_time()))
         runs[name] = take_run_snapshot(study, reports, even_at.get(name, ()))
         place = f"heun: {path}: case {name}" if name else f"heun: {path}"
         warnings += format_warnings(one, study.results, place, study.later_warnings)
-    alarm.disarm()
+    timeout.disarm()
     return runs, warnings, spec.sha256
 
 

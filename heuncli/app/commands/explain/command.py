@@ -11,7 +11,7 @@ from heuncli.app.cli.registry import COMMANDS, find_command
 from heuncli.app.commands.explain.codes import parse_codes
 from heuncli.app.commands.explain.request import ExplainRequest
 from heuncli.base.errors import Problem
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.results.results_schema import TREE
 
 FOLDER = Path(__file__).parents[3] / "manual"

@@ -7,11 +7,11 @@ from functools import partial
 
 from heuncli.analyses.find.results import FindCondition, IntervalFindings
 from heuncli.analyses.find.study import SIDES, find_meetings
-from heuncli.analyses.variants.asking import Recipe, VariantEvaluator
 from heuncli.analyses.variants.axes import Interval, parse_interval
+from heuncli.analyses.variants.cached_evaluator import REASONS, ROUNDING, CachedEvaluator
 from heuncli.analyses.variants.conditions import find_si_value, parse_condition
 from heuncli.analyses.variants.course import Sample
-from heuncli.analyses.variants.once import REASONS, ROUNDING, CachedEvaluator
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
@@ -28,7 +28,7 @@ from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.quantities.table_units import Units
 
 DEFAULT_SCAN, DEFAULT_EVALUATIONS = 7, 300  # default numbers of variants: of the scan, in all

@@ -108,9 +108,13 @@ def format_heading(page: FindPage) -> list[tuple[str, str]]:
 def _make_crossings_table(page: FindPage) -> TextTable:
     unit = page.units.find(page.condition.unit)[0]
     columns = (
-        TextColumn(format_head(page.interval.name, page.interval.unit or "1")), TextColumn("error"),
-        TextColumn(format_head("measure", unit or "1")), TextColumn("error"), TextColumn("", "left"), TextColumn("", "left"),
-    )  # fmt: skip
+        TextColumn(format_head(page.interval.name, page.interval.unit or "1")),
+        TextColumn("error"),
+        TextColumn(format_head("measure", unit or "1")),
+        TextColumn("error"),
+        TextColumn("", "left"),
+        TextColumn("", "left"),
+    )
     rows = tuple(_make_crossing_row(page, each) for each in page.findings.crossings)
     return TextTable("CROSSINGS  where the measure passes the value, as the unknown grows", columns, rows)
 
@@ -203,7 +207,10 @@ def _describe_touch(page: FindPage, each: Touch) -> str:
 def _describe_jump(page: FindPage, each: MeasureJump) -> str:
     value_before, value_after = (page.format_measure(one.gap or 0.0, one.error) for one in each)
     width = format_error(each.right.x - each.left.x)
-    return f"jumps from {value_before} to {value_after} at {page.format_place(each.left.x)} (within {width}): the value is not met there"
+    return (
+        f"jumps from {value_before} to {value_after} at {page.format_place(each.left.x)} (within "
+        f"{width}): the value is not met there"
+    )
 
 
 def _describe_bracket(page: FindPage, each: UnresolvedBracket) -> str:
@@ -231,7 +238,9 @@ def _describe_unsolved(page: FindPage, each: UnsolvedStretch) -> Iterator[str]:
             text = f"{of_solved} solved at {page.interval.format_value(solved)}, {of_failed} not solved at"
             yield f"  {text} {page.interval.format_value(failed)} (± {error})"
     for one in each.withheld[:MAX_WITHHELD]:
-        yield f"  at {page.interval.format_value(one.x)} alone: {page.format_measure(one.withheld_gap or 0.0, one.error)}"
+        yield (
+            f"  at {page.interval.format_value(one.x)} alone: {page.format_measure(one.withheld_gap or 0.0, one.error)}"
+        )
     if len(each.withheld) > MAX_WITHHELD:
         yield f"  and {format_count(len(each.withheld) - MAX_WITHHELD, 'variant')} more in singular poses"
 
@@ -239,34 +248,57 @@ def _describe_unsolved(page: FindPage, each: UnsolvedStretch) -> Iterator[str]:
 def to_json(page: FindPage) -> str:
     """Return all findings as JSON; measures in SI, places in the unit of the interval and in SI."""
     interval, condition, findings = page.interval, page.condition, page.findings
-    return dump_json({
-        "heun": 1, "title": page.title,
-        "measure": condition.text, "relation": condition.relation, "value": condition.value, "unit": condition.unit,
-        "unknown": {"name": interval.name, "from": interval.low, "to": interval.high, "unit": interval.unit},
-        "runs": len(findings.samples), "scan": page.scan, "spacing": findings.spacing, "complete": findings.is_complete,
-        "crossings": [_make_crossing_block(page, each) for each in findings.crossings],
-        "touches": [
-            {**_make_place_block(page, each.sample), "from": each.low, "to": each.high, "side": each.side}
-            for each in findings.touches
-        ],
-        "jumps": [{"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)} for each in findings.jumps],
-        "brackets": [{"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)} for each in findings.brackets],
-        "not_excluded": [
-            {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)} for each in findings.not_excluded
-        ],
-        "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in findings.met_stretches],
-        "unsolved": [
-            {
-                "from": each.low, "to": each.high, "code": each.code, "reason": each.reason, "variants": each.variants,
-                "first": each.first, "last": each.last,
-                "from_error": each.first - each.low, "to_error": each.high - each.last,
-                "alone": [_make_withheld_block(page, one) for one in each.withheld],
-            }
-            for each in findings.unsolved_stretches
-        ],
-        **{word: _make_place_block(page, each) for word, each in _iter_extremes(findings)}, "refined": findings.is_refined,
-        "course": [_make_place_block(page, each) for each in findings.samples],
-    })  # fmt: skip
+    return dump_json(
+        {
+            "heun": 1,
+            "title": page.title,
+            "measure": condition.text,
+            "relation": condition.relation,
+            "value": condition.value,
+            "unit": condition.unit,
+            "unknown": {"name": interval.name, "from": interval.low, "to": interval.high, "unit": interval.unit},
+            "runs": len(findings.samples),
+            "scan": page.scan,
+            "spacing": findings.spacing,
+            "complete": findings.is_complete,
+            "crossings": [_make_crossing_block(page, each) for each in findings.crossings],
+            "touches": [
+                {**_make_place_block(page, each.sample), "from": each.low, "to": each.high, "side": each.side}
+                for each in findings.touches
+            ],
+            "jumps": [
+                {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
+                for each in findings.jumps
+            ],
+            "brackets": [
+                {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
+                for each in findings.brackets
+            ],
+            "not_excluded": [
+                {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
+                for each in findings.not_excluded
+            ],
+            "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in findings.met_stretches],
+            "unsolved": [
+                {
+                    "from": each.low,
+                    "to": each.high,
+                    "code": each.code,
+                    "reason": each.reason,
+                    "variants": each.variants,
+                    "first": each.first,
+                    "last": each.last,
+                    "from_error": each.first - each.low,
+                    "to_error": each.high - each.last,
+                    "alone": [_make_withheld_block(page, one) for one in each.withheld],
+                }
+                for each in findings.unsolved_stretches
+            ],
+            **{word: _make_place_block(page, each) for word, each in _iter_extremes(findings)},
+            "refined": findings.is_refined,
+            "course": [_make_place_block(page, each) for each in findings.samples],
+        }
+    )
 
 
 def _iter_extremes(findings: IntervalFindings) -> Iterator[tuple[str, Sample]]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from heuncli.analyses.lagrange.over import find_inertia_curve
+from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
@@ -41,7 +41,7 @@ def main(request: LagrangeRequest) -> int:
         state_space=request.state_space,
         inputs=parse_names(request.inputs),
         outputs=parse_names(request.outputs),
-        time_limit=alarm.remaining_time(),
+        time_limit=timeout.remaining_time(),
     )
     spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])

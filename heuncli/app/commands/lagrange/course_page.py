@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.kinds import LENGTH, get_units
+from heuncli.analyses.lagrange.coordinate_units import LENGTH, get_units
 from heuncli.analyses.lagrange.results import InertiaCurve
 from heuncli.app.commands.lagrange.page import format_number
 from heuncli.output.tables.page_width import split_to_width

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.kinds import MIXED_INERTIA_UNIT, get_units
+from heuncli.analyses.lagrange.coordinate_units import MIXED_INERTIA_UNIT, get_units
 from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
 from heuncli.analyses.lagrange.section_forces import to_lists
 from heuncli.base.joint_kinds import is_length

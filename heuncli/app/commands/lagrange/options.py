@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.lagrange.over import CoordinateRange
+from heuncli.analyses.lagrange.inertia_curve import CoordinateRange
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.lagrange.forms import KEYS
 from heuncli.app.commands.lagrange.request import LagrangeRequest
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.joint_kinds import JOINTS, is_length
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.base.units import LENGTH, NUMBER, Dimension
 from heuncli.scene.expressions.grammar import Scope
 from heuncli.scene.file_format.models import Spec

@@ -8,7 +8,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from heuncli.analyses.lagrange.kinds import ANGLE, LENGTH, get_units
+from heuncli.analyses.lagrange.coordinate_units import ANGLE, LENGTH, get_units
 from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
 from heuncli.analyses.lagrange.section_forces import list_cuts
 from heuncli.output.tables.page_width import split_to_width

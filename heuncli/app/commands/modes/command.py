@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from heuncli.analyses.modes.exclusion import exclude_entries
 from heuncli.analyses.modes.study import compute_spec_modes
-from heuncli.analyses.modes.without import exclude_entries
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.left_out import find_excluded
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.without_option import find_excluded
 from heuncli.app.commands.modes import page as report
 from heuncli.app.commands.modes.request import ModesRequest
 from heuncli.output.tables.export import dump_json

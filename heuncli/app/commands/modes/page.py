@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from heuncli.base.foreign_text import escape
 from heuncli.base.joint_kinds import is_length
+from heuncli.base.text_safety import escape
 from heuncli.motion.linearisation.modes import SceneModes
 from heuncli.motion.linearisation.oscillations import Mode
 from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes

@@ -12,8 +12,8 @@ from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.commands.new.request import NewRequest
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
-from heuncli.base.foreign_text import escape
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
+from heuncli.base.text_safety import escape
 
 FOLDER = Path(__file__).parents[3] / "starters"
 STANDARD_OUTPUT = "-"

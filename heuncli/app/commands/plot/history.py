@@ -7,7 +7,7 @@ from functools import partial
 
 from heuncli.app.cli.solving import collect_results
 from heuncli.app.cli.units import parse_units
-from heuncli.app.commands.plot.asked import PlotTarget
+from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source
 from heuncli.output.drawing.figure import Figure
@@ -17,7 +17,7 @@ from heuncli.output.snapshots import measure
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 
 
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:

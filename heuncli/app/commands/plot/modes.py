@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.analyses.modes.exclusion import exclude_entries
 from heuncli.analyses.modes.moved_bodies import BodyModes, find_body_modes
-from heuncli.analyses.modes.without import exclude_entries
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.left_out import find_excluded
 from heuncli.app.cli.solving import print_warnings
-from heuncli.app.commands.plot.asked import PlotTarget
+from heuncli.app.cli.without_option import find_excluded
+from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_no_paths
 from heuncli.base.errors import Finding, Problem

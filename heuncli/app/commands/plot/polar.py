@@ -5,7 +5,7 @@ from __future__ import annotations
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import require_choice
 from heuncli.app.cli.units import parse_units
-from heuncli.app.commands.plot.asked import PlotTarget
+from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source
 from heuncli.base.errors import Problem
@@ -15,8 +15,8 @@ from heuncli.output.figures.planes import AXIS_LETTERS, list_rotation_paths
 from heuncli.output.figures.polar import make_polar_figure
 from heuncli.output.figures.turning import list_angle_paths
 from heuncli.output.snapshots import measure
+from heuncli.results.path_words import split_path
 from heuncli.results.results_schema import SPACE
-from heuncli.results.run_places import split_path
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import NumberKind, resolve_path

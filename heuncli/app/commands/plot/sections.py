@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.units import parse_units
-from heuncli.app.commands.plot.asked import PlotTarget
+from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import list_extreme_paths, load_specs, parse_instants, solve_source
 from heuncli.base.errors import Problem, SpecError
-from heuncli.base.nearest import find_similar
+from heuncli.base.spelling import find_similar
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams

@@ -7,24 +7,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases, require_choice
-from heuncli.app.commands.plot.asked import PlotTarget
+from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.base.errors import Problem
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.snapshots import measure
+from heuncli.results.path_words import split_path
 from heuncli.results.results import Array
-from heuncli.results.run_places import split_path
 from heuncli.scene.file_format.load import load, load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.reading import STANDARD_INPUT
-from heuncli.study.ask.asked_instants import find_requested_times, make_extreme_requests, parse
+from heuncli.study.ask.at_option import find_requested_times, make_extreme_requests, parse
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.selection import select_paths
 from heuncli.study.workflow import solve
@@ -109,7 +109,7 @@ def solve_source(name: str, spec: Spec, paths: Sequence[str], request: PlotReque
         requested_reports=selection.reports,
         entries=selection.entries,
         axes=axes,
-        time_limit=alarm.remaining_time(),
+        time_limit=timeout.remaining_time(),
     )
     with attach_locations(spec):
         study = solve(spec, options)

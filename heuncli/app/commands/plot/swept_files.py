@@ -14,15 +14,15 @@ import numpy as np
 
 from heuncli.analyses.sweep_store.columns import CODE, NUMBER, REASON, WORDS, make_parameter_columns
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.sweep_store.store.store import open_store
+from heuncli.analyses.sweep_store.store import open_store
 from heuncli.analyses.sweep_store.which import choose_sweep, split_number
-from heuncli.analyses.variants.asking import MeasureValue
+from heuncli.analyses.variants.evaluation import MeasureValue
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.figures.swept import SweepNumbers, SweepTable, SweepVariable
+from heuncli.output.figures.sweep_tables import SweepNumbers, SweepTable, SweepVariable
 from heuncli.results.results import Array
 from heuncli.scene.file_format.reading import read_bytes
 

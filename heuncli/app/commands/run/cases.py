@@ -11,10 +11,10 @@ from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.units import TABLES, note_si_format
 from heuncli.app.commands.run.scene import RunTask, finish, solve_and_render
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
-from heuncli.output.snapshots.keep import take_run_snapshot
-from heuncli.output.snapshots.kept import RunSnapshot
+from heuncli.output.snapshots.golden_file import RunSnapshot
+from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.output.tables.export import dump_json
 from heuncli.output.tables.page_width import split_to_width
 from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_markdown, format_plain

@@ -22,7 +22,7 @@ from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber
 from heuncli.study.ask.study import Study
-from heuncli.study.load_cycles.counted import BINS, Counting
+from heuncli.study.load_cycles.collective import BINS, Counting
 from heuncli.study.quantities.table_units import Units
 
 OPTION = "--collective"
@@ -41,8 +41,10 @@ def parse_task(request: RunRequest) -> CollectiveTask:
     """Parse the options of collectives. Raises UsageError with every problem."""
     others = [name for name in EXCLUDED_OPTIONS if getattr(request, name)]
     calls: tuple[Callable[[], Any], ...] = (
-        partial(require_alone, others), partial(parse_paths, request.collective or ""), partial(parse_counting, request),
-    )  # fmt: skip
+        partial(require_alone, others),
+        partial(parse_paths, request.collective or ""),
+        partial(parse_counting, request),
+    )
     _, paths, counting = collect_results(calls)
     return CollectiveTask(paths, counting)
 

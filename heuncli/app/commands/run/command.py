@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING
 
 from heuncli.app.api import read
-from heuncli.app.cli import alarm, memory
+from heuncli.app.cli import memory, timeout
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
@@ -48,7 +48,7 @@ def main(request: RunRequest) -> int:
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
     require_other_file(request.output, [request.spec])
-    options = replace(options, load_seconds=time.perf_counter() - start, time_limit=alarm.remaining_time())
+    options = replace(options, load_seconds=time.perf_counter() - start, time_limit=timeout.remaining_time())
     options = replace(
         options, memory_budget=MemoryBudget(*memory.result_memory("table" if measures or collectives else form))
     )

@@ -17,7 +17,7 @@ from heuncli.app.cli.entry import UsageError, report_problems, run_contained
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.errors import Finding, HeunError, Problem
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.names import as_mapping
 from heuncli.scene.file_format.reading import STANDARD_INPUT
 from heuncli.scene.file_format.source import read_source

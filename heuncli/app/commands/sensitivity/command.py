@@ -7,11 +7,11 @@ from functools import partial
 
 from heuncli.analyses.sensitivity.derivative import compute_derivative
 from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
-from heuncli.analyses.sensitivity.spread import NumberSpread, combine_tolerances
-from heuncli.analyses.sensitivity.spread_words import parse_spreads
-from heuncli.analyses.variants.asking import MeasureValue, Recipe, VariantEvaluator
-from heuncli.analyses.variants.once import REASONS, ROUNDING, CachedEvaluator
-from heuncli.analyses.variants.written import WrittenNumber, WrittenNumbers
+from heuncli.analyses.sensitivity.spread_option import parse_spreads
+from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread, combine_tolerances
+from heuncli.analyses.variants.cached_evaluator import REASONS, ROUNDING, CachedEvaluator
+from heuncli.analyses.variants.evaluation import MeasureValue, Recipe, VariantEvaluator
+from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumbers
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
@@ -27,7 +27,7 @@ from heuncli.base.errors import Problem
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 
 VARIANTS_PER_NUMBER = 10  # usual number
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
-from heuncli.analyses.variants.written import WrittenNumber
+from heuncli.analyses.variants.written_numbers import WrittenNumber
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.export import dump_json
 from heuncli.output.tables.page_width import split_to_width
@@ -160,8 +160,12 @@ def _make_spread_table(
     display_unit, size = page.units.find(unit)
     largest = sorted(total.contributions, key=lambda one: -(one.size or 0.0))
     rows = tuple(_make_contribution_row(one, size) for one in largest)
-    return TextTable(f"SPREAD  of {text}{f' [{display_unit}]' if display_unit not in ('', '1') else ''}", SPREAD_COLUMNS, rows,
-                     tuple(_describe_sums(total, findings.base, display_unit, size)))  # fmt: skip
+    return TextTable(
+        f"SPREAD  of {text}{f' [{display_unit}]' if display_unit not in ('', '1') else ''}",
+        SPREAD_COLUMNS,
+        rows,
+        tuple(_describe_sums(total, findings.base, display_unit, size)),
+    )
 
 
 def _make_contribution_row(one: Contribution, size: float) -> tuple[str, ...]:
@@ -184,7 +188,10 @@ def _describe_nonlinear(total: SpreadSum, size: float) -> Iterator[str]:
                 f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")"
                 for x, change in (one.least, one.greatest)
             )
-            yield f"{one.name} is not linear over its spread: {ends}, by {format_count(one.variants, 'variant')}; {linear}"
+            yield (
+                f"{one.name} is not linear over its spread: {ends}, by "
+                f"{format_count(one.variants, 'variant')}; {linear}"
+            )
         if one.why[0]:
             yield f"{one.name}: a part of its spread cannot be solved: {one.why[1]} [{one.why[0]}]"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, save
@@ -44,7 +44,7 @@ def main(request: ShowRequest) -> int:
     for name, option in outputs:
         require_other_file(name, [request.spec], option)
     _require_few_bodies(spec)
-    options = replace(make_solver_options(request), requested_reports=REPORTS, time_limit=alarm.remaining_time())
+    options = replace(make_solver_options(request), requested_reports=REPORTS, time_limit=timeout.remaining_time())
     with attach_locations(spec):
         study = solve(spec, options)
         require_claimed(study)

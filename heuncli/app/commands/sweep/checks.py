@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 
-from heuncli.analyses.variants.asking import CASE, SPELLING_CODES, VariantEvaluator, varies_cases
-from heuncli.app.commands.sweep.given import AxisArgument
+from heuncli.analyses.variants.evaluation import CASE, SPELLING_CODES, VariantEvaluator, varies_cases
+from heuncli.app.commands.sweep.axis_arguments import AxisArgument
 from heuncli.base.errors import Problem, SpecError
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.overrides import parse_path
 

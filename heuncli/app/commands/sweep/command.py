@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import partial
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure
-from heuncli.analyses.sweep_store.store.store import Store
-from heuncli.analyses.variants.asking import CASE, Recipe, VariantEvaluator, varies_cases
+from heuncli.analyses.sweep_store.store import Store
 from heuncli.analyses.variants.axes import HINT, AxisError, ParameterAxis, RandomVariable
+from heuncli.analyses.variants.evaluation import CASE, Recipe, VariantEvaluator, varies_cases
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.plans import Draws, Plan, make_axes_plan
 from heuncli.app.cli import jobs, memory
@@ -18,22 +18,22 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.cli.units import parse_units
+from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis
 from heuncli.app.commands.sweep.checks import find_problems, find_warnings
-from heuncli.app.commands.sweep.drawn import draw_samples
-from heuncli.app.commands.sweep.given import AxisArgument, parse_axis
+from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
+from heuncli.app.commands.sweep.random_sampling import draw_samples
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep
 from heuncli.app.commands.sweep.shards import parse_shard
 from heuncli.app.commands.sweep.showing import show_stored
 from heuncli.app.commands.sweep.table import read_axes
-from heuncli.app.commands.sweep.telling.told import SweepOutput, require_writable_form
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.records import replace
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.memory_estimate import MemoryBudget
-from heuncli.study.quantities.stated import find_unit
+from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 
 USAGE = "heun sweep SPEC NAME=VALUES --measure WHAT"

@@ -10,19 +10,19 @@ import time
 from collections.abc import Generator, Iterator
 from contextlib import closing
 
+from heuncli.analyses.sweep_store.heads import write_head
 from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.sweep_store.store.heads import write_head
-from heuncli.analyses.sweep_store.store.store import Store, StoredRows
-from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult
+from heuncli.analyses.sweep_store.store import Store, StoredRows
+from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.progress import ReportProgress, show_progress
 from heuncli.app.cli.units import note_si_format
+from heuncli.app.commands.sweep.output.sweep_warnings import SweepWarnings, collect_warnings, print_warnings_summary
+from heuncli.app.commands.sweep.output.writer import SweepOutput, write_sweep
 from heuncli.app.commands.sweep.request import SweepRequest
-from heuncli.app.commands.sweep.telling.noticed import SweepWarnings, collect_warnings, print_warnings_summary
-from heuncli.app.commands.sweep.telling.told import SweepOutput, write_sweep
 from heuncli.app.commands.sweep.workers import solve_variants
 from heuncli.base.errors import OutputError, SpecError
 from heuncli.base.named_tuples import NamedTuple
@@ -134,13 +134,13 @@ def _solve_variants(
             sweep.evaluator, plan, numbers, jobs.choose_job_count(request.jobs, sweep.size), stop_descriptor
         )
         return
-    from heuncli.app.commands.sweep.cluster import flow  # imports an optional, large package
+    from heuncli.app.commands.sweep.cluster import scheduler  # imports an optional, large package
 
     def told(line: str) -> None:
         if not request.quiet:
             print_stderr(f"heun: {line}")
 
-    yield from flow.solve_variants(
+    yield from scheduler.solve_variants(
         sweep.evaluator.recipe, plan, numbers, request.dask, sweep.size, told, stop_descriptor
     )
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from contextlib import closing
 
-from heuncli.analyses.sweep_store.store.store import open_store
+from heuncli.analyses.sweep_store.store import open_store
 from heuncli.analyses.sweep_store.which import choose_sweep, format_sweep, split_number
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.units import note_si_format
+from heuncli.app.commands.sweep.output.sweep_warnings import collect_warnings, print_warnings_summary
+from heuncli.app.commands.sweep.output.writer import SweepOutput, write_sweep
 from heuncli.app.commands.sweep.request import SweepRequest
 from heuncli.app.commands.sweep.running import choose_exit_code
 from heuncli.app.commands.sweep.shards import parse_shard
-from heuncli.app.commands.sweep.telling.noticed import collect_warnings, print_warnings_summary
-from heuncli.app.commands.sweep.telling.told import SweepOutput, write_sweep
 from heuncli.base.errors import Problem
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 
 EXCLUDED_OPTIONS = (
     "words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance", "zip",

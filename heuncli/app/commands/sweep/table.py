@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from heuncli.analyses.variants.axes import ParameterAxis, parse_figure
-from heuncli.app.commands.sweep.given import AxisArgument, AxisColumn
+from heuncli.app.commands.sweep.axis_arguments import AxisArgument, AxisColumn
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit

@@ -15,9 +15,9 @@ from functools import partial
 from itertools import islice
 
 from heuncli.analyses.sweep_store.rows import WORKER_DIED
-from heuncli.analyses.variants.asking import VariantEvaluator, VariantResult, make_failed_result
+from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult, make_failed_result
 from heuncli.analyses.variants.plans import Plan
-from heuncli.app.cli import alarm, jobs
+from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import run_contained
 from heuncli.base.errors import HeunError
 from heuncli.base.named_tuples import NamedTuple
@@ -69,7 +69,7 @@ def answer_of(evaluator: VariantEvaluator, values: Mapping[str, str]) -> Variant
     limit = evaluator.recipe.options.time_limit
     words = [evaluator.recipe.path, *(f"{name}={text}" for name, text in values.items())]
     try:
-        return run_contained(lambda: alarm.run_with_limit(lambda: evaluator.answer(values), limit), ("sweep", *words))
+        return run_contained(lambda: timeout.run_with_limit(lambda: evaluator.answer(values), limit), ("sweep", *words))
     except HeunError as error:
         return make_failed_result(error)
 

@@ -7,8 +7,8 @@ from collections import Counter
 from heuncli.analyses.tune.results import TuneResults
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
-from heuncli.analyses.variants.asking import Recipe, VariantEvaluator
-from heuncli.app.cli import alarm
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, save
@@ -17,11 +17,11 @@ from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tol
 from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.cli.units import note_si_format, parse_units
 from heuncli.app.commands.tune import page
-from heuncli.app.commands.tune.answering import TrialSolver
-from heuncli.app.commands.tune.asked import TuningOptions, make_task, parse_options
 from heuncli.app.commands.tune.history import to_csv
 from heuncli.app.commands.tune.request import FORMATS, TuneRequest
-from heuncli.app.commands.tune.told import TunedScene, format_command, to_block
+from heuncli.app.commands.tune.result_block import TunedScene, format_command, to_block
+from heuncli.app.commands.tune.trial_solver import TrialSolver
+from heuncli.app.commands.tune.tuning_options import TuningOptions, make_task, parse_options
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.files import STDOUT
 from heuncli.output.tables.export import dump_json
@@ -92,10 +92,10 @@ def run_search(request: TuneRequest, options: TuningOptions, evaluator: VariantE
         tuning = Tuning(trials, base_outcome)
         try:
             tuning.run()
-        except alarm.TimeUp:
+        except timeout.TimeUp:
             trials.time_is_up = True
         if trials.time_is_up:  # the result is written even after the time limit
-            alarm.disarm(late=True)
+            timeout.disarm(late=True)
     if trials.time_is_up and trials.best() is None:
         message = "the time limit was reached before any variant was solved"
         raise LimitError(Problem("time-limit", message, hint="a longer --time-limit"))

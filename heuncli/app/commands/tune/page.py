@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from heuncli.analyses.tune.results import MeasureReading, ToleranceMove, ToleranceRange, TuneResults
 from heuncli.app.cli import terminal
-from heuncli.app.commands.tune.told import TunedScene
-from heuncli.base.foreign_text import escape
+from heuncli.app.commands.tune.result_block import TunedScene
+from heuncli.base.text_safety import escape
 from heuncli.output.tables.page_width import split_to_width
 from heuncli.output.tables.text_table import (
     DEFAULT_WIDTH,
@@ -41,7 +41,8 @@ def render_page(results: TuneResults, scene: TunedScene, units: Units, output: s
     else:
         parts = [format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)]
     body = "\n".join(parts)
-    return f"{format_labelled_lines(list(format_heading(results, scene, units)))}\n{body}\n{PASTED}\n{escape(scene.line)}\n"
+    heading = format_labelled_lines(list(format_heading(results, scene, units)))
+    return f"{heading}\n{body}\n{PASTED}\n{escape(scene.line)}\n"
 
 
 def format_heading(results: TuneResults, scene: TunedScene, units: Units) -> Iterator[tuple[str, str]]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 
-from heuncli.app.cli import alarm
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import report_problems, run_contained, select_exit_code
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.commands.validate.request import ValidateRequest
 from heuncli.base.errors import HeunError, SpecError
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.output.tables.plurals import format_count
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
@@ -21,7 +21,7 @@ def main(request: ValidateRequest) -> int:
     codes, lines = [0], []
     for path in request.specs:
         try:
-            work = partial(alarm.run_with_limit, partial(_validate_spec, path), request.time_limit_each, subject=path)
+            work = partial(timeout.run_with_limit, partial(_validate_spec, path), request.time_limit_each, subject=path)
             spec, warnings = run_contained(work, ("validate", path))
         except HeunError as error:
             report_problems(error.problems, "" if isinstance(error, SpecError) else f"{path}: ")
@@ -42,7 +42,7 @@ def _validate_spec(path: str) -> tuple[Spec, list[str]]:
     """Validate a spec; returns it and its warnings. Raises SpecError, LimitError."""
     spec, _ = load_with_cases(path)
     warnings = [*map(str, spec.warnings), *_check_sections(spec)]
-    alarm.disarm()
+    timeout.disarm()
     return spec, warnings
 
 

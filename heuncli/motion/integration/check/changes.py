@@ -19,9 +19,9 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.check.shared_blows import match_impulses
+from heuncli.motion.integration.check.matching_impulses import match_impulses
 from heuncli.motion.integration.conditions import Conditions, Coordinates, evaluate_coordinates
-from heuncli.motion.integration.contacts.blows import ImpulseEvent
+from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array, Mask
@@ -76,9 +76,12 @@ def find_changes_in_run(runner: Runner, run: Trajectory) -> list[ConditionChange
     conditions = Conditions(runner.integrated_scene.layout)
     begins, inside, branches = find_branch_intervals(run)
     coordinates = evaluate_coordinates(runner, inside, runner.resample(run, inside))
-    truths = np.array([
-        conditions.evaluate_held(t, row, there) for t, row, there in zip(inside.tolist(), branches, coordinates, strict=True)
-    ])  # fmt: skip
+    truths = np.array(
+        [
+            conditions.evaluate_held(t, row, there)
+            for t, row, there in zip(inside.tolist(), branches, coordinates, strict=True)
+        ]
+    )
     found = []
     for condition, truth in zip(conditions.conditions, truths.T, strict=True):
         if np.isnan(truth).any():

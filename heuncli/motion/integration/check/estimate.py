@@ -38,9 +38,9 @@ from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.check.distance import angle_error, bounded_motion_error
 from heuncli.motion.integration.check.instants import JoinedStates, choose_instants, find_ends_between, interleave
+from heuncli.motion.integration.check.matching_impulses import is_between_impulses
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.check.shared_blows import is_between_impulses
-from heuncli.motion.integration.contacts.blows import ImpulseEvent
+from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.segments import find_one_sided_limits

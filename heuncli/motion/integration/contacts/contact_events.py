@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.contacts.blows import (
+from heuncli.motion.integration.contacts.impulses import (
     GivenImpulse,
     ImpulseEvent,
     ImpulseResult,
@@ -119,7 +119,8 @@ def require_smooth(layout: Layout, given_impulse: GivenImpulse, is_closed: Mask)
         if is_closed[k] and contact.is_rope and contact.joint in given_impulse.drives:
             first, then = given_impulse.drives[contact.joint]
             message = (
-                f"at t = {given_impulse.after_time:.9g} s the rate of the length of {contact.name} jumps from {first:.6g} to "
+                f"at t = {given_impulse.after_time:.9g} s the rate of the length of {contact.name} "
+                f"jumps from {first:.6g} to "
                 f"{then:.6g} m/s while it is taut: as it may go slack, how it leaves that jump is not solved"
             )
             hint = (

@@ -18,7 +18,7 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.conditions import Conditions, read_coordinates
-from heuncli.motion.integration.contacts.blows import RightSides
+from heuncli.motion.integration.contacts.impulses import RightSides
 from heuncli.motion.integration.contacts.touching import TouchingContacts, gap_terms, unit_load
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Stop

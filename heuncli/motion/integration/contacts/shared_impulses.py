@@ -152,11 +152,13 @@ def format_sharing_sentence(time: float, shared_group: SharedImpulse, count: int
         )
     if shared_group.resting_names:
         parts.append(
-            f"{join_names(shared_group.resting_names)} {choose_verb_form(shared_group.resting_names, 'rests', 'rest')} behind infinitely many impacts"
+            f"{join_names(shared_group.resting_names)} "
+            f"{choose_verb_form(shared_group.resting_names, 'rests', 'rest')} behind infinitely many impacts"
         )
     if shared_group.bilateral_names:
         parts.append(
-            f"{join_names(shared_group.bilateral_names)} {choose_verb_form(shared_group.bilateral_names, 'is', 'are')} held both ways, without rebound"
+            f"{join_names(shared_group.bilateral_names)} "
+            f"{choose_verb_form(shared_group.bilateral_names, 'is', 'are')} held both ways, without rebound"
         )
     return lead + "; ".join(parts)
 

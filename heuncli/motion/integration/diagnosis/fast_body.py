@@ -150,7 +150,8 @@ def explain_short_steps(scene: Evaluator, t: float, state: Array, step: float = 
     motion = find_fast_motion(scene, t, state)
     if noise * step > MAX_NOISE_SHARE * local:
         sentence = (
-            f"steps are short because of {describe_body(scene.layout, body)}: rounding of the loads on it, over that inertia, "
+            f"steps are short because of {describe_body(scene.layout, body)}: rounding of the loads "
+            "on it, over that inertia, "
             f"is some {noise:.1g} rad/s\u00b2, and a step takes that for motion"
         )
     elif motion is None:
@@ -159,7 +160,8 @@ def explain_short_steps(scene: Evaluator, t: float, state: Array, step: float = 
         how, unit = ("turn", "kg\u00b7m\u00b2") if motion.turns else ("shift", "kg")
         now = f"{motion.spin:.2g} rad/s" if motion.turns else f"{motion.speed:.2g} m/s"
         sentence = (
-            f"steps are short because of {describe_body(scene.layout, motion.body)}, which moves at {now}: its {how} changes "
+            f"steps are short because of {describe_body(scene.layout, motion.body)}, which moves at "
+            f"{now}: its {how} changes "
             f"at {motion.rate:.2g} 1/s, resisted by no more than {motion.inertia:.2g} {unit}"
         )
     if motion is not None and motion.pins is not None:

@@ -54,10 +54,19 @@ def make_method(
         "error": flatten(multiply([at_start], inverse)),
     }
     return Method(
-        name=name, order=order, nodes=(0.0, *collocation_nodes.nodes), stages=tuple(sparse_row([Fraction(0), *row]) for row in A),
-        solution=sparse_row([Fraction(0), *b]), error_order=error_order or 1, dense=dense_output_rows(c), has_fixed_step=is_fixed,
-        by_step=is_fixed, implicit=True, collocation=collocation, sample_fractions=sample_fractions,
-    )  # fmt: skip
+        name=name,
+        order=order,
+        nodes=(0.0, *collocation_nodes.nodes),
+        stages=tuple(sparse_row([Fraction(0), *row]) for row in A),
+        solution=sparse_row([Fraction(0), *b]),
+        error_order=error_order or 1,
+        dense=dense_output_rows(c),
+        has_fixed_step=is_fixed,
+        by_step=is_fixed,
+        implicit=True,
+        collocation=collocation,
+        sample_fractions=sample_fractions,
+    )
 
 
 # Polynomials through nodes

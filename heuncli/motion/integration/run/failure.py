@@ -10,7 +10,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.motion.integration.diagnosis.domains import FARTHEST, evaluate_coordinates, find_without_value
 from heuncli.motion.integration.diagnosis.growth import describe_largest_load, find_growing
 from heuncli.motion.integration.diagnosis.jamming import find_jammed_after
-from heuncli.motion.integration.diagnosis.ways import Moving, find_left_paths
+from heuncli.motion.integration.diagnosis.path_ends import Moving, find_left_paths
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.errors import KERNEL_ERRORS, ClosuresLost
 from heuncli.motion.integration.run.kernel_loop import CHATTERING, HALF_TURN

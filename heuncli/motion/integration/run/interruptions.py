@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.contacts.blows import GivenImpulse, ImpulseEvent, schedule_impulses, solve_impulse
+from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, schedule_impulses, solve_impulse
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.progress import RunProgress

@@ -75,9 +75,13 @@ class KernelLoop:
         self.spans = np.empty(SPAN_WIDTH * max_steps if stores_polynomials else 0)
         self.polynomials = np.empty((4 + method.arrays["dense_rows"]) * n * max_steps if stores_polynomials else 0)
         output = {
-            "times": to_double_array(times), "samples": self.samples, "passed": self.record_buffer, "branches": self.branches,
-            "spans": self.spans, "courses": self.polynomials,
-        }  # fmt: skip
+            "times": to_double_array(times),
+            "samples": self.samples,
+            "passed": self.record_buffer,
+            "branches": self.branches,
+            "spans": self.spans,
+            "courses": self.polynomials,
+        }
         output.update(zip(PER_STEP, self.per_step, strict=True))
         self.loop = integration.Integration(workspace, method.arrays, loop_input(start, method, layout), output)
 

@@ -19,7 +19,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.base.method_rows import SMOOTH_ONLY
 from heuncli.base.records import record
-from heuncli.motion.integration.contacts.blows import find_rate_jumps
+from heuncli.motion.integration.contacts.impulses import find_rate_jumps
 from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.motion.integration.methods.method import Method
 from heuncli.motion.integration.run.limits import check_deadline
@@ -91,12 +91,24 @@ def run_scipy(layout: Layout, integrated_scene: IntegratedScene, request: Motion
     steps = len(scipy_steps.ends)
     records = StepRecords(np.arange(len(scipy_steps.states)), np.array(scipy_steps.states))
     return Trajectory(
-        times=times, states=scene_states, ends=np.array(scipy_steps.ends), steps=steps, evaluations=derivative.count,
-        gap=derivative.gap, local=request.local, method=method, seconds=time.perf_counter() - clock_start,
-        segments=Segments(np.array(scipy_steps.pieces)), records=records, pivots=np.ones(steps), is_projected=np.ones(steps),
-        branches=np.zeros((steps, 0)), branch_changed=np.zeros(steps), holding=np.zeros((steps + 1, 0)),
+        times=times,
+        states=scene_states,
+        ends=np.array(scipy_steps.ends),
+        steps=steps,
+        evaluations=derivative.count,
+        gap=derivative.gap,
+        local=request.local,
+        method=method,
+        seconds=time.perf_counter() - clock_start,
+        segments=Segments(np.array(scipy_steps.pieces)),
+        records=records,
+        pivots=np.ones(steps),
+        is_projected=np.ones(steps),
+        branches=np.zeros((steps, 0)),
+        branch_changed=np.zeros(steps),
+        holding=np.zeros((steps + 1, 0)),
         interpolate=lambda at: scipy_steps.interpolate(integrated_scene, at),
-    )  # fmt: skip
+    )
 
 
 @record

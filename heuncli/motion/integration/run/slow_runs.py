@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from heuncli.base.announcements import current_listener
+from heuncli.base.progress_messages import current_listener
 from heuncli.motion.integration.run.pace import estimate_seconds_left
 from heuncli.motion.integration.run.progress import RunProgress
 

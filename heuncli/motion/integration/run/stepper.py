@@ -251,17 +251,30 @@ class Stepper:
             else truncate_samples(requested, kernel, ending.last_time)
         )
         return Trajectory(
-            times=times, states=progress.integrated_scene.embed(times, states), ends=steps.copy_column("ends"),
-            steps=kernel.loop.steps, evaluations=kernel.loop.evaluations, gap=kernel.loop.gap,
-            local=kernel.start.local, method=kernel.method, seconds=seconds, segments=Segments(self.pieces.rows),
-            records=steps.list_records(), polynomials=steps.collect_polynomials(),
-            pivots=steps.copy_column("pivots"), is_projected=steps.copy_column("settled"),
-            branches=steps.read_branches(), branch_changed=steps.copy_column("turned"), uncertain_count=kernel.loop.undecided_count,
-            pushing_rope=ending.rope if ending is not None else None, ended_by_condition=ending is not None and ending.rope is None,
+            times=times,
+            states=progress.integrated_scene.embed(times, states),
+            ends=steps.copy_column("ends"),
+            steps=kernel.loop.steps,
+            evaluations=kernel.loop.evaluations,
+            gap=kernel.loop.gap,
+            local=kernel.start.local,
+            method=kernel.method,
+            seconds=seconds,
+            segments=Segments(self.pieces.rows),
+            records=steps.list_records(),
+            polynomials=steps.collect_polynomials(),
+            pivots=steps.copy_column("pivots"),
+            is_projected=steps.copy_column("settled"),
+            branches=steps.read_branches(),
+            branch_changed=steps.copy_column("turned"),
+            uncertain_count=kernel.loop.undecided_count,
+            pushing_rope=ending.rope if ending is not None else None,
+            ended_by_condition=ending is not None and ending.rope is None,
             final_branches=np.array(progress.integrated_scene.layout.pack.expressions.branches()),
-            impulse_events=tuple(self.interruptions.events), holding=steps.find_holding(len(progress.scene.layout.open_contacts)),
+            impulse_events=tuple(self.interruptions.events),
+            holding=steps.find_holding(len(progress.scene.layout.open_contacts)),
             notes=self.interruptions.notes + (self.triggers.notes if self.triggers is not None else ()),
-        )  # fmt: skip
+        )
 
 
 def make_ending_condition(layout: Layout) -> EndingCondition | None:

@@ -33,7 +33,7 @@ def iter_departures(plane_view: PlaneView) -> Iterator[Departure]:
         yield from _impulse_departures(plane_view, height)
     yield from _fixed_coordinate_departures(plane_view)
     if plane_view.scene.mechanism.couplings:
-        from heuncli.multibody.reduction.plane.coupled import iter_coupling_departures  # few scenes have them
+        from heuncli.multibody.reduction.plane.flat_couplings import iter_coupling_departures  # few scenes have them
 
         yield from iter_coupling_departures(plane_view, height)
 

@@ -221,7 +221,7 @@ class FlatSceneBuilder:
         """Build the couplings, with the same conditions."""
         if not self.scene.mechanism.couplings:
             return ()
-        from heuncli.multibody.reduction.plane.coupled import flat_transform  # few scenes have them
+        from heuncli.multibody.reduction.plane.flat_couplings import flat_transform  # few scenes have them
         from heuncli.multibody.reduction.restated_couplings import transform_couplings
 
         return transform_couplings(self.scene.layout, lambda own: flat_transform(self.plane_view, self.body_axes, own))
@@ -246,13 +246,18 @@ class FlatSceneBuilder:
         """Build all parts. Raises UnrepresentableLoadError."""
         original = self.scene.mechanism
         return Mechanism(
-            title=original.title, planar=True, gravity=_drop_z(self.plane_view.E @ original.gravity),
+            title=original.title,
+            planar=True,
+            gravity=_drop_z(self.plane_view.E @ original.gravity),
             bodies=tuple(self.build_body(i) for i in range(len(original.bodies))),
             joints=tuple(self.build_joint(k) for k in range(len(original.joints))),
-            loads=tuple(self.build_load(load) for load in original.loads), impulses=tuple(self.build_impulse(impulse) for impulse in original.impulses),
-            stops=original.stops, conditions=original.conditions,
-            points={name: self.build_point(point) for name, point in original.points.items()}, couplings=self.build_couplings(),
-        )  # fmt: skip
+            loads=tuple(self.build_load(load) for load in original.loads),
+            impulses=tuple(self.build_impulse(impulse) for impulse in original.impulses),
+            stops=original.stops,
+            conditions=original.conditions,
+            points={name: self.build_point(point) for name, point in original.points.items()},
+            couplings=self.build_couplings(),
+        )
 
 
 def make_flat_scene(plane_view: PlaneView) -> PreparedScene:

@@ -17,7 +17,7 @@ from heuncli.multibody.reduction.plane.departure import Departure
 from heuncli.multibody.reduction.plane.departures import iter_departures
 from heuncli.multibody.reduction.plane.frame import iter_normals
 from heuncli.multibody.reduction.plane.mechanism import UnrepresentableLoadError, make_flat_scene
-from heuncli.multibody.reduction.plane.states import PlaneStateMap
+from heuncli.multibody.reduction.plane.plane_states import PlaneStateMap
 from heuncli.multibody.reduction.plane.view import PlaneView, find_neighbours, make_view
 from heuncli.multibody.tree.prepare import PreparedScene
 
@@ -69,7 +69,7 @@ def _coupling_departures(plane_view: PlaneView) -> list[Departure]:
         stance.misalignment > tolerances.FLAT for stance in plane_view.orientations
     ):
         return []
-    from heuncli.multibody.reduction.plane.coupled import iter_coupling_departures  # few scenes have them
+    from heuncli.multibody.reduction.plane.flat_couplings import iter_coupling_departures  # few scenes have them
 
     return list(iter_coupling_departures(plane_view, None))
 

@@ -9,9 +9,9 @@ from heuncli.base.errors import Finding
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.rotations import symmetric_eigenvalues
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import inertia_tensor, orientation_matrix
-from heuncli.scene.file_format.turns import symmetric_eigenvalues
 
 # hints for numbers that are too small
 SIZES_HINT = "give it above 0, in SI or with its unit"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base.joint_kinds import TYPES, format_kind_names
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format_couplings as f
 from heuncli.scene.file_format.format import FrictionEntry
 from heuncli.scene.file_format.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.base.joint_kinds import TYPES
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.rules.stops import find_driven_coordinates, is_outside, iter_limited_coordinates

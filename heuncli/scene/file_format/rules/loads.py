@@ -11,9 +11,9 @@ from heuncli.scene.expressions.discontinuities import find_first_negative
 from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
+from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.semantics import find_analysis_type, run_duration
-from heuncli.scene.file_format.words import MISSING_KEY_HINTS
 
 TORQUE_WORDS = {"turning": "about a", "sliding": "along a"}
 FRICTION_KEYS = {"turning": "torque", "sliding": "force"}  # the key of each motion
@@ -53,7 +53,10 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 message = f"the torque of a turn_spring by a law acts about a pin, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "its angle is told by a pin alone; else give a stiffness")
             elif not kind.accepts_load("turn_spring"):
-                message = f"a turn_spring acts about a {format_kind_names(kinds_accepting_load('turn_spring'), 'or')}, not in a {kind.name}"
+                message = (
+                    "a turn_spring acts about a "
+                    f"{format_kind_names(kinds_accepting_load('turn_spring'), 'or')}, not in a {kind.name}"
+                )
                 yield Violation((*path, "joint"), message, "between two points use a spring")
         elif isinstance(load, f.DamperEntry):
             two_motion_kinds = [
@@ -76,7 +79,10 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
             allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
             if not kind.accepts_load("friction"):
-                message = f"friction acts in a {format_kind_names(kinds_accepting_load('friction'), 'or')}, not in a {kind.name}"
+                message = (
+                    f"friction acts in a {format_kind_names(kinds_accepting_load('friction'), 'or')}, not "
+                    f"in a {kind.name}"
+                )
                 yield Violation((*path, "joint"), message, "between two points use a spring with damping")
             elif len(given_keys) != 1:
                 description = (

@@ -9,7 +9,8 @@ from heuncli.base import units as u
 from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import RATES, TYPES
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import find_similar, list_words, suggest
+from heuncli.base.spelling import find_similar, list_words, suggest
+from heuncli.results.path_words import NO_RUN, find_position_word, is_cut_word, split_path
 from heuncli.results.results_schema import (
     CUT,
     IMPULSES,
@@ -22,7 +23,6 @@ from heuncli.results.results_schema import (
     parse_index,
     split_leading_key,
 )  # fmt: skip
-from heuncli.results.run_places import NO_RUN, find_position_word, is_cut_word, split_path
 from heuncli.scene.file_format.names import GROUND, SceneNames
 from heuncli.scene.file_format.rules.registry import DraftDocument
 from heuncli.scene.file_format.rules.sections import is_run

@@ -77,7 +77,7 @@ def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) ->
         return
     if normal == (0.0, 0.0, 0.0) or (planar and normal[:2] != (0.0, 0.0)):  # reported by another rule
         return
-    from heuncli.scene.expressions.beside import leaves_plane
+    from heuncli.scene.expressions.roller_path import leaves_plane
 
     if leaves_plane(path, normal):
         normal_path = (*joint_path, "normal" if joint.normal is not None else key)
@@ -91,8 +91,8 @@ def check_roller(joint_path: Path_, joint: f.CurveJoint, path: Path, normal: Dir
     """Yield what prevents a roller from following a path: too high a curvature, or another part of the path too
     close.
     """
-    from heuncli.scene.expressions.beside import find_interference, find_max_curvature
     from heuncli.scene.expressions.paths import make_roller_path
+    from heuncli.scene.expressions.roller_path import find_interference, find_max_curvature
 
     assert joint.radius is not None
     roller = make_roller_path(path, joint.radius, normal)

@@ -10,9 +10,9 @@ from heuncli.base.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.rotations import IDENTITY, unit_vector
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import orientation_matrix
-from heuncli.scene.file_format.turns import IDENTITY, unit_vector
 
 SPATIAL_HINT = "or declare space: spatial"
 # Vectors of bodies and of loads with the components that they cannot have in the plane.

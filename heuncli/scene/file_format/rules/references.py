@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
 from heuncli.scene.file_format import format_elastic as fe

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from heuncli.base import tolerances
 from heuncli.scene.file_format.format_rolling import AXLES, RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.names import GROUND
+from heuncli.scene.file_format.rotations import unit_vector
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
-from heuncli.scene.file_format.turns import unit_vector
 
 
 @rule("wheel-form")

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 from heuncli.base import tolerances
 from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.rotations import cross_product, unit_vector, vector_length
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.semantics import find_point
-from heuncli.scene.file_format.turns import cross_product, unit_vector, vector_length
 
 MAX_PLAUSIBLE_STRENGTH = 1e4  # [MPa] a few times the strength of the hardest steel
 GENERAL_KEYS = ("area", "I1", "I2", "J", "c1", "c2")

@@ -15,7 +15,7 @@ from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import Matrix, Vec
-from heuncli.scene.file_format.turns import IDENTITY, rotation_from_quaternion
+from heuncli.scene.file_format.rotations import IDENTITY, rotation_from_quaternion
 from heuncli.scene.importers.attitudes import add_vectors, compose_rotations, rotate_tensor, rotate_vector
 
 MIN_MASS = 1e-15  # MuJoCo's own mjMINVAL: moving bodies have more

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.mjcf.closings import JointEquality, LoopClosures
-from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
+from heuncli.scene.importers.mjcf.loop_closures import JointEquality, LoopClosures
 from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, JointTree
 
 # Least part of a unit rate that is independent of the others; the most independent rates are chosen first.

@@ -14,15 +14,15 @@ from typing import Any
 
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.asked import ImportOptions
-from heuncli.scene.importers.described import DescribedEntry, DescribedParameter
-from heuncli.scene.importers.mjcf.closings import JointEquality, format_polynomial, make_left_out_problem
-from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.description import DescribedEntry, DescribedParameter
+from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.holding import HeldJoints
+from heuncli.scene.importers.mjcf.loop_closures import JointEquality, format_polynomial, make_left_out_problem
 from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, RATE_KEYS, JointTree, TreeJoint
 from heuncli.scene.importers.names import format_original_name
 from heuncli.scene.importers.spec_text import format_decimal, format_number
-from heuncli.scene.importers.told_moving import explain_motion
+from heuncli.scene.importers.usage_comments import explain_motion
 
 UNHELD_HINT = "drives hold what moves by itself; of this coupling neither joint does"
 
@@ -234,4 +234,6 @@ def _iter_motors(c: CompiledModel, joint: int) -> Iterator[str]:
     kinds = {int(c.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")}
     for number in range(int(c.model.nu)):
         if int(c.model.actuator_trntype[number]) in kinds and int(c.model.actuator_trnid[number][0]) == joint:
-            yield f"{c.describe_part('actuator', number)}, gear {format_number(float(c.model.actuator_gear[number][0]))}"
+            yield (
+                f"{c.describe_part('actuator', number)}, gear {format_number(float(c.model.actuator_gear[number][0]))}"
+            )

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
-from heuncli.base.foreign_text import escape
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 from heuncli.scene.importers.xml_elements import MAX_SIZE, XmlElement, parse_xml
 

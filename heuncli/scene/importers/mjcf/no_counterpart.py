@@ -14,9 +14,9 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import list_words
-from heuncli.scene.importers.described import LEFT_OUT_CODE
-from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.base.spelling import list_words
+from heuncli.scene.importers.description import LEFT_OUT_CODE
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.loads import is_tendon_spring, motor_compensation
 
 MAX_NAMES = 6
@@ -206,44 +206,60 @@ def _excluded_pairs(c: CompiledModel, weld: Any, bodies: Any) -> Any:
 
 UNSUPPORTED_FEATURES = (
     UnsupportedFeature(
-        "joint", lambda c: _joints_with_nonzero_rates(c, c.model.dof_armature),
+        "joint",
+        lambda c: _joints_with_nonzero_rates(c, c.model.dof_armature),
         "the inertia of a motor (armature) is left out: at rest it adds nothing",
         "a motion takes armature * acceleration more than its drive tells",
     ),
     UnsupportedFeature(
-        "joint", lambda c: [] if c.is_disabled("FRICTIONLOSS") else _joints_with_nonzero_rates(c, c.model.dof_frictionloss),
+        "joint",
+        lambda c: [] if c.is_disabled("FRICTIONLOSS") else _joints_with_nonzero_rates(c, c.model.dof_frictionloss),
         "dry friction (frictionloss) is left out",
         "a force of type friction has it, with the speed at which it is full",
     ),
     UnsupportedFeature(
-        "joint", lambda c: _joints_where(c, c.model.jnt_stiffness, _joint_type_mask(c, "mjJNT_BALL", "mjJNT_FREE")),
-        "springs in a ball or free joint are not in a spec", "springs between points have their effect",
+        "joint",
+        lambda c: _joints_where(c, c.model.jnt_stiffness, _joint_type_mask(c, "mjJNT_BALL", "mjJNT_FREE")),
+        "springs in a ball or free joint are not in a spec",
+        "springs between points have their effect",
     ),
     UnsupportedFeature(
-        "joint", _unsupported_damping,
+        "joint",
+        _unsupported_damping,
         "damping of a free joint, or below 0 of a ball, is not in a spec",
         "drag on a point is a force by its velocity: -c*points.tip.vx",
     ),
     UnsupportedFeature(
-        "joint", _nonlinear_joints,
+        "joint",
+        _nonlinear_joints,
         "springs and dampers that are not linear: their linear part alone is in the spec",
         "a torque has any law in the joint's angle and rate",
     ),
     UnsupportedFeature(
-        "actuator", _unsupported_actuators,
+        "actuator",
+        _unsupported_actuators,
         "actuators with dynamics, or with a feedback of their own, are left out",
         "joints are held by drives, which tell the torque that is needed",
     ),
-    UnsupportedFeature("equality", _softened_equalities, "softness of equalities (solref, solimp) is not in a spec, where they hold",
-        "an elastic coupling is a spring or turn_spring"),
     UnsupportedFeature(
-        "flex", lambda c: range(c.count("flex")), "flexible bodies are not in a spec", "a spec has rigid bodies",
+        "equality",
+        _softened_equalities,
+        "softness of equalities (solref, solimp) is not in a spec, where they hold",
+        "an elastic coupling is a spring or turn_spring",
     ),
     UnsupportedFeature(
-        "body", lambda c: [int(k) for k in np.flatnonzero(np.asarray(c.model.body_mocapid) >= 0)],
-        "bodies that a program moves (mocap) stand still in the spec", "move what they hold by a drive",
+        "flex",
+        lambda c: range(c.count("flex")),
+        "flexible bodies are not in a spec",
+        "a spec has rigid bodies",
     ),
-)  # fmt: skip
+    UnsupportedFeature(
+        "body",
+        lambda c: [int(k) for k in np.flatnonzero(np.asarray(c.model.body_mocapid) >= 0)],
+        "bodies that a program moves (mocap) stand still in the spec",
+        "move what they hold by a drive",
+    ),
+)
 TENDONS = UnsupportedFeature(
     "tendon", lambda c: (), "tendons are in a spec where they run straight between two sites, as springs or rods of "
     "a given length; left out",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heuncli.scene.file_format.models import Vec
-from heuncli.scene.importers.described import DescribedPoint
+from heuncli.scene.importers.description import DescribedPoint
 from heuncli.scene.importers.names import Namer
 
 

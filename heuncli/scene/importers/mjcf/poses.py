@@ -15,9 +15,9 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import ZERO, Vec
-from heuncli.scene.file_format.turns import rotation_about
+from heuncli.scene.file_format.rotations import rotation_about
 from heuncli.scene.importers.attitudes import add_vectors
-from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.frames import BodyFrames, exact_rotation_from_quaternion, to_vec
 from heuncli.scene.importers.mjcf.tree import FREE, GROUND, JointTree, TreeJoint
 

@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import Problem, SourceLocation, SpecError
-from heuncli.base.nearest import suggest
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Matrix
-from heuncli.scene.importers.asked import ImportOptions
-from heuncli.scene.importers.described import DescribedBody, DescribedEntry, DescribedMachine
-from heuncli.scene.importers.mjcf.closings import ClosureBuilder, LoopClosures
-from heuncli.scene.importers.mjcf.compiled import CompiledModel, compile_model
+from heuncli.scene.importers.description import DescribedBody, DescribedEntry, DescribedMachine
+from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel, compile_model
 from heuncli.scene.importers.mjcf.frames import BodyFrames, compute_frames, mass_properties, to_vec
 from heuncli.scene.importers.mjcf.holding import choose_held_joints
 from heuncli.scene.importers.mjcf.laws import JointLaws, build_joint_laws
@@ -25,6 +24,7 @@ from heuncli.scene.importers.mjcf.loads import (
     iter_stops,
     iter_tendon_springs,
 )
+from heuncli.scene.importers.mjcf.loop_closures import ClosureBuilder, LoopClosures
 from heuncli.scene.importers.mjcf.named_files import collect_model_files
 from heuncli.scene.importers.mjcf.no_counterpart import find_unsupported
 from heuncli.scene.importers.mjcf.points import BodyPoints
@@ -158,7 +158,10 @@ class _MachineBuilder:
             if name in self.tree.carriers:
                 carried_mass = mass_properties(self.c.model, self.frames, self.tree.carriers[name])
                 carried_name = self.tree.names[self.tree.carriers[name]]
-                remark = f"between the joints of {carried_name}: no body of the file; its mass, {CARRIER_MASS_RATIO:g} of that, adds nothing"
+                remark = (
+                    f"between the joints of {carried_name}: no body of the file; its mass, "
+                    f"{CARRIER_MASS_RATIO:g} of that, adds nothing"
+                )
                 yield DescribedBody(
                     name,
                     CARRIER_MASS_RATIO * carried_mass.mass,

@@ -10,10 +10,10 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.importers.attitudes import round_number, round_vector
-from heuncli.scene.importers.mjcf.closings import LoopClosures
-from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.frames import BodyFrames, to_vec
 from heuncli.scene.importers.mjcf.holding import HeldJoints
+from heuncli.scene.importers.mjcf.loop_closures import LoopClosures
 from heuncli.scene.importers.mjcf.poses import BodyPose, compute_poses
 from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, FREE, GROUND, JointTree
 

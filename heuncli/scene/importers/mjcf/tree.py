@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.mjcf.compiled import CompiledModel
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.frames import BodyFrames
 from heuncli.scene.importers.names import assign_names
 

@@ -14,7 +14,7 @@ from collections.abc import Collection
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import ZERO, Matrix, Vec
-from heuncli.scene.file_format.turns import IDENTITY
+from heuncli.scene.file_format.rotations import IDENTITY
 from heuncli.scene.importers.attitudes import (
     add_vectors,
     compose_rotations,

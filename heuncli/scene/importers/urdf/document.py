@@ -6,10 +6,10 @@ from collections import Counter
 
 from heuncli.base.errors import SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import suggest
 from heuncli.base.records import record
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
-from heuncli.scene.importers.described import LEFT_OUT_CODE
+from heuncli.scene.importers.description import LEFT_OUT_CODE
 from heuncli.scene.importers.urdf.fields import UrdfFields, find_misspelt
 from heuncli.scene.importers.xml_elements import XACRO_HINT, XmlElement
 

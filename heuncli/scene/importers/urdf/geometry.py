@@ -17,7 +17,7 @@ from heuncli.scene.importers.attitudes import (
     rotation_from_roll_pitch_yaw,
     round_vector,
 )
-from heuncli.scene.importers.described import DescribedEntry
+from heuncli.scene.importers.description import DescribedEntry
 from heuncli.scene.importers.urdf.document import UrdfLink, read_pose
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement

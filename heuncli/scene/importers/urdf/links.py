@@ -13,7 +13,7 @@ from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import ZERO, Vec
-from heuncli.scene.file_format.turns import cross_product, unit_vector, vector_length
+from heuncli.scene.file_format.rotations import cross_product, unit_vector, vector_length
 from heuncli.scene.importers.attitudes import add_vectors, rotate_vector, round_vector
 from heuncli.scene.importers.urdf.carriers import GROUND, PlacedLink
 from heuncli.scene.importers.urdf.document import UrdfJoint

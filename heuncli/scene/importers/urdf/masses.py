@@ -16,7 +16,7 @@ from __future__ import annotations
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import ZERO, Matrix, Vec
-from heuncli.scene.file_format.turns import symmetric_eigenvalues
+from heuncli.scene.file_format.rotations import symmetric_eigenvalues
 from heuncli.scene.importers.attitudes import round_number
 from heuncli.scene.importers.spec_text import format_number
 from heuncli.scene.importers.urdf.document import Inertial, UrdfLink

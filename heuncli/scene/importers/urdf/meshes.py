@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from heuncli.base.errors import Finding
-from heuncli.base.foreign_text import escape
+from heuncli.base.text_safety import escape
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import ZERO
 from heuncli.scene.file_format.named_files import MAX_FILE_SIZE

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.models import Vec
-from heuncli.scene.importers.described import DescribedPoint
+from heuncli.scene.importers.description import DescribedPoint
 from heuncli.scene.importers.names import assign_names, format_original_name
 from heuncli.scene.importers.urdf.carriers import GROUND
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.models import Matrix
-from heuncli.scene.importers.asked import ImportOptions
-from heuncli.scene.importers.described import DescribedEntry, DescribedMachine
+from heuncli.scene.importers.description import DescribedEntry, DescribedMachine
+from heuncli.scene.importers.import_options import ImportOptions
 from heuncli.scene.importers.urdf.carriers import compute_attitudes, find_group_heads, place_links
 from heuncli.scene.importers.urdf.document import Robot, read_robot
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.geometry import has_supported_shapes, make_shapes
+from heuncli.scene.importers.urdf.machine import ValidatedRobot, build_machine
 from heuncli.scene.importers.urdf.masses import LinkMass, make_repaired_mass, validate_mass
-from heuncli.scene.importers.urdf.said import ValidatedRobot, build_machine
 from heuncli.scene.importers.urdf.tree import LinkTree, build_tree
 from heuncli.scene.importers.xml_elements import XmlElement
 

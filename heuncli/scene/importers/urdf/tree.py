@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.nearest import list_words, suggest
+from heuncli.base.spelling import list_words, suggest
 from heuncli.scene.importers.urdf.document import Mimic, Robot, UrdfJoint, UrdfLink
 from heuncli.scene.importers.urdf.fields import UrdfFields
 

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import heuncli
-from heuncli.analyses.variants.asking import Recipe, VariantEvaluator, VariantResult
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, VariantResult
 from heuncli.app.commands.sweep.workers import answer_of
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.form import KERNEL

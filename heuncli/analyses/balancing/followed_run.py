@@ -1,0 +1,118 @@
+"""Follow a scene along its cycle once, and evaluate it at any place of the cycle; nothing is integrated.
+
+A place x runs from 0 to the cycle's length [rad] in the order of the run: the angle is begin + x, or begin - x if the
+run turns backwards. The run knows the places of jumps and kinks: changes of branches, which the kernel finds by bounds,
+and discontinuities of laws in time.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from heuncli.analyses.balancing.cycle_nodes import PieceNodes
+from heuncli.analyses.balancing.piece_resolver import make_empty_nodes
+from heuncli.base import tolerances
+from heuncli.base.records import record
+from heuncli.motion.integration.check.estimate import evaluate_run
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.integration.segments import find_discontinuities
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.tree.layout import Layout
+from heuncli.results.results import Array
+from heuncli.study.search.in_time import refine_for_time_laws
+
+STEP_TOLERANCE = 1e-9  # step tolerance; without effect, as every instant is solved to rounding
+SAMPLES_PER_TURN = 64  # even angles of a turn
+MAX_TIME_SAMPLES = 100_000  # instants at which functions of time are sampled
+
+
+@record
+class FollowedRun:
+    """A run of a scene over a number of turns from an angle [rad] on, at a constant rate [rad/s]."""
+
+    layout: Layout
+    runner: Runner
+    begin: float
+    rate: float
+    turns: int
+
+    @property
+    def length(self) -> float:
+        """Length of the cycle [rad]."""
+        return 2.0 * math.pi * self.turns
+
+    @property
+    def end_time(self) -> float:
+        """Time at the end of the run [s]."""
+        return self.length / abs(self.rate)
+
+    @cached_property
+    def jumps(self) -> tuple[float, ...]:
+        """Times of the jumps and kinks of functions of time."""
+        return tuple(find_discontinuities(self.layout.mechanism, self.end_time))
+
+    def compute_trajectory(self, times: Array, step_ends: Array | None = None) -> Trajectory:
+        """Return the run, evaluated at ascending times (n,).
+
+        step_ends (m,): further times at which steps must end
+        """
+        ends = self.jumps if step_ends is None else tuple(np.unique(np.append(step_ends, self.jumps)).tolist())
+        return self.runner.run(MotionTask(times, STEP_TOLERANCE, DRIVE_DETERMINED, ends))
+
+    @cached_property
+    def run(self) -> Trajectory:
+        """The run, evaluated at equally spaced places including both ends."""
+        count = SAMPLES_PER_TURN * self.turns
+        return self.compute_trajectory(np.arange(count + 1) / count * self.length / abs(self.rate))
+
+    def recover(self, x: Array) -> Evaluation:
+        """Return the kernel's results at ascending places (n,)."""
+        times = np.minimum(x / abs(self.rate), self.end_time)
+        jumps = sorted({*self.jumps, *self.run.jumps})
+        return evaluate_run(self.runner, self.run, times, self.runner.resample(self.run, times), jumps)
+
+    @property
+    def cycle(self) -> PieceNodes:
+        """The cycle, not yet divided into pieces."""
+        return make_empty_nodes(self.begin, self.turns, math.copysign(1.0, self.rate))
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Places of jumps and kinks, (n,)."""
+        times = np.array(sorted({*self.jumps, *self.run.jumps}))
+        return times * abs(self.rate)
+
+    def is_smooth(self) -> bool:
+        """Return whether no jump or kink is known."""
+        return not len(self.breaks)
+
+    def find_short_steps(self, length: float) -> Array:
+        """Return the ends and middles (n,) of steps shorter than `length` [rad]."""
+        ends = self.run.ends * abs(self.rate)
+        steps = np.diff(np.append(0.0, ends))
+        short = steps < length
+        return np.unique(np.concatenate([ends[short], (ends - steps)[short], (ends - 0.5 * steps)[short]]))
+
+    def find_time_law_places(self) -> Array:
+        """Return the places (n,) at which functions of time need a closer look."""
+        grid, _ = refine_for_time_laws(self.layout.mechanism, np.array([0.0, self.end_time]), MAX_TIME_SAMPLES)
+        return np.asarray(grid[1:-1] * abs(self.rate))
+
+    def find_extra_step_ends(self, nodes: PieceNodes) -> Array:
+        """Return the ends (n,) of steps that begin with the pieces but do not end with them.
+
+        A step evaluates loads at its ends and in its middle; the kernel shortens it where bounds allow for more.
+        """
+        ends = self.compute_trajectory(np.array([0.0, self.end_time]), nodes.begins[1:] / abs(self.rate)).ends * abs(
+            self.rate
+        )
+        k = np.clip(np.searchsorted(nodes.begins, ends), 0, len(nodes.begins) - 1)
+        known = np.append(nodes.begins, self.length)
+        distance = np.minimum(np.abs(ends - known[k]), np.abs(ends - known[np.minimum(k + 1, len(known) - 1)]))
+        return np.asarray(ends[distance > tolerances.SIDE_BY_SIDE * self.length])

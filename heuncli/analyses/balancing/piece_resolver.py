@@ -1,0 +1,219 @@
+"""Resolve numbers over a cycle on pieces: halve each piece until the tail of its polynomial is rounding.
+
+Known breaks end pieces. An unknown break is enclosed by halving, down to negligible length. If halving lowers a tail no
+further, the tail is the rounding of the numbers themselves. Probes are places where the polynomials are compared with
+the numbers; where they differ, pieces end there and are halved again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from heuncli.analyses.balancing.cycle_nodes import PieceNodes
+from heuncli.analyses.balancing.legendre import MAX_NODES
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
+from heuncli.results.results import Array, Indices, Mask
+
+Sample = Callable[[Array], Array]  # maps ascending places (n,) to numbers (n, columns)
+
+FIRST_NODES = 8  # nodes of a short piece at first; other pieces have MAX_NODES
+SHORT_PIECE = 0.05  # of a turn
+MAX_PIECE = 0.125  # of a turn: longest piece at first
+NOISE_TAIL = 1e-7  # relative tail; a smaller one that halving reduces by less than ...
+MIN_TAIL_REDUCTION = 0.25  # ... this factor is rounding of the numbers
+MIN_LENGTH = 64.0 * tolerances.EPS  # of the cycle, or of its angles: no node fits into a shorter piece
+GRADING = 8.0  # ratio of the lengths of adjacent pieces towards a place that is resolved again
+MAX_EVALUATIONS = 400_000
+
+
+class ResolvedNumbers(NamedTuple):
+    """Numbers at the nodes of pieces, (n, columns).
+
+    is_resolved: whether their tails are rounding everywhere
+    """
+
+    nodes: PieceNodes
+    values: Array
+    settled: bool
+
+
+class CyclePieces(NamedTuple):
+    """Pieces (p,) with their numbers of nodes, and the largest relative tail of the piece that each is a half of."""
+
+    begins: Array
+    ends: Array
+    sizes: Array
+    before: Array
+
+    def select(self, which: Mask | Indices) -> CyclePieces:
+        """Return the selected pieces."""
+        return CyclePieces(*(x[which] for x in self))
+
+
+class CycleResolver:
+    """Finds pieces for numbers over a cycle; resolved pieces are stored in `resolved` and `values`."""
+
+    def __init__(self, sample: Sample, cycle: PieceNodes, scales: Callable[[Array], Array]) -> None:
+        """cycle: without pieces yet
+        scales: function of values (n, columns) that returns the scale of the tails, (columns,)
+        """
+        self.sample, self.cycle, self.scales = sample, cycle, scales
+        self.resolved = CyclePieces(*(np.zeros(0) for _ in range(4)))
+        self.values: list[Array] = []
+        self.largest: Array | None = None
+        self.is_resolved, self.evaluations = True, 0
+        self.min_length = MIN_LENGTH * max(cycle.length, abs(cycle.begin) + cycle.length)
+
+    def resolve(self, marks: Array) -> ResolvedNumbers:
+        """Divide the cycle at the marks (places) and refine the pieces until all are resolved."""
+        ends = self.cycle.length
+        breaks = np.unique(
+            np.concatenate([[0.0], marks[(marks > self.min_length) & (marks < ends - self.min_length)], [ends]])
+        )
+        breaks = breaks[np.append(True, np.diff(breaks) > self.min_length)]
+        breaks[-1] = ends
+        turn = ends / self.cycle.turns
+        parts = np.maximum(np.ceil(np.diff(breaks) / (MAX_PIECE * turn) - 1e-9), 1.0).astype(int)
+        places = np.concatenate([
+            *(a + (b - a) * np.arange(n) / n for a, b, n in zip(breaks[:-1], breaks[1:], parts, strict=True)), [ends]
+        ])  # fmt: skip
+        sizes = np.where(np.diff(places) < SHORT_PIECE * turn, FIRST_NODES, MAX_NODES)
+        self.refine(CyclePieces(places[:-1], places[1:], sizes, np.full(len(sizes), np.inf)))
+        return self.collect_numbers()
+
+    def probe(self, probes: Array) -> ResolvedNumbers:
+        """Compare the pieces with the numbers at the probes and refine again where they differ; return all numbers."""
+        probes = np.unique(probes[(probes > self.min_length) & (probes < self.cycle.length - self.min_length)])
+        resolved = self.collect_numbers()
+        if not len(probes):
+            return resolved
+        deviations = (
+            np.abs(
+                self.sample(probes)
+                - resolved.nodes.evaluate(resolved.nodes.compute_coefficients(resolved.values), probes)
+            )
+            / self.scale
+        )
+        k = np.searchsorted(self.resolved.begins, probes, side="right") - 1
+        is_inside = (
+            np.minimum(probes - self.resolved.begins[k], self.resolved.ends[k] - probes) > GRADING * self.min_length
+        )
+        deviations = np.where(is_inside, deviations.max(axis=1), 0.0)
+        order = np.lexsort((deviations, k))
+        worst = order[np.append(k[order][1:] != k[order][:-1], True)]  # worst probe of each piece
+        wrong = worst[deviations[worst] > tolerances.CANCELS]
+        if not len(wrong):
+            return resolved
+        self.regrade(k[wrong], probes[wrong])
+        return self.collect_numbers()
+
+    def regrade(self, k: Indices, places: Array) -> None:
+        """Replace pieces by ones that shorten toward a place within each, on both sides.
+
+        Details there may be shorter than the distance of any nodes.
+        """
+        ends = []
+        for i, place in zip(k.tolist(), places.tolist(), strict=True):
+            a, b = float(self.resolved.begins[i]), float(self.resolved.ends[i])
+            for width, side in ((place - a, -1.0), (b - place, 1.0)):
+                levels = int(max(np.log(width / (GRADING * self.min_length)) / np.log(GRADING), 0.0))
+                ends.append(place + side * width * GRADING ** -np.arange(levels + 1.0))
+            ends.append(np.array([place]))
+            ends[-3][0], ends[-2][0] = a, b
+        marks = np.unique(np.concatenate(ends))
+        is_replaced = np.zeros(len(self.resolved.begins), dtype=bool)
+        is_replaced[k] = True
+        middle = 0.5 * (marks[1:] + marks[:-1])
+        inside = is_replaced[np.searchsorted(self.resolved.begins, middle, side="right") - 1]
+        begins, piece_ends = marks[:-1][inside], marks[1:][inside]
+        self.values = [own for own, out in zip(self.values, is_replaced, strict=True) if not out]
+        self.resolved = self.resolved.select(~is_replaced)
+        self.refine(CyclePieces(begins, piece_ends, np.full(len(begins), MAX_NODES), np.full(len(begins), np.inf)))
+
+    def refine(self, pieces: CyclePieces) -> None:
+        """Halve pieces until each is resolved or has negligible length; then store them."""
+        while len(pieces.begins):
+            pieces = pieces.select(np.argsort(pieces.begins))
+            nodes = self.make_nodes(pieces)
+            values = self.sample(nodes.places)
+            self.evaluations += len(values)
+            scales = self.scales(values)
+            self.largest = scales if self.largest is None else np.maximum(self.largest, scales)
+            tails = (nodes.estimate_tails(nodes.compute_coefficients(values)) / self.scale).max(axis=1)
+            width = pieces.ends - pieces.begins
+            noise = (tails <= NOISE_TAIL) & (tails > MIN_TAIL_REDUCTION * pieces.parent_tails)
+            wide = width > 4.0 * self.min_length
+            is_exhausted = self.evaluations > MAX_EVALUATIONS
+            is_done = (tails <= tolerances.ORDERS_SETTLED) | noise | ~wide | is_exhausted
+            self.is_resolved &= not (is_exhausted and bool((tails > tolerances.CANCELS)[wide].any()))
+            parts = np.split(values, np.cumsum(pieces.sizes)[:-1])
+            self.store(
+                pieces.select(is_done), [part for part, own_done in zip(parts, is_done, strict=True) if own_done]
+            )
+            pieces = divide_pieces(pieces._replace(parent_tails=tails).select(~is_done))
+
+    def store(self, pieces: CyclePieces, values: Sequence[Array]) -> None:
+        """Add pieces to the resolved ones."""
+        all_pieces = CyclePieces(*(np.concatenate(both) for both in zip(self.resolved, pieces, strict=True)))
+        all_values = [*self.values, *values]
+        order = np.argsort(all_pieces.begins, kind="stable")
+        self.resolved, self.values = all_pieces.select(order), [all_values[i] for i in order]
+
+    @property
+    def scale(self) -> Array:
+        """Scales of the tails, (columns,)."""
+        assert self.largest is not None
+        return np.where(self.largest > 0.0, self.largest, 1.0)
+
+    def make_nodes(self, pieces: CyclePieces) -> PieceNodes:
+        """Return the cycle's nodes on these pieces."""
+        found: PieceNodes = replace(self.cycle, begins=pieces.begins, ends=pieces.ends, sizes=pieces.sizes.astype(int))
+        return found
+
+    def collect_numbers(self) -> ResolvedNumbers:
+        """Return all numbers resolved so far."""
+        return ResolvedNumbers(self.make_nodes(self.resolved), np.concatenate(self.values), self.is_resolved)
+
+
+def divide_pieces(pieces: CyclePieces) -> CyclePieces:
+    """Return the next pieces: short ones with the full number of nodes, others halved."""
+    is_coarse = pieces.sizes < MAX_NODES
+    coarse, wide = pieces.select(is_coarse), pieces.select(~is_coarse)
+    middle = 0.5 * (wide.begins + wide.ends)
+    parts = [
+        coarse._replace(
+            sizes=np.full_like(coarse.sizes, MAX_NODES), parent_tails=np.full_like(coarse.parent_tails, np.inf)
+        ),
+        wide._replace(ends=middle),
+        wide._replace(begins=middle),
+    ]
+    return CyclePieces(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+def make_empty_nodes(begin: float, turns: int, direction: float = 1.0) -> PieceNodes:
+    """Return the nodes of a cycle that has no pieces yet."""
+    empty = np.zeros(0)
+    return PieceNodes(begin, turns, direction, empty, empty, empty.astype(int))
+
+
+def make_scales(group_sizes: Sequence[int], rounding: Sequence[float]) -> Callable[[Array], Array]:
+    """Return a function that computes the scale of each column: the largest value of its kind.
+
+    group_sizes: numbers of adjacent columns that are of one kind
+    rounding: rounding level of each kind; no tail need be smaller
+    """
+    floors = np.array(rounding) / tolerances.ORDERS_SETTLED
+
+    def compute_scales(values: Array) -> Array:
+        ends = np.cumsum(group_sizes)
+        sizes = np.abs(values).max(axis=0, initial=0.0)
+        return np.concatenate([
+            np.full(n, max(float(sizes[end - n : end].max(initial=0.0)), floor))
+            for n, end, floor in zip(group_sizes, ends, floors.tolist(), strict=True)
+        ])  # fmt: skip
+
+    return compute_scales

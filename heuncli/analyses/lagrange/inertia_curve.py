@@ -1,0 +1,265 @@
+"""`--over`: inertia and forces over a range of the one free coordinate, without integration.
+    e(q) = sum m x'^2 + w' . I w'      de/dq / 2 = sum m x' . x'' + ...: C at unit rate      k_i = sum F . x'_P
+The drives are removed, the coordinate is followed from its start value at unit rate (x' = dx/dq), and every instant is
+solved separately. Loads are those at the start's time, and at the rate that the coordinate has there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.analyses.lagrange.coordinates import compute_accelerations, compute_length, compute_rates
+from heuncli.analyses.lagrange.equations import get_velocity_motion
+from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives
+from heuncli.analyses.lagrange.results import InertiaCurve
+from heuncli.base.errors import LimitError, Problem, SolveError
+from heuncli.base.joint_kinds import RATES
+from heuncli.base.records import record, replace
+from heuncli.loads.kinetostatics.actions import Action, collect_applied_loads
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
+from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_rope_actions
+from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.loads.kinetostatics.shares import GRAVITY
+from heuncli.motion.integration.determined_motion import find_determined_motion
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.tree.held_speeds import find_speed_rows
+from heuncli.multibody.tree.layout import Layout, rate_indices
+from heuncli.results.results import Array
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.file_format.models import Analysis, Drive, Spec
+from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import set_up
+
+MEAN_TOLERANCE = 1e-7  # of the mean of e: permitted change with half as many values, below the six digits shown
+MIN_VALUES, MAX_VALUES = 17, 4097  # least and largest number of values for the mean
+
+
+@record
+class CoordinateRange:
+    """A coordinate, joint.quantity, and the values (n,) over which it is followed."""
+
+    name: str
+    joint: str
+    quantity: str
+    values: Array
+
+
+def make_refusal(coordinate_range: CoordinateRange, message: str, hint: str) -> SolveError:
+    """Return the error for a range that cannot be followed."""
+    return SolveError(Problem("no-course", f"{coordinate_range.name}: {message}", hint=hint))
+
+
+def find_inertia_curve(spec: Spec, coordinate_range: CoordinateRange) -> InertiaCurve:
+    """Return inertia and forces over a range. Raises SolveError [no-course] if more motions are free, or the path
+    ends.
+    """
+    with attach_locations(spec):
+        curve = finer = compute_curve(spec, coordinate_range)
+        mean, error = compute_mean(curve)
+        while error > MEAN_TOLERANCE * abs(mean) and 2 * len(finer.values) <= MAX_VALUES:
+            count = max(2 * len(finer.values) - 1, MIN_VALUES)
+            finer = compute_curve(
+                spec,
+                replace(
+                    coordinate_range, values=np.linspace(coordinate_range.values[0], coordinate_range.values[-1], count)
+                ),
+            )
+            mean, error = compute_mean(finer)
+        return replace(curve, mean=mean if error <= MEAN_TOLERANCE * abs(mean) else np.nan)
+
+
+def compute_mean(curve: InertiaCurve) -> tuple[float, float]:
+    """Return the mean of e over the range, and its difference from that of every other value, by the Euler-Maclaurin
+    sum.         integral = sum h (e_i + e_i+1)/2 + h^2 (e'_i - e'_i+1)/12 Over a whole turn the slopes cancel, and the
+    trapezoidal rule is as accurate as e is smooth.
+    """
+    e, slope, length = curve.epsilon, 2.0 * curve.half, float(curve.values[-1] - curve.values[0])
+
+    def mean_with_stride(every: int) -> float:
+        f = e[::every]
+        h = length / (len(f) - 1)
+        ends = h * (slope[0] - slope[-1]) / 12.0
+        return float((0.5 * (f[0] + f[-1]) + f[1:-1].sum() + ends) / (len(f) - 1))
+
+    if len(e) < MIN_VALUES or len(e) % 2 == 0:
+        return mean_with_stride(1), np.inf
+    return mean_with_stride(1), abs(mean_with_stride(1) - mean_with_stride(2))
+
+
+def compute_curve(spec: Spec, coordinate_range: CoordinateRange) -> InertiaCurve:
+    """Return inertia and forces at the requested values."""
+    start, rate = find_start(spec, coordinate_range)
+    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+    order = np.argsort(coordinate_range.values)
+    values = coordinate_range.values[order]
+    branches = [values[values < start][::-1], values[values >= start]]
+    parts = [
+        compute_branch(*follow_branch(spec, coordinate_range, start, branch), t, rate, branch)
+        for branch in branches
+        if len(branch)
+    ]
+    parts = [
+        part.reversed_curve if len(part.values) > 1 and part.values[0] > part.values[-1] else part for part in parts
+    ]
+    curve = join_branches(parts)
+    curve = curve if coordinate_range.values[0] < coordinate_range.values[-1] else curve.reversed_curve
+    is_driven = any(
+        drive.joint == coordinate_range.joint and drive.quantity == coordinate_range.quantity
+        for drive in spec.drives.values()
+    )
+    return replace(curve, title=spec.title, name=coordinate_range.name, is_driven=is_driven)
+
+
+def find_start(spec: Spec, coordinate_range: CoordinateRange) -> tuple[float, float]:
+    """Return the value of the coordinate at the start, and its rate."""
+    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+    analysis = spec.analysis._replace(type="state", times=(t,), duration=None, conditions=())
+    setup = set_up(spec._replace(analysis=analysis), reduce=False)
+    layout = setup.scene.layout
+    recovered = setup.runner.evaluate(np.array([t]), layout.y0[None, :])
+    states = make_body_states(layout, recovered)
+    rate = float(compute_rates(layout, [f"{coordinate_range.joint}.{coordinate_range.quantity}"], states)[0, 0])
+    if coordinate_range.quantity == "length":
+        return compute_length(layout, states, coordinate_range.joint), rate
+    return float(
+        evaluate_joint_coordinates(layout, recovered, states)[coordinate_range.joint][coordinate_range.quantity][0]
+    ), rate
+
+
+def follow_branch(
+    spec: Spec, coordinate_range: CoordinateRange, start: float, branch: Array
+) -> tuple[FreedScene, Evaluation, float]:
+    """Follow the coordinate along a branch: return the scene without drives, the solutions at the values, and the rate
+    used.
+
+    Raises SolveError [no-course] if more than the coordinate is free, or if contacts may open and close.
+    """
+    span = float(branch[-1]) - start or 1.0
+    law = compile_expression(f"{start!r} + {span!r}*t", Scope(in_time=True))
+    drives = {"over": Drive("over", coordinate_range.joint, coordinate_range.quantity, law)}  # type: ignore[arg-type]
+    joints = dict(spec.joints)
+    if coordinate_range.quantity in RATES:
+        joints[coordinate_range.joint] = replace(
+            joints[coordinate_range.joint], **{RATES[coordinate_range.quantity]: None}
+        )
+    times = np.maximum((branch - start) / span, 0.0)
+    analysis = Analysis("motion", tuple(times.tolist()), 1.0, spec.analysis.tolerance, "auto", None)
+    setup = set_up(spec._replace(drives=drives, joints=joints, impulses={}, analysis=analysis), reduce=False)
+    layout = setup.scene.layout
+    for load in layout.mechanism.joint_friction:
+        joint_path = layout.mechanism.describe_friction(load)
+        message = f"friction hangs on what presses, {joint_path}: it is told of an instant, not over a range"
+        raise make_refusal(coordinate_range, message, "leave it out; or take one instant")
+    if find_speed_rows(layout).any() and not layout.mechanism.planar:
+        message = "what rolls comes to poses by its way: no coordinate tells them"
+        raise make_refusal(coordinate_range, message, "heun run tells its motion; in the plane wheels roll along lines")
+    if layout.contacts:
+        message = f"{layout.contacts[0].name} may open and close on the way"
+        raise make_refusal(coordinate_range, message, "leave stops and ropes out")
+    if not find_determined_motion(setup.runner.integrated_scene).is_so:
+        message = f"with {coordinate_range.name} held something is free: the inertia of one motion is told over it"
+        raise make_refusal(
+            coordinate_range, message, "heun lagrange SPEC tells all of one instant; --at T of a later one"
+        )
+    try:
+        run = setup.runner.run(MotionTask(times, spec.analysis.tolerance, DRIVE_DETERMINED))
+    except LimitError as error:
+        if error.problems[0].code != "step-limit":
+            raise
+        raise make_refusal(
+            coordinate_range, "it takes too many steps to be followed so far", "a shorter range"
+        ) from None
+    except SolveError as error:
+        ends = "" if error.reached is None else f" beyond {start + span * error.reached:.6g}"
+        reason = error.problems[0].message
+        message = f"it cannot be followed{ends}: {reason.partition(' s: ')[2] or reason}"
+        raise make_refusal(
+            coordinate_range, message, "a shorter range; or another coordinate, that turns all the way"
+        ) from None
+    return free_drives(setup.scene), setup.runner.evaluate_run(run, times), span
+
+
+def compute_branch(
+    scene: FreedScene, recovered: Evaluation, span: float, t: float, rate: float, values: Array
+) -> InertiaCurve:
+    """Return inertia and forces at the values of a branch."""
+    layout, runner = scene.layout, scene.runner
+    rate_places = rate_indices(layout)
+    rate_places = rate_places[rate_places >= 0]
+    unit, moving = scene.convert_states(recovered), scene.convert_states(recovered)
+    unit[:, rate_places] /= span
+    moving[:, rate_places] *= rate / span
+    times, holding = np.full(len(values), t), layout.open_contacts
+    unit_recovered = runner.evaluate(times, unit, causes=True, holding=holding)
+    states = make_body_states(layout, unit_recovered)
+    angular_momentum = np.einsum("tnij,tnj->tni", states.R, compute_body_spins(layout, states))
+    m = np.array([body.mass for body in layout.mechanism.bodies])
+    epsilon = np.sum(m * np.sum(states.v_centre**2, axis=2), axis=1) + np.sum(
+        states.omega * angular_momentum, axis=(1, 2)
+    )
+    velocity_motion = get_velocity_motion(layout, unit_recovered)
+    force, moment = inertia_loads(layout.mechanism, velocity_motion)
+    half = np.sum(force * states.v_centre + moment * states.omega, axis=(1, 2))
+    joint = next(joint for joint in scene.original.mechanism.joints if joint.drive is not None)
+    assert joint.drive is not None
+    half = (
+        half - epsilon * compute_accelerations(layout, [f"{joint.name}.{joint.drive.quantity}"], velocity_motion)[:, 0]
+    )
+    load_recovered = runner.evaluate(times, moving, holding=holding)
+    load_states = make_body_states(layout, load_recovered)
+    speeds = np.sqrt(np.sum(states.v_centre**2, axis=2)), np.sqrt(np.sum(states.omega**2, axis=2))
+    gravity = layout.mechanism.gravity
+    forces = {GRAVITY: states.v_centre @ gravity @ m} if gravity.any() else {}
+    force_scale = float((speeds[0] @ m).max()) * float(np.sqrt(gravity @ gravity))
+    for load in collect_applied_loads(layout.mechanism, load_states, load_recovered):
+        forces[load.load.name] = forces.get(load.load.name, 0.0) + compute_power(states, load.action)
+        force_scale = max(force_scale, bound_power(speeds, load.action))
+    for action in list_rope_actions(find_coupling_loads(layout, load_recovered, load_states)):
+        forces[action.name] = forces.get(action.name, 0.0) + compute_power(states, action)
+        force_scale = max(force_scale, bound_power(speeds, action))
+    return InertiaCurve("", "", False, 0.0, values, rate, epsilon, half, forces, force_scale)
+
+
+def bound_power(speeds: tuple[Array, Array], action: Action) -> float:
+    """Return the largest possible power of an action at the speeds and angular speeds of the bodies, (n_t, n) each."""
+    bound = 0.0
+    for end, force, moment in action.iter_ends():
+        if end.body != GROUND:
+            sizes = (np.sqrt(np.sum(load**2, axis=-1)) for load in (force, moment))
+            bound += sum(float((size * speed[:, end.body]).max()) for size, speed in zip(sizes, speeds, strict=True))
+    return bound
+
+
+def compute_body_spins(layout: Layout, states: BodyStates) -> Array:
+    """Return I w of every body, (n_t, n, 3), body axes."""
+    inertia = np.array([body.inertia for body in layout.mechanism.bodies])
+    return np.asarray(np.einsum("nij,tnkj,tnk->tni", inertia, states.R, states.omega))
+
+
+def compute_power(states: BodyStates, action: Action) -> Array:
+    """Return the power of an action at the velocities of states, (n_t,)."""
+    total = np.zeros(len(states.x))
+    for end, force, moment in action.iter_ends():
+        if end.body != GROUND:
+            total = total + np.sum(force * states.point_velocity(end.body, end.position), axis=1)
+            total = total + np.sum(moment * states.omega[:, end.body], axis=1)
+    return total
+
+
+def join_branches(parts: list[InertiaCurve]) -> InertiaCurve:
+    """Join the branches one after the other."""
+    if len(parts) == 1:
+        return parts[0]
+    first, second = parts
+    return replace(
+        first,
+        values=np.concatenate([first.values, second.values]),
+        epsilon=np.concatenate([first.epsilon, second.epsilon]),
+        half=np.concatenate([first.half, second.half]),
+        forces={name: np.concatenate([k, second.forces[name]]) for name, k in first.forces.items()},
+        force_scale=max(first.force_scale, second.force_scale),
+    )

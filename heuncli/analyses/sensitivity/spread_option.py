@@ -1,0 +1,42 @@
+"""Parse the option `--spread L=0.1mm,e=0.02mm`."""
+
+from __future__ import annotations
+
+from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread
+from heuncli.analyses.variants.axes import AxisError, parse_figure, split_at_commas, split_name
+from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumbers
+from heuncli.base.errors import Finding
+from heuncli.base.units import describe, parse_unit
+
+FORM = "expected NAME=VALUE,..., how far each may lie from its value"
+HINT = "such as --spread L=0.1mm,e=0.02mm"
+
+
+def parse_spreads(text: str, spec_numbers: WrittenNumbers) -> list[NumberSpread]:
+    """Return the tolerances of numbers, each in its number's unit. Raises AxisError."""
+    spreads: dict[str, NumberSpread] = {}
+    for word in split_at_commas(text):
+        name, value = split_name(word.strip(), FORM, HINT)
+        if name in spreads:
+            raise AxisError(name, "has two spreads", HINT)
+        number = spec_numbers.find_number(name)
+        spreads[name] = NumberSpread(number, _parse_size(word.strip(), value, number))
+    return [*spreads.values()]
+
+
+def _parse_size(word: str, value: str, number: WrittenNumber) -> float:
+    """Return the tolerance of a number, in its unit. Raises AxisError."""
+    quantity = parse_figure(value)
+    if quantity is None or quantity.value <= 0.0:
+        raise AxisError(word, "a spread is a positive number, with its unit", HINT)
+    if not quantity.unit:
+        if number.size != 1.0:
+            raise AxisError(word, f"{number.name} is given in {number.unit}: a spread needs its unit", HINT)
+        return quantity.value
+    try:
+        size, dimension = parse_unit(quantity.unit)
+    except Finding as finding:
+        raise AxisError(word, finding.message, finding.hint) from None
+    if number.unit and dimension != parse_unit(number.unit)[1]:
+        raise AxisError(word, f"{describe(dimension)}, but {number.name} is given in {number.unit}", HINT)
+    return quantity.value * size / number.size

@@ -1,0 +1,175 @@
+"""Combined effect of the tolerances of several numbers on a measure.
+    worst case         sum over the numbers of the largest change within the tolerance of each
+    root sum square    the root of the sum of their squares, for independent tolerances
+Each number is set to both ends of its tolerance and to a place between on either side. If these and the derivative lie
+on one line, the largest change is at an end. Otherwise the tolerance range is searched: the measure is followed over it
+as in `heun find`. The sums hold if the numbers act independently. So all numbers are also set together to where each
+lowers and raises the measure most; then the nonlinear ones are varied one by one, the others fixed, until no variant
+shows more. The worst case is never less than what a variant showed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
+from heuncli.analyses.variants.course import MeasureCourse, Sample, SpentError
+from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
+from heuncli.analyses.variants.written_numbers import WrittenNumber
+from heuncli.base.named_tuples import NamedTuple
+
+LINEARITY_TOLERANCE = 0.05  # of the change predicted by the derivative
+INNER_FRACTION = 0.61  # of a tolerance: inner places between its ends and the value
+SCAN_COUNT, MAX_VARIANTS = 9, 60  # variants over a tolerance range that is searched: at first, and in all
+EXTREME_TOLERANCE = 1e-3  # of the range of the measure: error of its extremes
+MAX_STEPS = 30  # towards one extreme
+MAX_ROUNDS = 3  # through all numbers, one by one
+
+
+class NumberSpread(NamedTuple):
+    """A number and its tolerance, each way, in its unit."""
+
+    number: WrittenNumber
+    size: float
+
+
+class SpreadExtremes(NamedTuple):
+    """Effect of one number within its tolerance, with the distances at which the measure is smallest and largest."""
+
+    contribution: Contribution
+    lowers: float
+    raises: float
+
+
+Evaluate = Callable[[Mapping[str, float]], NoisyValue]  # the measure, for given distances of numbers from their values
+
+
+def combine_tolerances(
+    evaluate: Evaluate, spreads: Sequence[NumberSpread], slopes: Mapping[str, NoisyDerivative]
+) -> SpreadSum:
+    """Combine the tolerances of several numbers; slopes: dm/dp by name."""
+    base = evaluate({})
+    extremes = [find_tolerance_extremes(evaluate, base, spread, slopes[spread.number.name]) for spread in spreads]
+    contributions = tuple(entry.contribution for entry in extremes)
+    lowest = {entry.contribution.name: entry.lowest_at for entry in extremes}
+    highest = {entry.contribution.name: entry.highest_at for entry in extremes}
+    corners = evaluate(lowest), evaluate(highest)
+    largest = max(
+        (change for end in corners if (change := compute_change(end, base))), key=_get_magnitude, default=None
+    )
+    nonlinear = [entry for entry in contributions if entry.bent or entry.why[0]]
+    if nonlinear and len(contributions) > 1:
+        for sign, start in ((-1.0, lowest), (1.0, highest)):
+            climbed_change = climb_from_corner(evaluate, base, spreads, start, sign)
+            largest = max(
+                (entry for entry in (largest, climbed_change) if entry is not None), key=_get_magnitude, default=None
+            )
+    sizes = [(entry.size, entry.error) for entry in contributions if entry.size is not None]
+    if len(sizes) < len(contributions):
+        return SpreadSum(contributions, None, None, corners)
+    worst = sum(size for size, _ in sizes), sum(error for _, error in sizes)
+    by_variant = largest is not None and abs(largest[0]) > worst[0]
+    if by_variant and largest is not None:
+        worst = abs(largest[0]), largest[1] + worst[1] + abs(largest[0]) - worst[0]
+    root = math.sqrt(sum(size * size for size, _ in sizes))
+    error = sum(size * error for size, error in sizes) / root if root else worst[1]
+    return SpreadSum(contributions, worst, (root, error), corners, by_variant, largest)
+
+
+def find_tolerance_extremes(
+    evaluate: Evaluate, base: NoisyValue, spread: NumberSpread, slope: NoisyDerivative
+) -> SpreadExtremes:
+    """Return the effect of one number's tolerance on a measure."""
+    name, t = spread.number.name, spread.size
+    linear = abs(slope.value) * t if slope.value is not None else None
+    variants: dict[float, NoisyValue] = {
+        x: evaluate({name: x}) for x in (-t, -INNER_FRACTION * t, INNER_FRACTION * t, t)
+    }
+    changes = {x: change for x, variant in variants.items() if (change := compute_change(variant, base)) is not None}
+    below, above = (changes[x][0] if x in changes else None for x in (-t, t))
+    why = next((variant.why for variant in variants.values() if variant.value is None), ("", ""))
+    labels = name, t, spread.number.unit
+    if (
+        len(changes) == len(variants)
+        and slope.value is not None
+        and all(matches_derivative(slope, x, change) for x, change in changes.items())
+    ):
+        size, error = max((abs(value), noise) for value, noise in changes.values())
+        size, error = max((size, error), (linear or 0.0, slope.error * t))
+        error += max(abs(value - slope.value * x) for x, (value, _) in changes.items())  # it may be more between them
+        upper = math.copysign(t, slope.value)
+        return SpreadExtremes(Contribution(*labels, size, error, linear, below, above), -upper, upper)
+    if base.value is None or not changes:
+        return SpreadExtremes(Contribution(*labels, None, 0.0, linear, below, above, True, why=why), -t, t)
+    low, high, missing, runs = search_extremes(evaluate, base, name, t)
+    error = max(low.error, high.error) + base.error + missing
+    size = max(-(low.gap or 0.0), high.gap or 0.0)
+    contribution = Contribution(
+        *labels, size, error, linear, below, above, True, (low.x, low.gap or 0.0), (high.x, high.gap or 0.0), runs, why
+    )
+    return SpreadExtremes(contribution, low.x, high.x)
+
+
+def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -> tuple[Sample, Sample, float, int]:
+    """Search the smallest and the largest change within a tolerance; return them, what may be missing of them, and the
+    number of variants.
+    """
+
+    def evaluate_sample(x: float) -> Sample:
+        found = evaluate({name: x} if x else {})
+        if found.value is None or base.value is None:
+            return Sample(x, None, why=found.why)
+        return Sample(x, found.value - base.value, found.error)
+
+    measure_curve = MeasureCourse(evaluate_sample, -t, t, SCAN_COUNT, MAX_VARIANTS, base.value or 0.0)
+    missing = math.inf
+    try:
+        measure_curve.scan()
+        for x in (0.0, -INNER_FRACTION * t, INNER_FRACTION * t):
+            measure_curve.sample_at(x)
+        missing = max(
+            max(refine_extreme(measure_curve, way, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0)
+            for way in (-1, 1)
+        )
+    except SpentError:
+        pass
+    low, high = find_extreme(measure_curve, -1), find_extreme(measure_curve, 1)
+    assert low is not None and high is not None  # the value itself is solved
+    return low, high, missing, len(measure_curve.samples)
+
+
+def climb_from_corner(
+    evaluate: Evaluate, base: NoisyValue, spreads: Sequence[NumberSpread], start: Mapping[str, float], sign: float
+) -> tuple[float, float] | None:
+    """Return the largest change in one direction that varying one number after the other reaches from a corner."""
+    distances = dict(start)
+    best = compute_change(evaluate(distances), base)
+    for _ in range(MAX_ROUNDS):
+        previous = best
+        for spread in spreads:
+            name, t = spread.number.name, spread.size
+            for x in (-t, -INNER_FRACTION * t, 0.0, INNER_FRACTION * t, t):
+                change = compute_change(evaluate(distances | {name: x}), base)
+                if change is not None and (best is None or sign * change[0] > sign * best[0]):
+                    best, distances = change, distances | {name: x}
+        if best == previous:
+            break
+    return best
+
+
+def matches_derivative(slope: NoisyDerivative, distance: float, change: tuple[float, float]) -> bool:
+    """Return whether the change at a distance agrees with the derivative."""
+    predicted = (slope.value or 0.0) * distance
+    return abs(change[0] - predicted) <= LINEARITY_TOLERANCE * abs(predicted) + slope.error * abs(distance) + change[1]
+
+
+def compute_change(variant: NoisyValue, base: NoisyValue) -> tuple[float, float] | None:
+    """Return the change of a measure and its error; None if unknown."""
+    if variant.value is None or base.value is None:
+        return None
+    return variant.value - base.value, variant.error + base.error
+
+
+def _get_magnitude(change: tuple[float, float]) -> float:
+    return abs(change[0])

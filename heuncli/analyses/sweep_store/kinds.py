@@ -1,0 +1,99 @@
+"""Check whether a file is a store of sweeps, and of which version; initialize a new one. Impure: reads and writes
+files.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import time
+
+from heuncli.analyses.sweep_store.errors import NOT_A_STORE, OTHER_FILE_HINT
+from heuncli.base.errors import Problem, UsageError
+from heuncli.version import VERSION
+
+APPLICATION = 0x6865756E  # "heun": the application id in SQLite's header
+FORMAT = 1  # of the tables
+TABLES = (
+    "CREATE TABLE heun (version TEXT NOT NULL)",
+    "CREATE TABLE sweeps (number INTEGER PRIMARY KEY, identity BLOB NOT NULL UNIQUE, head TEXT NOT NULL, draws BLOB,"
+    " begun TEXT NOT NULL)",
+    "CREATE TABLE variants (sweep INTEGER NOT NULL, number INTEGER NOT NULL, key BLOB NOT NULL, given TEXT NOT NULL,"
+    " code TEXT NOT NULL, reason TEXT NOT NULL, PRIMARY KEY (sweep, number)) WITHOUT ROWID",
+    "CREATE TABLE answers (key BLOB PRIMARY KEY, measures TEXT NOT NULL, code TEXT NOT NULL, reason TEXT NOT NULL,"
+    " warnings TEXT NOT NULL) WITHOUT ROWID",
+)
+JOURNAL = 8000  # pages of the journal, 32 MB, after which it is written into the tables: each time waits for the disk
+ATTEMPTS = 200  # to change the journal mode while another process does so: SQLite does not wait for that
+PAUSE = 0.05  # seconds
+
+
+def initialize_store(connection: sqlite3.Connection, name: str, is_persistent: bool) -> None:
+    """Make an empty file a store, or check that it is one of this version; is_persistent: the file outlives the
+    process.
+
+    Raises UsageError, sqlite3.Error.
+    """
+    if is_persistent:
+        require_store(connection, name, may_be_empty=True)
+        _enable_journal(connection)
+        # a killed process loses nothing; after a system crash the last rows may be missing, but no file is
+        # damaged
+        connection.execute("PRAGMA synchronous = NORMAL")
+        connection.execute(f"PRAGMA wal_autocheckpoint = {JOURNAL}")
+    else:
+        connection.execute("PRAGMA journal_mode = MEMORY")
+        connection.execute("PRAGMA synchronous = OFF")
+    connection.execute("BEGIN IMMEDIATE")  # of two processes that start together, one waits and finds the tables
+    try:
+        if _is_empty(connection):
+            connection.execute(f"PRAGMA application_id = {APPLICATION}")
+            connection.execute(f"PRAGMA user_version = {FORMAT}")
+            for table in TABLES:
+                connection.execute(table)
+            connection.execute("INSERT INTO heun VALUES (?)", (VERSION,))
+    finally:
+        connection.execute("COMMIT")
+    require_store(connection, name)
+    version = connection.execute("SELECT version FROM heun").fetchone()[0]
+    if version != VERSION:
+        message = f"{name}: this store is of heun {version}, this is heun {VERSION}: its numbers may be others"
+        hint = f"name another file; heun sweep --show {name} prints what is in it"
+        raise UsageError(Problem(NOT_A_STORE, message, hint=hint))
+
+
+def require_store(connection: sqlite3.Connection, name: str, may_be_empty: bool = False) -> None:
+    """Check that a file is a store with the tables of this version. Raises UsageError, sqlite3.Error."""
+    connection.execute("BEGIN")  # read it in one transaction, because another process may be creating it
+    try:
+        is_empty = _is_empty(connection)
+        application, form = (
+            connection.execute(f"PRAGMA {pragma}").fetchone()[0] for pragma in ("application_id", "user_version")
+        )
+    finally:
+        if connection.in_transaction:
+            connection.execute("COMMIT")
+    if application == APPLICATION:
+        if form != FORMAT:
+            message = f"{name}: a store in form {form}, of another version of heun; this one has form {FORMAT}"
+            raise UsageError(Problem(NOT_A_STORE, message, hint=OTHER_FILE_HINT))
+        return
+    if not may_be_empty or not is_empty:
+        what = "it is empty" if is_empty else "it is a database of another program"
+        raise UsageError(Problem(NOT_A_STORE, f"{name}: this is no store of sweeps: {what}", hint=OTHER_FILE_HINT))
+
+
+def _is_empty(connection: sqlite3.Connection) -> bool:
+    """Whether there are no tables."""
+    return bool(connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0)
+
+
+def _enable_journal(connection: sqlite3.Connection) -> None:
+    """Enable write-ahead logging, so that readers do not wait for writers."""
+    for attempt in range(ATTEMPTS):
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite3.OperationalError as error:
+            if getattr(error, "sqlite_errorname", "") != "SQLITE_BUSY" or attempt == ATTEMPTS - 1:
+                raise
+            time.sleep(PAUSE)

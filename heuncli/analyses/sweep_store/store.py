@@ -1,0 +1,198 @@
+"""Store the rows of sweeps in an SQLite file: written as they come, continued where a sweep ended, read when it is
+done.
+
+    heun      1 row:   heun's version, by which all of it was made
+    sweeps    a row a sweep:    number, identity, head (JSON: what it is of, and its plan), draws (what is drawn)
+    variants  a row a variant:  sweep, number, key, given (JSON: its values); code, reason: of what may be tried again
+    answers   a row a key:      key, measures (JSON: value, error, instant, word), code, reason, warnings (JSON)
+
+A result is stored under its key (analyses/variants/keys.py), and serves every sweep that has a variant with that key. A
+failure that another attempt may avoid (a time limit, memory, a process that died) is no result: it is stored with its
+variant.
+
+The journal is a write-ahead log. Every row is a transaction of its own, so that a killed process loses only the variant
+under way, and two sweeps write in turns; a row that both have is written once. Without a file of the user's, the same
+tables are in one of SQLite's own in the folder of temporary files, which disappears with the process.
+
+Impure: reads and writes files.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from heuncli.analyses.sweep_store.errors import convert_errors
+from heuncli.analyses.sweep_store.heads import read_head, write_head
+from heuncli.analyses.sweep_store.kinds import initialize_store, require_store
+from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.variants.evaluation import MeasureValue, VariantResult
+from heuncli.base.files import find_target
+from heuncli.base.named_tuples import NamedTuple
+
+RETRY_CODES = frozenset({"time-limit", "out-of-memory", "too-much-memory", "worker-died", "bug"})  # not final
+LOCK_TIMEOUT = 120.0  # seconds to wait for another sweep that writes
+
+
+class StoredSweep(NamedTuple):
+    """A sweep of a store.
+
+    variant_count: how many of its variants are stored
+    start_time: when it was started
+    """
+
+    number: int
+    head: SweepHead
+    done: int
+    begun: str
+
+
+class Store:
+    """An open store; as a context manager it is closed at the end."""
+
+    def __init__(self, name: str | None) -> None:
+        """Open a store, or create it; None: one that disappears with the process.
+
+        Raises OutputError, UsageError if the file belongs to another program, or to another version.
+        """
+        self.name = name if name is not None else "the folder of temporary files"
+        if name is not None:
+            find_target(name)
+        with convert_errors(self.name):
+            # an absolute path: SQLite has meanings of its own for ":memory:" and "file:..."
+            where = str(Path(name).absolute()) if name is not None else ""
+            self.connection = sqlite3.connect(where, timeout=LOCK_TIMEOUT, isolation_level=None)
+            initialize_store(self.connection, self.name, is_persistent=name is not None)
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.connection.close()
+
+    def find_or_add_sweep(self, head: SweepHead, identity: bytes) -> int:
+        """Return the number of the sweep with this identity, which is added if there is none."""
+        texts, draws = write_head(head)
+        with convert_errors(self.name):
+            self.connection.execute(
+                "INSERT OR IGNORE INTO sweeps (identity, head, draws, begun) VALUES (?, ?, ?, datetime('now'))",
+                (identity, texts, draws),
+            )
+            found = self.connection.execute("SELECT number FROM sweeps WHERE identity = ?", (identity,)).fetchone()
+        return int(found[0])
+
+    def has_result(self, key: bytes) -> bool:
+        """Whether there is a result for the key."""
+        with convert_errors(self.name):
+            return self.connection.execute("SELECT 1 FROM answers WHERE key = ?", (key,)).fetchone() is not None
+
+    def link_variant(self, sweep: int, number: int, key: bytes, value_texts: tuple[str, ...]) -> None:
+        """Add a variant to a sweep whose result is stored already."""
+        with convert_errors(self.name):
+            self.connection.execute(
+                f"{VARIANT} WHERE code <> ''", (sweep, number, key, json.dumps(value_texts), "", "")
+            )
+
+    def add_result(
+        self, sweep: int, number: int, key: bytes, value_texts: tuple[str, ...], answer: VariantResult
+    ) -> None:
+        """Store the result of a variant."""
+        is_final = answer.code not in RETRY_CODES
+        retry_reason = ("", "") if is_final else (answer.code, answer.reason)
+        with convert_errors(self.name):
+            self.connection.execute("BEGIN IMMEDIATE")
+            try:
+                if is_final:
+                    self.connection.execute(ANSWER, (key, *_to_row(answer)))
+                self.connection.execute(VARIANT, (sweep, number, key, json.dumps(value_texts), *retry_reason))
+                self.connection.execute("COMMIT")
+            except sqlite3.Error:
+                if self.connection.in_transaction:
+                    self.connection.execute("ROLLBACK")
+                raise
+
+    def find_rows(self, sweep: int, names: tuple[str, ...], shard: tuple[int, int] = (1, 1)) -> StoredRows:
+        """Return the rows of a sweep, or of a shard of it, in the order of its plan."""
+        return StoredRows(self, sweep, names, shard)
+
+    def iter_sweeps(self) -> Iterator[StoredSweep]:
+        """Yield all sweeps, in the order in which they were started. Raises UsageError if one cannot be read."""
+        with convert_errors(self.name):
+            found = self.connection.execute(
+                "SELECT number, head, draws, begun, (SELECT count(*) FROM variants WHERE sweep = sweeps.number)"
+                " FROM sweeps ORDER BY number"
+            ).fetchall()
+        for number, texts, draws, start_time, variant_count in found:
+            yield StoredSweep(number, read_head(texts, draws), variant_count, start_time)
+
+
+ANSWER = "INSERT OR IGNORE INTO answers VALUES (?, ?, ?, ?, ?)"
+VARIANT = """\
+INSERT INTO variants VALUES (?, ?, ?, ?, ?, ?)
+ON CONFLICT (sweep, number) DO UPDATE SET code = excluded.code, reason = excluded.reason"""
+ROWS = """\
+SELECT variants.number, given, measures,
+    CASE WHEN answers.key IS NULL THEN variants.code ELSE answers.code END,
+    CASE WHEN answers.key IS NULL THEN variants.reason ELSE answers.reason END, warnings
+FROM variants LEFT JOIN answers USING (key)
+WHERE sweep = ? AND variants.number % ? = ? ORDER BY variants.number"""
+
+
+class StoredRows:
+    """The rows of a sweep, which can be iterated several times: they are read from the file each time."""
+
+    def __init__(self, store: Store, sweep: int, names: tuple[str, ...], shard: tuple[int, int]) -> None:
+        self.store, self.sweep, self.names, self.shard = store, sweep, names, shard
+
+    def __iter__(self) -> Iterator[SweptRow]:
+        k, n = self.shard
+        with (
+            convert_errors(self.store.name),
+            closing(self.store.connection.execute(ROWS, (self.sweep, n, k - 1))) as found,
+        ):
+            for number, value_texts, measures, code, reason, warnings in found:
+                values = dict(zip(self.names, json.loads(value_texts), strict=True))
+                measured = tuple(MeasureValue(*one) for one in json.loads(measures or "[]"))
+                answer = VariantResult(measured, code, reason, tuple(json.loads(warnings or "[]")))
+                yield SweptRow(number, values, answer)
+
+
+def open_store(name: str) -> Store:
+    """Open an existing store for reading. Raises OutputError, UsageError."""
+    store = Store.__new__(Store)
+    store.name = name
+    with convert_errors(name):
+        store.connection = _connect_for_reading(name)
+        require_store(store.connection, name)
+    return store
+
+
+def _connect_for_reading(name: str) -> sqlite3.Connection:
+    """Return a connection for reading; first in mode rw, because the last one to close removes the journal if it
+    may.
+    """
+    where = Path(name).resolve().as_uri()
+    for mode in ("mode=rw", "mode=ro", "mode=ro&immutable=1"):
+        connection = sqlite3.connect(f"{where}?{mode}", uri=True, timeout=LOCK_TIMEOUT, isolation_level=None)
+        try:
+            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+        except sqlite3.OperationalError:
+            connection.close()
+            if "immutable" in mode:
+                raise
+        else:
+            return connection
+    raise AssertionError
+
+
+def _to_row(answer: VariantResult) -> tuple[Any, ...]:
+    """Return a result as its row in the table."""
+    measures = json.dumps([tuple(one) for one in answer.measures]) if answer.measures else ""
+    return measures, answer.code, answer.reason, json.dumps(answer.warnings) if answer.warnings else ""

@@ -1,0 +1,201 @@
+"""Evaluate the measures of one variant: each is a number with its instant and its stated error, or a word why there is
+none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from typing import Literal
+
+import numpy as np
+
+from heuncli.analyses.variants.axes import Interval
+from heuncli.analyses.variants.variant_solver import VariantSolver
+from heuncli.base.errors import HeunError, SpecError
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results_schema import EVENTS, IMPULSES
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.named_files import NamedFile, PreloadedFiles
+from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
+from heuncli.study.ask.study import Study
+from heuncli.study.model.options import Options
+from heuncli.study.quantities.measure_uncertainty import find_measure_error
+
+EXTREMES = ("max", "min", "abs")
+SAMPLE_PLACES = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which its values are checked
+EVENT_BLOCKS = (IMPULSES, EVENTS)  # their number differs from run to run
+CASE = "case"  # the name by which an axis varies the load case
+SPELLING_CODES = ("set-in-si",)  # warnings about how values are written: shown once for an axis, not for variants
+Word = Literal["", "open", "unknown", "beyond", "absent"]
+
+
+class MeasureValue(NamedTuple):
+    """A measure of one variant in SI; value None: unknown, and the word says why.
+
+    error: absolute, as the run states it; None where the run states none
+    time: its instant [s], None where it has none
+    word: absent: the event or impulse does not occur in this run
+    """
+
+    value: float | None
+    error: float | None = None
+    at: float | None = None
+    word: Word = ""
+
+
+class VariantResult(NamedTuple):
+    """The measures of one variant, or the code and the reason why it could not be solved.
+
+    warnings: of the run, in sentences
+    singular: whether its motion passes a singular pose, or its extremes leave out an instant close to one; then its
+    numbers may differ from those of similar variants
+    """
+
+    measures: tuple[MeasureValue, ...] = ()
+    code: str = ""
+    reason: str = ""
+    warnings: tuple[str, ...] = ()
+    singular: bool = False
+
+
+class Recipe(NamedTuple):
+    """All that is needed to evaluate variants of a spec, in this process or another.
+
+    text: the spec as it was read
+    overrides: set in all variants, in the form of `--set`
+    case: the load case that they are applied to
+    files: the files named in the spec, as they were read; None: they are read from the spec's folder (files.py)
+    """
+
+    path: str
+    text: str
+    measures: tuple[MeasureRequest, ...]
+    options: Options
+    overrides: Mapping[str, str]
+    case: str | None = None
+    files: Mapping[str, NamedFile] | None = None
+
+
+class VariantEvaluator:
+    """Evaluates variants of a spec one after the other; their order does not change a result."""
+
+    def __init__(self, recipe: Recipe) -> None:
+        """Read the spec and set it up once. Raises SpecError."""
+        self.recipe = recipe
+        self._files = None if recipe.files is None else PreloadedFiles(recipe.path, recipe.files)
+        self._prepared: dict[str | None, VariantSolver] = {}
+        self.spec = self.find_solver(recipe.case).spec
+
+    def find_solver(self, case: str | None) -> VariantSolver:
+        """Return the solver for one load case, from the cache if possible. Raises SpecError."""
+        solver = self._prepared.get(case)
+        if solver is None:
+            recipe = self.recipe
+            solver = VariantSolver(
+                recipe.path, recipe.text, options=recipe.options, overrides=recipe.overrides, case=case,
+                measures=[request.path for request in recipe.measures], files=self._files,
+            )  # fmt: skip
+            self._prepared[case] = solver
+        return solver
+
+    def solve(self, values: Mapping[str, str]) -> Study:
+        """Solve a variant; values: by name, in the form of `--set`, with the load case under its own name.
+
+        Raises SpecError, SolveError, LimitError.
+        """
+        variants, overrides = self._split_case(values)
+        return variants.solve(overrides)
+
+    def load(self, values: Mapping[str, str]) -> Spec:
+        """Load the scene of a variant. Raises SpecError."""
+        variants, overrides = self._split_case(values)
+        return variants.load(overrides)
+
+    def load_samples(self, interval: Interval) -> list[Spec]:
+        """Load the scenes at some places of an interval, leaving out those that are invalid. Raises SpecError if all
+        are.
+        """
+        specs: list[Spec] = []
+        errors: list[SpecError] = []
+        for place in SAMPLE_PLACES:
+            try:
+                specs.append(self.load({interval.name: interval.format_place(place)}))
+            except SpecError as error:
+                errors.append(error)
+        if not specs:
+            raise errors[0]
+        return specs
+
+    def find_unused_parameters(self, names: Collection[str]) -> frozenset[str]:
+        """Return the parameters among some names that nothing depends on, in none of the load cases solved so far."""
+        return frozenset.intersection(*(variants.find_unused_parameters(names) for variants in self._prepared.values()))
+
+    def answer(self, values: Mapping[str, str]) -> VariantResult:
+        """Evaluate the measures of a variant, or return the reason why there are none."""
+        try:
+            return self.measure(values)
+        except HeunError as error:
+            return make_failed_result(error)
+
+    def measure(self, values: Mapping[str, str]) -> VariantResult:
+        """Evaluate the measures of a variant.
+
+        Raises what `solve` does; for a measure that is no number of this scene NotOneNumber, SpecError [unknown-path].
+        """
+        study = self.solve(values)
+        measures = tuple(measure_study(request, study) for request in self.recipe.measures)
+        spec_warnings = (problem.message for problem in study.spec.warnings if problem.code not in SPELLING_CODES)
+        warnings = tuple(dict.fromkeys((*spec_warnings, *study.results.warnings, *study.later_warnings)))
+        singular = bool(len(study.history.singular) or study.left_out or study.unknown)
+        return VariantResult(measures, warnings=warnings, singular=singular)
+
+    def _split_case(self, values: Mapping[str, str]) -> tuple[VariantSolver, Mapping[str, str]]:
+        case = values.get(CASE) if varies_cases(self.spec) else None
+        if case is None:
+            return self.find_solver(self.recipe.case), values
+        return self.find_solver(case), {name: text for name, text in values.items() if name != CASE}
+
+
+def make_failed_result(error: HeunError) -> VariantResult:
+    """Make the result of a variant that could not be solved."""
+    problem = error.problems[0]
+    return VariantResult(code=problem.code, reason=problem.message)
+
+
+def varies_cases(spec: Spec) -> bool:
+    """Whether `case` means the load case: a spec may have a parameter of that name."""
+    return bool(spec.cases) and CASE not in spec.parameters
+
+
+def measure_study(request: MeasureRequest, study: Study) -> MeasureValue:
+    """Evaluate a measure of a solved variant. Raises NotOneNumber, SpecError [unknown-path]."""
+    try:
+        peak, horizon = measure_value(request, study), find_exceeded_horizon(request, study)
+    except NotInThisRun:
+        return MeasureValue(None, word="absent")
+    except SpecError:
+        if request.path.split(".")[0] not in EVENT_BLOCKS:
+            raise
+        return MeasureValue(None, word="absent")
+    if horizon is not None:
+        return MeasureValue(None, word="beyond")
+    if math.isnan(peak.value):
+        return MeasureValue(None, time=peak.time, word="unknown" if peak.time in study.unknown else "open")
+    if request.how in EXTREMES and is_near_left_out(peak, study):
+        return MeasureValue(None, time=peak.time, word="unknown")
+    return MeasureValue(peak.value, find_measure_error(request, peak, study), peak.time)
+
+
+def is_near_left_out(peak: Peak, study: Study) -> bool:
+    """Whether an extreme is next to instants that its search left out because rounding decides them: it may be exceeded
+    there.
+
+    The search leaves these instants out together with the intervals to their neighbours.
+    """
+    if peak.time is None or not study.left_out:
+        return False
+    times = study.search_times
+    index = int(np.searchsorted(times, peak.time))
+    low, high = times[max(index - 2, 0)], times[min(index + 1, len(times) - 1)]
+    return any(low <= time <= high for time in study.left_out)

@@ -1,0 +1,73 @@
+"""Read the value of a parameter or a dotted key of a spec: the number and the unit, as they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from heuncli.analyses.variants.axes import AxisError, format_quantity
+from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.base.errors import Finding
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import suggest
+from heuncli.base.units import parse_unit
+from heuncli.scene.file_format.cases import list_case_settings
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.names import as_mapping
+from heuncli.scene.file_format.overrides import apply_settings, get_value, parse_path, parse_settings
+from heuncli.scene.file_format.quantity import Scope, match_quantity, read_number
+from heuncli.scene.file_format.source import read_source
+
+EXAMPLES = "such as L, or bodies.crank.mass"
+
+
+class WrittenNumber(NamedTuple):
+    """A number by its name, in its unit (empty: SI, or none); size: of the unit in SI."""
+
+    name: str
+    value: float
+    unit: str
+    size: float
+
+    def format_value(self, value: float) -> str:
+        """Format another value of it in the form of `--set`."""
+        return format_quantity(value, self.unit)
+
+
+class WrittenNumbers:
+    """The numbers of a spec as a recipe gives them: with its load case, and the values set in all variants."""
+
+    def __init__(self, recipe: Recipe, spec: Spec) -> None:
+        source = read_source(recipe.path, recipe.text)
+        settings = [] if recipe.case is None else list_case_settings(recipe.case, source)
+        settings += parse_settings(recipe.overrides)[0]
+        self._data: dict[str, Any] = apply_settings(source.data, settings)[0]
+        self._spec = spec
+
+    def find_number(self, name: str) -> WrittenNumber:
+        """Return the number under a name; of an expression its value in SI. Raises AxisError."""
+        path = parse_path(name, self._data)
+        entry = get_value(self._data, path)
+        if entry is None:
+            parameter_names = [*as_mapping(self._data.get("parameters"))]
+            raise AxisError(
+                name, "the spec gives no number there", suggest(name, parameter_names, "parameters") or EXAMPLES
+            )
+        try:
+            return self._parse(name, entry)
+        except Finding as finding:
+            raise AxisError(name, f"this is no number: {finding.message}", EXAMPLES) from None
+
+    def iter_parameters(self) -> Iterator[WrittenNumber]:
+        """Yield the parameters that are given as numbers, without those that are expressions of others."""
+        for name, entry in as_mapping(self._data.get("parameters")).items():
+            if type(entry) in (int, float) or (type(entry) is str and match_quantity(entry) is not None):
+                yield self._parse(name, entry)
+
+    def _parse(self, name: str, entry: Any) -> WrittenNumber:
+        value = read_number(entry, None, Scope(self._spec.parameters))
+        unit_match = match_quantity(entry) if type(entry) is str else None
+        if unit_match is None:
+            return WrittenNumber(name, value, "", 1.0)
+        unit = unit_match[2].strip()
+        return WrittenNumber(name, float(unit_match[1].replace(" ", "")), unit, parse_unit(unit)[0])

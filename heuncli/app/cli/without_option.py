@@ -1,0 +1,48 @@
+"""The option `--without`: names of the forces and drives that are left out of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from heuncli.app.cli.entry import UsageError
+from heuncli.base.errors import Problem
+from heuncli.base.spelling import suggest
+from heuncli.scene.file_format.models import Spec
+
+
+def find_excluded(spec: Spec, words: Sequence[str]) -> tuple[str, ...]:
+    """Return the entries that the words name, as `forces.push`. Raises UsageError with every name that is unknown or
+    ambiguous.
+    """
+    names = [name.strip() for word in words for name in word.split(",")]
+    matches = [find_entries(spec, name) for name in names]
+    problems = [
+        make_problem(spec, name, entries) for name, entries in zip(names, matches, strict=True) if len(entries) != 1
+    ]
+    if problems:
+        raise UsageError(*problems)
+    return tuple(dict.fromkeys(entries[0] for entries in matches))
+
+
+def list_excludable(spec: Spec) -> list[str]:
+    """List all forces and drives, as `forces.push`."""
+    return [*(f"forces.{name}" for name in spec.forces), *(f"drives.{name}" for name in spec.drives)]
+
+
+def find_entries(spec: Spec, name: str) -> list[str]:
+    """Return the entries with a name, given with or without its block."""
+    return [entry for entry in list_excludable(spec) if name in (entry, entry.partition(".")[2])]
+
+
+def make_problem(spec: Spec, name: str, matches: Sequence[str]) -> Problem:
+    """Make the problem of a name that no entry has, or two."""
+    if matches:
+        message = f"--without {name}: {' and '.join(matches)} have this name"
+        return Problem(
+            "bad-option", message, hint=f"say {' or '.join(matches)}; or both: --without {','.join(matches)}"
+        )
+    if not list_excludable(spec):
+        return Problem("bad-option", f"--without {name}: the scene has no forces and no drives", hint="leave it out")
+    plain = [entry.partition(".")[2] for entry in list_excludable(spec)]
+    hint = suggest(name, list_excludable(spec) if "." in name else plain, "forces and drives")
+    return Problem("bad-option", f"--without {name}: no force or drive has this name", hint=hint or "")

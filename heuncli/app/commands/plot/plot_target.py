@@ -1,0 +1,83 @@
+"""Parse the words of `heun plot`: files first, then a kind of figure and its paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path, PurePath
+
+from heuncli.app.cli.entry import UsageError
+from heuncli.app.commands.plot.kinds import KINDS
+from heuncli.base.errors import Problem
+from heuncli.base.files import STDOUT
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import find_similar
+
+SPECS, SWEEPS = (".yaml", ".yml"), (".sqlite", ".csv", ".db")
+USAGE = "such as heun plot engine.yaml joints.main.force, or heun plot engine.yaml scene"
+PATH_KINDS, SWEEP_KIND = ("history", "sections"), "sweep"  # kinds that follow from the paths or files
+NAMED_KINDS = tuple(kind for kind in KINDS if kind not in (*PATH_KINDS, SWEEP_KIND))
+
+
+class PlotTarget(NamedTuple):
+    """The files, the kind of figure, and its paths."""
+
+    files: Sequence[str]
+    what: str
+    paths: Sequence[str]
+
+
+def parse_words(words: Sequence[str]) -> PlotTarget:
+    """Parse the words. Raises UsageError."""
+    files = [word for k, word in enumerate(words) if _is_file(word, first=k == 0)]
+    others = [word for word in words if word not in files]
+    if not files:
+        raise _make_error("no spec is named", USAGE)
+    if not all(words):
+        raise _make_error("an empty word", USAGE)
+    sweep_files = [file for file in files if _find_ending(file) in SWEEPS]
+    if sweep_files:
+        if len(sweep_files) < len(files):
+            raise _make_error(f"{', '.join(files)}: specs and sweeps in one picture", "call it once for each")
+        return PlotTarget(files, SWEEP_KIND, others)
+    if not others:
+        raise _make_error("what is to be drawn is not said", USAGE)
+    kinds = [word for word in others if word in NAMED_KINDS]
+    if len(kinds) > 1 or (kinds and kinds[0] != others[0]):
+        raise _make_error(f"{', '.join(others)}: one kind of picture at a time", "call it once for each")
+    return PlotTarget(files, kinds[0] if kinds else _choose_path_kind(others), others[len(kinds) :])
+
+
+def _choose_path_kind(paths: Sequence[str]) -> str:
+    """Return the kind for paths: diagrams for whole sections, histories for numbers over time. Raises UsageError."""
+    entries = [path for path in paths if path.startswith("sections.") and path.count(".") == 1]
+    if entries and len(entries) < len(paths):
+        other = next(path for path in paths if path not in entries)
+        message = f"{entries[0]} is a diagram along a bar, {other} a number over time: one kind of picture at a time"
+        raise _make_error(message, f"call it once for each; over time {entries[0]}.N, say")
+    suggestion = find_similar(paths[0], NAMED_KINDS) if "." not in paths[0] else None
+    if suggestion is not None:
+        raise _make_error(f"'{paths[0]}' is no kind of picture", f"did you mean {suggestion}?")
+    return "sections" if entries else "history"
+
+
+def _is_file(word: str, *, first: bool) -> bool:
+    """Return whether a word names a file: by its ending, or for the first word also because the file exists."""
+    return word == STDOUT or _find_ending(word) in (*SPECS, *SWEEPS) or (first and _exists(word))
+
+
+def _find_ending(word: str) -> str:
+    """Return the ending of a name; for one sweep of a store, such as sweep.sqlite:2, the store's ending."""
+    name, colon, number = word.rpartition(":")
+    return PurePath(name if colon and number.isdecimal() else word).suffix.lower()
+
+
+def _exists(word: str) -> bool:
+    """Return whether a file or folder of that name exists; False for an impossible name."""
+    try:
+        return word != "" and Path(word).exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _make_error(message: str, hint: str) -> UsageError:
+    return UsageError(Problem("bad-option", f"heun plot: {message}", hint=hint))

@@ -1,0 +1,138 @@
+"""Render the probe of a motion as text: verdict, growth and stiffness, condition numbers, attitudes, instants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.analyses.motion_diagnostics.results import GrowthResults, Probe, StiffnessResults
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines, format_plain
+from heuncli.version import VERSION
+
+MAX_EVENTS = 30  # events that a table lists; JSON has more
+REST = "rest"  # stands in `model` in place of a method
+GROWTH = "GROWTH  of a small disturbance, the largest of all directions that the joints leave free"
+STEPS = "STEPS  of explicit methods: what stability allows where it allows least, what accuracy asks for, about"
+STEPS_HERE = "STEPS  of explicit methods: what stability allows here"
+CONDITION = "CONDITION  largest singular value over the smallest; shifts by the scene's size"
+ATTITUDES = "ATTITUDES  bodies whose turns are all free: half turns, largest condition of the matrices of Euler angles"
+EVENTS = "INSTANTS"
+NAMES = {"mass": "mass matrix", "closure": "closures"}
+
+
+def render_page(results: Probe) -> str:
+    """Render the page as text."""
+    parts = (part for table in make_tables(results) for part in split_to_width(table, DEFAULT_WIDTH))
+    return format_labelled_lines(list(format_heading(results))) + "".join(
+        "\n" + format_plain(part, DEFAULT_WIDTH) for part in parts
+    )
+
+
+def format_heading(results: Probe) -> Iterator[tuple[str, str]]:
+    """Yield label and text of the lines above the tables."""
+    yield "heun", f"{VERSION}  {results.title}"
+    yield "probe", f"{results.model['space']}, {describe_motion(results)}"
+    yield "verdict", results.verdict
+    yield from (("", text) for text in results.trouble[1:])
+    yield from (("beside" if k == 0 else "", text) for k, text in enumerate(results.others))
+    yield from (("unknown" if k == 0 else "", text) for k, text in enumerate(format_reasons(results)))
+
+
+def describe_motion(results: Probe) -> str:
+    """Describe by which method the motion was found, and how long it is."""
+    method, colon, other_method = str(results.model["method"]).partition(": ")
+    if not results.duration:
+        return "a rest pose" if method == REST else "one instant"
+    return f"{other_method if colon else f'by {method}'} over {results.duration:.6g} s"
+
+
+def format_reasons(results: Probe) -> list[str]:
+    """List why results are missing, each reason once with the keys that it holds for."""
+    keys_by_reason: dict[str, list[str]] = {}
+    for key, text in results.reasons.items():
+        keys_by_reason.setdefault(text, []).append(key.replace("_", " "))
+    return [f"{', '.join(keys)}: {text}" for text, keys in keys_by_reason.items()]
+
+
+def make_tables(results: Probe) -> Iterator[TextTable]:
+    """Yield all tables that have something to show."""
+    if grown := tuple(make_growth_row(name, g) for name, g in list_growths(results) if g is not None):
+        heads = ("of", "e times every [s]", "times", "until [s]", "horizon of double precision [s]")
+        yield TextTable(GROWTH, make_columns(heads, 1), grown)
+    if results.stiffness is not None and results.stiffness.steps:
+        yield make_steps_table(results.stiffness, results.duration)
+    if known := results.list_conditions():
+        rows = tuple((NAMES[name], format_condition(at.value), f"{at.time:.6g}", at.where) for name, at in known)
+        yield TextTable(CONDITION, (*make_columns(("of", "condition", "t [s]"), 1), TextColumn("in", "left")), rows)
+    if results.attitudes:
+        sequences = tuple(results.attitudes[0].euler)
+        column_heads = ("body", "half turns", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
+        bodies = tuple(
+            (t.body, str(t.half_turns), *(x for k, at in t.euler.values() for x in (format_condition(k), f"{at:.6g}")))
+            for t in results.attitudes
+        )
+        yield TextTable(ATTITUDES, make_columns(column_heads, 1), bodies)
+    if results.events:
+        yield make_events_table(results)
+
+
+def make_steps_table(stiffness: StiffnessResults, duration: float) -> TextTable:
+    """Make the table of the steps of explicit methods; that for accuracy only for a motion. "any" is longer than the
+    run.
+    """
+    note = (
+        f"rates of the tangent: decay up to {stiffness.decay:.3g} 1/s, oscillation up to "
+        f"{stiffness.oscillation:.3g} 1/s"
+    )
+    if not duration:
+        rows = tuple((s.method, str(s.order), format_step(s.stability, math.inf)) for s in stiffness.steps)
+        return TextTable(STEPS_HERE, make_columns(("method", "order", "stable [s]"), 1), rows, (note,))
+    motion_rows = tuple(
+        (s.method, str(s.order), *(format_step(x, duration) for x in (s.stability, s.accuracy)))
+        for s in stiffness.steps
+    )
+    return TextTable(STEPS, make_columns(("method", "order", "stable [s]", "accurate [s]"), 1), motion_rows, (note,))
+
+
+def make_events_table(results: Probe) -> TextTable:
+    """Make the table of the instants, limited to the first MAX_EVENTS."""
+    rows = [(f"{e.time:.6g}", e.kind, e.message) for e in results.events[:MAX_EVENTS]]
+    omitted = len(results.events) - len(rows) + sum(count for _, _, count in results.further_events)
+    notes = (f"{omitted} more; JSON lists a hundred of each kind and place",) if omitted else ()
+    heads = (TextColumn("t [s]"), TextColumn("what", "left"), TextColumn("", "left"))
+    return TextTable(EVENTS, heads, tuple(rows), notes)
+
+
+def make_columns(heads: tuple[str, ...], word_count: int) -> tuple[TextColumn, ...]:
+    """Make the columns; the first `word_count` of them hold words and are left-aligned."""
+    return tuple(TextColumn(head, "left") if k < word_count else TextColumn(head) for k, head in enumerate(heads))
+
+
+def list_growths(results: Probe) -> tuple[tuple[str, GrowthResults | None], ...]:
+    """Return the growths to show, each with the name of its motion."""
+    name = "motion in the plane" if results.out_of_plane is not None else "motion"
+    return (name, results.growth), ("out of the plane", results.out_of_plane)
+
+
+def make_growth_row(name: str, growth: GrowthResults) -> tuple[str, ...]:
+    """Make the cells of a growth."""
+    rate_text = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "no faster than the time"
+    if growth.rate < 0.0 and growth.logarithm < 0.0:
+        rate_text = "fades"
+    horizon_bound = "beyond the run" if growth.stop_reason is None else f"beyond {growth.end_time:.4g}"
+    horizon = f"{growth.horizon:.4g}" if growth.horizon is not None else horizon_bound
+    if growth.expected_horizon is not None:
+        horizon += f", about {growth.expected_horizon:.2g} if it goes on so"
+    times = f"{math.exp(growth.logarithm):.2g}" if growth.logarithm < 700.0 else f"e^{growth.logarithm:.0f}"
+    return name, rate_text, times, f"{growth.end_time:.4g}", horizon
+
+
+def format_condition(value: float) -> str:
+    """Format a condition number for a cell."""
+    return f"{value:.3g}" if value < 1e15 else "singular"
+
+
+def format_step(value: float, longest: float) -> str:
+    """Format a step size for a cell, "any" if it is longer than the run."""
+    return f"{value:.2g}" if value <= longest and math.isfinite(value) else "any"

@@ -1,0 +1,188 @@
+"""The workers of a cluster: which of them have the same heun, and their tasks.
+
+Workers come and go. Each is first asked for its version (`worker.HELLO`); one without heun, or with another version,
+gets no work and is reported in one line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import count
+from typing import Any
+
+from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.app.commands.sweep.cluster.batches import DEPTH, SECONDS, VariantBatch, WorkerPace
+from heuncli.app.commands.sweep.cluster.worker import HELLO, CachedRecipe, WorkerVersion, described, solve_batch
+from heuncli.base.text_safety import escape
+from heuncli.version import VERSION
+
+MAX_ADDRESSES = 8  # addresses in a line
+
+
+class ClusterWorker:
+    """A worker: what is known of it, and its batches by the keys of their tasks."""
+
+    def __init__(self, address: str, threads: int) -> None:
+        self.address, self.threads = address, threads
+        self.pace = WorkerPace()
+        self.is_usable = False
+        self.refusal = ""  # why it gets no work
+        self.recipe_future: Any = None  # the future of the recipe in its memory
+        self.batches: dict[str, VariantBatch] = {}
+
+    def has_capacity(self, isolated: bool) -> bool:
+        """Return whether it can take another batch.
+
+        isolated: whether the batch needs the worker for itself
+        """
+        if any(lot.alone for lot in self.batches.values()):
+            return False
+        return self.is_usable and len(self.batches) < (1 if isolated else DEPTH)
+
+
+class ClusterTask:
+    """A task that is under way: its worker and its future.
+
+    batch: its batch; None while the worker is asked for its version
+    """
+
+    def __init__(self, worker: ClusterWorker, batch: VariantBatch | None) -> None:
+        self.worker, self.batch = worker, batch
+        self.future: Any = None
+        self.misses = 0  # how often its result did not arrive
+
+
+class WorkerPool:
+    """The workers, and their tasks."""
+
+    def __init__(self, client: Any, recipe: Recipe, on_end: Callable[[str], None]) -> None:
+        """on_end: called in another thread with the key of a task that has ended"""
+        self.client, self.recipe, self.on_end = client, recipe, on_end
+        self.known: dict[str, ClusterWorker] = {}
+        self.tasks: dict[str, ClusterTask] = {}
+        self.remarks: dict[str, list[str]] = {}  # remarks on workers, with their addresses
+        self.own_version = described()
+        self.keys = (f"heun-{client.id}-{number}" for number in count())
+        self.wake_up_task: Any = None  # a task for any worker, so that an adaptive cluster starts one
+
+    def list_usable(self) -> list[ClusterWorker]:
+        """Return the workers that solve variants."""
+        return [member for member in self.known.values() if member.is_usable]
+
+    def has_unknown(self) -> bool:
+        """Return whether the version of some workers is not known yet."""
+        return any(not member.is_usable and not member.refusal for member in self.known.values())
+
+    def update(self) -> Iterator[VariantBatch]:
+        """Update the list of workers; yields the batches of those that went away."""
+        present: dict[str, int] = self.client.nthreads()
+        for address in [address for address in self.known if address not in present]:
+            yield from self.remove(self.known[address])
+        for address, threads in present.items():
+            if address not in self.known:
+                worker = self.known[address] = ClusterWorker(address, threads)
+                self._start(ClusterTask(worker, None), eval, HELLO)
+        if not present and self.wake_up_task is None:
+            self.wake_up_task = self.client.submit(eval, "None", key=next(self.keys))
+        elif present:
+            self.wake_up_task = None
+
+    def remove(self, worker: ClusterWorker) -> list[VariantBatch]:
+        """Remove a worker that went away; returns its batches."""
+        del self.known[worker.address]
+        for key in [key for key, task in self.tasks.items() if task.worker is worker]:
+            del self.tasks[key]
+        worker.recipe_future = None
+        return list(worker.batches.values())
+
+    def send(self, worker: ClusterWorker, batch: VariantBatch) -> None:
+        """Send a batch to a worker."""
+        if worker.recipe_future is None:
+            worker.recipe_future = self._submit(worker, next(self.keys), CachedRecipe, self.recipe)
+        task = ClusterTask(worker, batch)
+        worker.batches[self._start(task, solve_batch, worker.recipe_future, batch.variants, SECONDS)] = batch
+
+    def pop_task(self, key: str) -> ClusterTask | None:
+        """Remove and return the task of a key, or None."""
+        task = self.tasks.pop(key, None)
+        if task is not None:
+            task.worker.batches.pop(key, None)
+        return task
+
+    def wait_again(self, key: str, task: ClusterTask) -> None:
+        """Wait again for a task whose result has not arrived."""
+        task.misses += 1
+        self.tasks[key] = task
+        if task.batch is not None:
+            task.worker.batches[key] = task.batch
+        self._watch(key, task)
+
+    def replace_recipe(self, recipe: Recipe) -> None:
+        """Use another recipe from here on."""
+        self.recipe = recipe
+        for worker in self.known.values():
+            worker.recipe_future = None
+
+    def record_version(self, worker: ClusterWorker, version: str, worker_version: WorkerVersion | None) -> None:
+        """Record the version of a worker, and decide whether it is used."""
+        if worker_version is None:
+            self.refuse(worker, f"heun {version} there, {VERSION} here")
+        elif worker_version.text != self.own_version.text:
+            self.refuse(worker, f"heun {VERSION} there, too, but with another text")
+        else:
+            worker.is_usable = True
+            if worker_version.kernel != self.own_version.kernel:
+                own_kernel = self.own_version.kernel
+                self.add_remark(
+                    worker,
+                    f"its kernel is the {worker_version.kernel} one, here it is the {own_kernel} one: the same bits",
+                )
+            if worker.threads > 1:
+                better = f"dask worker --nworkers {worker.threads} --nthreads 1"
+                self.add_remark(worker, f"of its {worker.threads} threads one works for heun; quicker: {better}")
+
+    def refuse(self, worker: ClusterWorker, why: str) -> None:
+        """Give a worker no more work."""
+        worker.is_usable, worker.refusal, worker.recipe_future = False, why, None
+        self.add_remark(worker, f"is not used: {why}")
+
+    def add_remark(self, worker: ClusterWorker, text: str) -> None:
+        """Add a remark on a worker, to be reported."""
+        self.remarks.setdefault(text, []).append(worker.address)
+
+    def take_remarks(self) -> list[str]:
+        """Return the remarks, one line for all workers with the same one, and clear them."""
+        lines = [f"{format_addresses(addresses)}: {escape(text)}" for text, addresses in self.remarks.items()]
+        self.remarks.clear()
+        return lines
+
+    def cancel_all(self) -> None:
+        """Cancel all tasks; data on the cluster is released when no future refers to it."""
+        futures = [task.future for task in self.tasks.values()]
+        self.wake_up_task = None
+        self.tasks.clear()
+        self.known.clear()
+        if futures:
+            self.client.cancel(futures, force=True)
+
+    def _start(self, task: ClusterTask, function: Any, *arguments: Any) -> str:
+        """Send a task to its worker; returns its key."""
+        key = next(self.keys)
+        task.future = self._submit(task.worker, key, function, *arguments)
+        self.tasks[key] = task
+        self._watch(key, task)
+        return key
+
+    def _submit(self, worker: ClusterWorker, key: str, function: Any, *arguments: Any) -> Any:
+        return self.client.submit(
+            function, *arguments, key=key, workers=[worker.address], allow_other_workers=False, pure=False
+        )
+
+    def _watch(self, key: str, task: ClusterTask) -> None:
+        task.future.add_done_callback(lambda _: self.on_end(key))
+
+
+def format_addresses(addresses: list[str]) -> str:
+    """Format some addresses on one line."""
+    more_text = f" and {len(addresses) - MAX_ADDRESSES} more" if len(addresses) > MAX_ADDRESSES else ""
+    return ", ".join(addresses[:MAX_ADDRESSES]) + more_text

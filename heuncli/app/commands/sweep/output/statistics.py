@@ -1,0 +1,100 @@
+"""The statistics of a random sweep, for each combination of its other axes and each measure.
+
+Variants that could not be solved, or whose measure is unknown, are left out and counted. If Sobol indices are
+requested, the statistics are those of the matrices A and B, which are independent; a sample is left out of the indices
+if one of its d + 2 variants has no value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from heuncli.analyses.sweep_store.rows import SweepHead
+from heuncli.analyses.variants.indices import SobolIndices, compute_sobol_indices
+from heuncli.analyses.variants.plans import Plan
+from heuncli.analyses.variants.sampling import SampleStatistics, compute_statistics
+from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array
+
+INDEPENDENT = 2  # of the variants of a sample for Sobol indices: A and B
+
+
+class MeasureStatistics(NamedTuple):
+    """The statistics of one measure at one combination of the other axes.
+
+    combination: its values, in the form of `--set`
+    measure: index of the measure
+    drawn_count: number of variants, of which `left_out` have no value
+    sample: the sample statistics, or None
+    error: the largest error that a run states
+    indices: Sobol indices of each random parameter; None if the plan has none, or if the measure varies by no more than
+    its error
+    samples: number of samples behind the indices
+    """
+
+    combination: dict[str, str]
+    measure: int
+    drawn: int
+    left_out: int
+    found: SampleStatistics | None
+    error: float
+    indices: tuple[SobolIndices, ...] | None = None
+    samples: int = 0
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the measure varies by no more than the errors of its runs."""
+        return self.sample is not None and not self.sample.deviation.value > self.error
+
+
+def iter_statistics(head: SweepHead, rows: ColumnBuffer) -> Iterator[MeasureStatistics]:
+    """Yield the statistics of every combination and measure; nothing if no parameter is random."""
+    plan = head.plan
+    if plan.draws is None:
+        return
+    draw_count = len(plan.draws.values)
+    numbers = rows.numbers
+    for start in range(0, plan.size, draw_count):
+        begin, end = np.searchsorted(numbers, (start, start + draw_count)).tolist()
+        if begin == end:
+            continue  # of another shard
+        combination = find_combination(plan, start)
+        for measure in range(len(head.measures)):
+            values, errors = rows.values(measure)[begin:end], rows.errors(measure)[begin:end]
+            yield _compute_statistics(plan, combination, measure, numbers[begin:end] - start, values, errors)
+
+
+def find_combination(plan: Plan, number: int) -> dict[str, str]:
+    """Return the values of the axes that are not random, in the form of `--set`."""
+    random_names = {law.name for law in plan.draws.laws} if plan.draws is not None else set()
+    return {name: text for name, text in plan.find_values(number).items() if name not in random_names}
+
+
+def _compute_statistics(
+    plan: Plan, combination: dict[str, str], measure: int, places: Array, values: Array, errors: Array
+) -> MeasureStatistics:
+    """Compute the statistics of one measure at one combination.
+
+    places: indices of the values among the random draws
+    """
+    assert plan.draws is not None
+    each = plan.draws.each
+    independent = values if each == 1 else values[places % each < INDEPENDENT]
+    known = independent[np.isfinite(independent)]
+    error = float(errors.max(initial=0.0))
+    sample = compute_statistics(known)
+    statistics = MeasureStatistics(combination, measure, len(independent), len(independent) - len(known), sample, error)
+    if each == 1:
+        return statistics
+    whole = np.full(len(plan.draws.values), np.nan)
+    whole[places] = values
+    samples = whole.reshape(-1, each)
+    known_ones = np.flatnonzero(np.isfinite(samples).all(axis=1))
+    samples = samples[known_ones]
+    repetitions = plan.draws.repetitions
+    repetition = known_ones % repetitions if repetitions > 1 else None
+    indices = None if sample is None or statistics.is_constant else compute_sobol_indices(samples, repetition)
+    return statistics._replace(indices=indices, samples=len(samples))

@@ -1,0 +1,130 @@
+"""Make the tables of a random sweep's statistics: estimates for the whole population, and Sobol indices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from heuncli.analyses.sweep_store.columns import make_parameter_columns
+from heuncli.analyses.sweep_store.rows import SweepHead
+from heuncli.analyses.variants.axes import RandomVariable
+from heuncli.analyses.variants.indices import MIN_BOUNDED
+from heuncli.analyses.variants.sampling import CONFIDENCE, BoundedEstimate
+from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, format_variant_count
+from heuncli.app.commands.sweep.output.statistics import MeasureStatistics
+from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.text_table import TextColumn, TextTable
+from heuncli.study.quantities.digits import format_error
+from heuncli.study.quantities.table_units import Units
+
+MAX_BLOCKS = 12  # combinations and measures that are shown without --all
+SHARE = f"{100 * CONFIDENCE:.0f} of 100"
+HEADING = f"STATISTICS  each with its interval, which {SHARE} such samples have around the true one"
+INDICES = f"SOBOL INDICES  shares of the variance, with intervals that {SHARE} such samples have around the true ones"
+EVEN = "{} is more even than independent draws, for which the intervals are: the means are nearer than they say"
+CALLED = {"lhs": "a Latin hypercube", "sobol": "a Sobol sequence"}
+SPOILT = "{}: the runs' own errors, up to {}, are not small beside these intervals"
+ERROR_SHARE = 0.1  # share of an interval; larger errors of the runs get a note
+NO_INDICES = "{}: no Sobol indices: "
+FLAT = "it varies by no more than the errors of its runs"
+UNBOUNDED = "{}: no intervals of {} samples: they take " + f"{MIN_BOUNDED} or more (--samples {MIN_BOUNDED})"
+FEW = "all {} variants of a sample are known of {} samples only"
+
+
+def make_statistics_tables(
+    head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, all_of_them: bool
+) -> list[TextTable]:
+    """Make the tables; none if no parameter is random."""
+    if not statistics:
+        return []
+    selected = statistics if all_of_them else statistics[:MAX_BLOCKS]
+    tables = [_make_statistics_table(head, selected, units, len(statistics) - len(selected))]
+    draws = head.plan.draws
+    if draws is not None and draws.each > 1:
+        tables.append(_make_index_table(head, selected, draws.laws))
+    return tables
+
+
+def format_label(head: SweepHead, one: MeasureStatistics, unit: str = "") -> str:
+    """Return a measure with the combination of the axes: `max joints.main.force [N], n = 1000 rpm`."""
+    known = {parameter.name: parameter for parameter in make_parameter_columns(head.plan)}
+    values = [(known[name], format_parameter(known[name], text)) for name, text in one.combination.items()]
+    axis_texts = [
+        f"{parameter.name} = {text}{f' {parameter.unit}' if parameter.unit else ''}" for parameter, text in values
+    ]
+    text = head.measures[one.measure].text
+    return ", ".join([f"{text} [{unit}]" if unit else text, *axis_texts])
+
+
+def _make_statistics_table(
+    head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, omitted: int
+) -> TextTable:
+    columns = (TextColumn("", "left"), TextColumn("value"), TextColumn("from"), TextColumn("to"))
+    rows: list[tuple[str, ...] | str] = []
+    notes = _make_notes(head)
+    for one in statistics:
+        unit, size = units.find(head.measures[one.measure].unit)
+        label = format_label(head, one, unit)
+        rows.append(
+            f"{label}: {format_variant_count(one.drawn_count)}{f', {one.left_out} left out' if one.left_out else ''}"
+        )
+        if one.sample is None:
+            rows.append(("too few", "", "", ""))
+            continue
+        rows.append(_make_row("mean", one.sample.mean, size))
+        rows.append(_make_row("deviation", one.sample.deviation, size))
+        rows += [_make_row(f"{percent:g} %", value, size) for percent, value in one.sample.percentiles]
+        if has_large_errors(one):
+            notes.append(SPOILT.format(format_label(head, one), f"{format_error(size * one.error)} {unit}".rstrip()))
+    if any("-" in row for row in rows):
+        notes.append("-: so small a sample does not bound it on that side")
+    if any(one.left_out for one in statistics):
+        notes.append("left out: could not be solved, or the measure is not known")
+    if omitted:
+        notes.append(f"{format_count(omitted, 'block')} more: --all")
+    return TextTable(HEADING, columns, tuple(rows), tuple(notes))
+
+
+def _make_notes(head: SweepHead) -> list[str]:
+    """Return notes on how the sample was drawn."""
+    draws = head.plan.draws
+    assert draws is not None
+    laws = {law.law for law in draws.laws}
+    notes = [f"drawn with --seed {draws.seed}: the same call draws the same"]
+    return notes + [EVEN.format(CALLED[law]) for law in CALLED if law in laws]
+
+
+def has_large_errors(one: MeasureStatistics) -> bool:
+    """Return whether the errors of the runs matter relative to the interval of the mean."""
+    mean = one.sample.mean if one.sample is not None else None
+    return mean is not None and mean.low is not None and one.error > ERROR_SHARE * (mean.value - mean.low)
+
+
+def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[str, ...]:
+    """Format a statistic with the digits that its interval supports."""
+    ends = [one.value if end is None else end for end in (one.low, one.high)]
+    half_width = 0.5 * size * (ends[1] - ends[0])
+    scale = size * max(abs(one.value), *map(abs, ends))
+    texts = (format_number(size * end, 0.01 * half_width, scale) if end is not None else "-" for end in one)
+    return (label, *texts)
+
+
+def _make_index_table(
+    head: SweepHead, statistics: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
+) -> TextTable:
+    names = ("", "first order", "from", "to", "total", "from", "to")
+    columns = tuple(TextColumn(name, "left" if not name else "point") for name in names)
+    rows: list[tuple[str, ...] | str] = []
+    notes: list[str] = ["first order: of the parameter alone; total: with all that it does together with others"]
+    for one in statistics:
+        if one.indices is None:
+            why = FLAT if one.is_constant else FEW.format(len(laws) + 2, one.samples)
+            notes.append(NO_INDICES.format(format_label(head, one)) + why)
+            continue
+        rows.append(f"{format_label(head, one)}: {format_count(one.samples, 'sample')}")
+        for law, index_pair in zip(laws, one.indices, strict=True):
+            rows.append(
+                (law.name, *("-" if end is None else f"{end:.3f}" for estimated in index_pair for end in estimated))
+            )
+        if one.samples < MIN_BOUNDED:
+            notes.append(UNBOUNDED.format(format_label(head, one), one.samples))
+    return TextTable(INDICES, columns, tuple(rows), tuple(notes))

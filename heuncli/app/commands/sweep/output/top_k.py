@@ -1,0 +1,70 @@
+"""Select the rows of a sweep for the table: of a long sweep the first, the last, and those with an extreme."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+
+from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
+from heuncli.app.commands.sweep.output.extremes import MeasureExtremes, find_extremes
+from heuncli.base.named_tuples import NamedTuple
+
+MAX_ROWS = 60  # shown without --all
+END_ROWS = 10  # rows at the beginning and at the end of more
+
+
+class ShownRows(NamedTuple):
+    """The selected rows by their index in the sweep, and the columns of all rows."""
+
+    rows: Mapping[int, SweptRow]
+    gathered: ColumnBuffer
+    extremes: tuple[MeasureExtremes | None, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+        return len(self.columns)
+
+
+def select_rows(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) -> ShownRows:
+    """Select the rows to show, reading them once."""
+    columns = ColumnBuffer(len(head.measures))
+    recorded, limit = columns.record(rows), None if all_of_them else MAX_ROWS
+    first = list(islice(recorded, limit))
+    best = ExtremeRows(first, len(head.measures))
+    last: deque[SweptRow] = deque(maxlen=END_ROWS)
+    for row in recorded:
+        best.add(row, len(columns) - 1)
+        last.append(row)
+    extremes_found = tuple(find_extremes(columns.values(k), columns.errors(k)) for k in range(len(head.measures)))
+    selected = dict(enumerate(first))
+    if last:
+        selected = dict(enumerate(first[:END_ROWS])) | dict(enumerate(last, len(columns) - len(last)))
+        selected |= {place: row for place, row in best.iter_rows() if place not in selected}
+    return ShownRows(dict(sorted(selected.items())), columns, extremes_found)
+
+
+class ExtremeRows:
+    """The rows with the least and the greatest value of each measure so far; the first of equal ones."""
+
+    def __init__(self, first: Sequence[SweptRow], measures: int) -> None:
+        self._least: list[tuple[float, int, SweptRow] | None] = [None] * measures
+        self._greatest: list[tuple[float, int, SweptRow] | None] = [None] * measures
+        for place, row in enumerate(first):
+            self.add(row, place)
+
+    def add(self, row: SweptRow, place: int) -> None:
+        """Keep the row if it has an extreme."""
+        for k, one in enumerate(row.answer.measures):
+            if one.value is None:
+                continue
+            for best, sign in ((self._least, 1.0), (self._greatest, -1.0)):
+                known = best[k]
+                if known is None or sign * one.value < sign * known[0]:
+                    best[k] = one.value, place, row
+
+    def iter_rows(self) -> Iterator[tuple[int, SweptRow]]:
+        """Yield these rows with their indices."""
+        return ((known[1], known[2]) for known in (*self._least, *self._greatest) if known is not None)

@@ -1,0 +1,83 @@
+"""Write a sweep as tables, CSV, JSON or Parquet, from rows that are read one after the other. Impure: writes."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+
+from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.app.cli import terminal
+from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.output import emit
+from heuncli.base import files
+from heuncli.base.errors import Problem
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_plain
+from heuncli.study.quantities.table_units import Units
+
+
+class SweepOutput(NamedTuple):
+    """How a sweep is written.
+
+    form: the format
+    output: the file; None for standard output
+    units: display units of tables
+    all: whether tables show every row
+    """
+
+    form: str
+    output: str | None = None
+    units: Units = Units()
+    all: bool = False
+
+
+def require_writable_form(output: SweepOutput) -> None:
+    """Raise an error before the work if the sweep could not be written after it: UsageError, SpecError."""
+    if output.form != "parquet":
+        return
+    if output.output in (None, files.STDOUT):
+        raise UsageError(Problem("bad-option", "parquet goes to a file only", hint="name it: -o sweep.parquet"))
+    from heuncli.app.commands.sweep.output.as_parquet import require_parquet
+
+    require_parquet()
+
+
+def write_sweep(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> None:
+    """Write the sweep from rows in ascending order of their numbers, read once. Raises OutputError."""
+    if output.form == "parquet":
+        from heuncli.app.cli import timeout
+        from heuncli.app.commands.sweep.output.as_parquet import iter_parquet
+
+        assert output.output is not None
+        timeout.disarm(late=True)
+        files.write(iter_parquet(head, rows), output.output)
+    else:
+        emit(iter_pieces(head, rows, output), output.output)
+
+
+def iter_pieces(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
+    """Yield the sweep as text."""
+    if output.form == "csv":
+        from heuncli.app.commands.sweep.output.as_csv import iter_csv
+
+        return iter_csv(head, rows)
+    if output.form == "json":
+        from heuncli.app.commands.sweep.output.as_json import iter_json
+
+        return iter_json(head, rows)
+    return _iter_tables(head, rows, output)
+
+
+def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
+    from heuncli.app.commands.sweep.output.page import make_tables
+
+    on_terminal = output.output is None and terminal.is_terminal()
+    tables_made = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
+    texts = terminal.render_tables(tables_made) if on_terminal else [_render_plain(table) for table in tables_made]
+    for number, text in enumerate(texts):
+        yield "\n" * (number > 0) + text
+
+
+def _render_plain(table: TextTable) -> str:
+    return "\n".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH))

@@ -1,0 +1,151 @@
+"""A tuning as plain data for JSON, and as the command line that solves the best variant."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from typing import Any
+
+from heuncli.analyses.tune.results import (
+    MeasureReading,
+    ToleranceMove,
+    ToleranceRange,
+    Trial,
+    TrialOutcome,
+    TuneResults,
+    make_texts,
+)
+from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.app.commands.tune.history import iter_best
+from heuncli.app.commands.tune.tuning_options import TuningOptions
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.version import VERSION
+
+
+class TunedScene(NamedTuple):
+    """The tuned spec, and the command line that gives the best variant's numbers with `heun run`."""
+
+    title: str
+    path: str
+    sha256: str
+    line: str
+
+
+def format_command(options: TuningOptions, recipe: Recipe, results: TuneResults) -> str:
+    """Format the command line that gives the measures of the best variant, to the bit."""
+    words = ["heun", "run", recipe.path]
+    if recipe.case is not None:
+        words += ["--case", recipe.case]
+    for name, text in {**recipe.overrides, **results.best_texts}.items():
+        words += ["--set", f"{name}={text}"]
+    if recipe.options.tolerance is not None:
+        words += ["--tolerance", repr(recipe.options.tolerance)]
+    if not recipe.options.reduce:
+        words += ["--no-reduce"]
+    for text in (options.goal, *(one.measure for one in options.conditions)):
+        words += ["--measure", text]
+    return shlex.join(words)
+
+
+def to_block(results: TuneResults, scene: TunedScene) -> dict[str, Any]:
+    """Return the whole result as the JSON has it."""
+    task, best = results.task, results.best
+    assert best is not None
+    goal = task.goal
+    return {
+        "title": scene.title,
+        "spec": {"path": scene.path, "sha256": scene.sha256},
+        "version": VERSION,
+        "ended": results.ending,
+        "converged": results.ending == "converged",
+        "feasible": results.is_feasible,
+        "goal": {
+            "measure": goal.measure,
+            "unit": goal.unit,
+            "kind": "maximise" if goal.is_maximised else "minimise",
+            "before": make_reading_block(results.spec_outcome, 0),
+            "best": make_reading_block(best.outcome, 0),
+            "gain": results.gain,
+            "floor": results.floor,
+        },
+        "variables": [make_variable_block(results, index) for index in range(len(task.variables))],
+        "constraints": [make_constraint_block(results, index) for index in range(len(task.constraints))],
+        "set": results.best_texts,
+        "command": scene.line,
+        "evaluations": len(results.history),
+        "allowed": task.max_variants,
+        "seed": task.seed,
+        "unsolved": dict(results.failures),
+        "history": [
+            make_trial_block(results, trial, best)
+            for trial, best in zip(results.history, iter_best(results), strict=True)
+        ],
+    }
+
+
+def make_variable_block(results: TuneResults, index: int) -> dict[str, Any]:
+    """Return one variable as the JSON has it.
+
+    Its moves say how far it may go down and up until the goal is worse by the floor, and by a hundredth.
+    """
+    variable = results.task.variables[index]
+    assert results.best is not None
+    block: dict[str, Any] = {
+        "name": variable.name,
+        "unit": variable.unit,
+        "low": variable.low,
+        "high": variable.high,
+        "before": variable.spec_value,
+        "value": variable.to_value(results.best.place[index]),
+        "active": results.find_bound(index) or None,
+    }
+    range_ = results.tolerance_ranges[index] if results.tolerance_ranges else ToleranceRange()
+    block["moves"] = {
+        "floor": [*map(make_move_block, range_.of_floor)],
+        "hundredth": [*map(make_move_block, range_.of_hundredth)],
+    }
+    return block
+
+
+def make_move_block(one: ToleranceMove | None) -> dict[str, Any] | None:
+    """Return a move as the JSON has it: how far, and what ends it."""
+    return None if one is None else {"by": one.distance, "until": one.limit}
+
+
+def make_constraint_block(results: TuneResults, index: int) -> dict[str, Any]:
+    """Return one constraint as the JSON has it; `left` is the margin to its limit, negative beyond it."""
+    one = results.task.constraints[index]
+    assert results.best is not None
+    best = make_reading_block(results.best.outcome, index + 1)
+    value = results.best.constraint_values[index]
+    return {
+        "measure": one.measure,
+        "sign": one.sign,
+        "limit": one.limit,
+        "unit": one.unit,
+        "before": make_reading_block(results.spec_outcome, index + 1),
+        "best": best,
+        "left": -one.compute_excess(value),
+        "met": one.is_met(value),
+        "active": results.active_constraints[index],
+    }
+
+
+def make_reading_block(outcome: TrialOutcome, index: int) -> dict[str, Any] | None:
+    """Return the value of a measure, or code and reason if the variant could not be solved."""
+    if not outcome.readings:
+        return {"code": outcome.code, "reason": outcome.reason}
+    one: MeasureReading = outcome.readings[index]
+    block: dict[str, Any] = {"value": one.value, "error": one.error, "at": one.instant}
+    return block | ({"word": one.reason} if one.reason else {})
+
+
+def make_trial_block(results: TuneResults, trial: Trial, best: float | None) -> dict[str, Any]:
+    """Return a tried variant as the JSON has it, and the best goal so far."""
+    values: Mapping[str, str] = make_texts(results.task.variables, trial.place)
+    block: dict[str, Any] = {"number": trial.number, "phase": trial.phase, "set": values}
+    if trial.is_solved:
+        block |= {"goal": trial.goal, "constraints": list(trial.constraint_values)}
+    else:
+        block |= {"goal": None, "code": trial.failure[0]}
+    return block | {"best": best}

@@ -1,0 +1,91 @@
+"""Solve variants for the search of `heun tune`, in this process or in several. Impure: processes, the clock."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+
+from heuncli.analyses.tune.results import MeasureReading, TrialOutcome
+from heuncli.analyses.tune.trials import TIME_LIMIT_CODE
+from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult, make_failed_result
+from heuncli.app.cli import jobs, timeout
+from heuncli.app.cli.entry import UsageError, run_contained
+from heuncli.base.errors import HeunError, Problem
+from heuncli.study.ask.measure import NotOneNumber
+
+NO_NUMBER = "bad-option"  # the code of a measure that is not one number
+MIN_REMAINING = 1e-9  # s; less than this left means that the limit is reached
+MIN_SECONDS = 0.02  # s; for shorter variants several processes do not pay
+WORKER_DIED = "worker-died"
+
+
+class TrialSolver:
+    """Solves several variants at once, and returns the outcomes in their order."""
+
+    def __init__(self, evaluator: VariantEvaluator, jobs: int | None) -> None:
+        """jobs: number of processes; None: one per processor, if a variant takes long enough"""
+        self.evaluator, self.jobs = evaluator, jobs
+        self.seconds = 0.0  # solving time of the scene as it is
+
+    def solve_base(self) -> TrialOutcome:
+        """Solve the scene as it is. Raises UsageError if a measure is not a single number in it."""
+        start = time.perf_counter()
+        try:
+            return to_outcome(self.evaluator.measure({}))
+        except NotOneNumber as error:
+            (problem,) = error.problems
+            raise UsageError(problem) from None
+        except HeunError as error:
+            return to_outcome(make_failed_result(error))
+        finally:
+            self.seconds = time.perf_counter() - start
+
+    def __call__(self, variants: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
+        """Yield the outcomes of variants, given in the form of --set. Raises UsageError if a measure is not a single
+        number.
+        """
+        is_short = self.jobs is None and self.seconds < MIN_SECONDS
+        job_count = 1 if is_short or len(variants) == 1 else jobs.choose_job_count(self.jobs, len(variants))
+        work: Callable[[Mapping[str, str]], VariantResult] = partial(
+            solve_in_worker if job_count > 1 else solve_variant, self.evaluator
+        )
+        for result in jobs.run_in_order(work, variants, job_count, make_death_result):
+            if result.code == NO_NUMBER:
+                raise UsageError(Problem(result.code, result.reason, hint="such as 'max foundation.force'"))
+            yield to_outcome(result)
+
+
+def solve_variant(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+    """Solve a variant in this process, where the time limit interrupts whatever is going on."""
+    remaining = timeout.remaining_time()
+    if remaining is not None and remaining <= MIN_REMAINING:
+        return VariantResult(code=TIME_LIMIT_CODE)
+    try:
+        return timeout.run_interruptible(partial(evaluator.answer, values))
+    except timeout.TimeUp:  # SciPy calls this, and lets no exception pass unchanged
+        return VariantResult(code=TIME_LIMIT_CODE)
+
+
+def solve_in_worker(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+    """Solve a variant in a process of its own, which has no time limit but the one set here."""
+    work = partial(timeout.run_with_limit, lambda: evaluator.answer(values), timeout.remaining_time())
+    try:
+        return run_contained(
+            work, ("tune", evaluator.recipe.path, *(f"{name}={text}" for name, text in values.items()))
+        )
+    except HeunError as error:
+        return make_failed_result(error)
+
+
+def make_death_result(values: Mapping[str, str], death: jobs.Died) -> VariantResult:
+    """Make the result of a variant whose process died."""
+    if death.is_time_up:
+        return VariantResult(code=TIME_LIMIT_CODE)
+    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it was {death.description}, twice")
+
+
+def to_outcome(result: VariantResult) -> TrialOutcome:
+    """Convert the result of a variant to the outcome that the search takes."""
+    readings = tuple(MeasureReading(one.value, one.error, one.time, one.word) for one in result.measures)
+    return TrialOutcome(readings, result.code, result.reason, result.warnings)

@@ -1,0 +1,137 @@
+"""Parse what is to be tuned from the command line, and check it against the scene before anything is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from itertools import chain
+
+from heuncli.analyses.tune.results import DesignVariable, TuneConstraint, TuneGoal, TuneTask
+from heuncli.analyses.variants.axes import INTERVAL_HINT, AxisError, Interval, parse_interval
+from heuncli.analyses.variants.conditions import MeasureCondition, find_si_value, parse_condition
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.solving import split_spec_and_assignments
+from heuncli.app.commands.tune.request import TuneRequest
+from heuncli.base.errors import Problem
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.units import parse_unit
+from heuncli.output.snapshots import measure
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.ask.measure import MeasureRequest
+from heuncli.study.quantities.measure_uncertainty import find_unit
+
+FORM = "expected MEASURE < VALUE"
+HINT = "such as 'max abs sections.web.M2 < 40 N*m'"
+EVALUATIONS_PER_VARIABLE = 200  # default evaluations: for each variable, and once in addition
+MAX_EVALUATIONS = 1_000_000
+
+
+class TuningOptions(NamedTuple):
+    """The options of a tuning, as far as the command line alone gives them."""
+
+    path: str
+    intervals: tuple[Interval, ...]
+    goal: str
+    greatest: bool
+    conditions: tuple[MeasureCondition, ...]
+
+    @property
+    def measures(self) -> tuple[MeasureRequest, ...]:
+        """The measures of the goal and of the constraints. Raises UsageError."""
+        return tuple(measure.parse_measures([self.goal, *(one.measure for one in self.conditions)]))
+
+
+def parse_options(request: TuneRequest) -> TuningOptions:
+    """Parse the options of a request. Raises UsageError, AxisError."""
+    path, intervals = parse_words(request.words)
+    goals = [(text, greatest) for text, greatest in ((request.minimise, False), (request.maximise, True)) if text]
+    if len(goals) != 1:
+        message = "both --minimise and --maximise are given" if goals else "what is to be tuned is not said"
+        hint = "--minimise WHAT or --maximise WHAT, such as --minimise 'max foundation.force'"
+        raise UsageError(Problem("bad-option", f"tune: {message}", hint=hint))
+    ((goal, greatest),) = goals
+    conditions = tuple(_parse_constraint(text) for text in request.subject_to)
+    return TuningOptions(path, tuple(intervals), goal, greatest, conditions)
+
+
+def parse_words(words: Sequence[str]) -> tuple[str, list[Interval]]:
+    """Split the arguments into the spec's file and the intervals of the variables. Raises UsageError, AxisError."""
+    path, assignments = split_spec_and_assignments(words, "tune", "heun tune SPEC NAME=LOW:HIGH --minimise WHAT")
+    intervals = [parse_interval(word) for word in assignments]
+    names = [interval.name for interval in intervals]
+    if not names:
+        raise UsageError(Problem("bad-option", "tune: nothing is varied", hint=INTERVAL_HINT))
+    for name in names:
+        if names.count(name) > 1:
+            raise AxisError(name, "is varied twice", "one interval a parameter")
+    return path, intervals
+
+
+def _parse_constraint(text: str) -> MeasureCondition:
+    condition = parse_condition(text, FORM, HINT)
+    if condition.sign == "=":
+        raise AxisError(text, "a constraint has < or >: no two numbers are equal to the last bit", HINT)
+    return condition
+
+
+def make_task(request: TuneRequest, options: TuningOptions, evaluator: VariantEvaluator) -> TuneTask:
+    """Make the task of the search, checked against the scene. Raises UsageError, AxisError, SpecError."""
+    spec, measures = evaluator.spec, evaluator.recipe.measures
+    goal, *others = measures
+    scene_makers = [partial(evaluator.load_samples, interval) for interval in options.intervals]
+    scene_lists = measure.check_with_others(measures, spec, scene_makers, "tune")
+    scenes = [spec, *chain.from_iterable(scene_lists)]
+    constraints = []
+    for condition, one in zip(options.conditions, others, strict=True):
+        unit = find_unit(one.path, spec)
+        sign = condition.sign
+        assert sign != "="
+        constraints.append(TuneConstraint(condition.measure, sign, find_si_value(condition, unit, scenes, HINT), unit))
+    return TuneTask(
+        variables=tuple(make_variable(interval, spec) for interval in options.intervals),
+        goal=TuneGoal(options.goal, find_unit(goal.path, spec), options.greatest),
+        constraints=tuple(constraints),
+        max_variants=parse_max_evaluations(request, len(options.intervals)),
+        precision=parse_precision(request),
+        seed=parse_seed(request),
+    )
+
+
+def make_variable(interval: Interval, spec: Spec) -> DesignVariable:
+    """Make a design variable, with its value in the spec if it is a parameter."""
+    base_value = spec.parameters.get(interval.name)
+    if base_value is not None and interval.unit:
+        base_value = base_value / parse_unit(interval.unit)[0]
+    return DesignVariable(interval.name, interval.low, interval.high, interval.unit, base_value)
+
+
+def parse_max_evaluations(request: TuneRequest, variables: int) -> int:
+    """Return how many variants may be solved. Raises UsageError."""
+    requested = request.evaluations
+    if requested is None:
+        return EVALUATIONS_PER_VARIABLE * (variables + 1)
+    if not 1 <= requested <= MAX_EVALUATIONS:
+        message = f"--evaluations {requested}: expected 1 to {MAX_EVALUATIONS:,}"
+        raise UsageError(Problem("bad-option", message, hint="such as --evaluations 400"))
+    return requested
+
+
+def parse_precision(request: TuneRequest) -> float:
+    """Return the relative gain below which the search stops. Raises UsageError."""
+    requested = request.precision
+    if requested is None:
+        return TuneTask.precision
+    if not (math.isfinite(requested) and 0.0 < requested <= 0.1):
+        message = f"--precision {requested:g}: expected more than 0, and 0.1 at most"
+        raise UsageError(Problem("bad-option", message, hint="such as --precision 1e-6"))
+    return requested
+
+
+def parse_seed(request: TuneRequest) -> int:
+    """Return the seed of the random draws. Raises UsageError."""
+    requested = request.seed or 0
+    if requested < 0:
+        raise UsageError(Problem("bad-option", f"--seed {requested}: expected 0 or more", hint="such as --seed 1"))
+    return requested

@@ -1,0 +1,128 @@
+"""Export a solved scene as text, as an HTML fragment and as a file, with the tables of `heun run`."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from heuncli.base.errors import Problem, UsageError
+from heuncli.base.records import replace
+from heuncli.output.client_report.as_html import escape_text, make_element
+from heuncli.output.snapshots.display_units import read_display_units
+from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
+from heuncli.output.snapshots.tables import TablesQuery, make_tables
+from heuncli.output.tables.heading import format_heading, make_heading
+from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_plain
+from heuncli.results.results import Array
+from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
+from heuncli.study.ask.study import Study
+from heuncli.study.model.selection import Selection
+from heuncli.study.quantities.labels import make_labels
+from heuncli.study.quantities.table_units import Units
+
+# no colours, so that light and dark notebooks keep theirs; all rules apply within this class only
+STYLE = (
+    ".heun-run table{border-collapse:collapse;margin:.3em 0 .6em}"
+    ".heun-run td,.heun-run th{padding:.1em .6em;text-align:right;white-space:nowrap;font-weight:normal}"
+    ".heun-run th{border-bottom:1px solid currentColor;vertical-align:bottom}"
+    ".heun-run .left{text-align:left}.heun-run .wide{overflow-x:auto}"
+    ".heun-run h4{margin:.9em 0 .2em}.heun-run h4 small{font-weight:normal}"
+    ".heun-run p{margin:.1em 0}.heun-run td.across{text-align:left;padding-top:.5em;font-style:italic}"
+)
+
+
+def format_text(study: Study, instants: Array | None, units: str | None, selection: str | Sequence[str] | None) -> str:
+    """Return heading and tables as `heun run` writes them into a file.
+
+    instants: (n,) [s], or None for the extremes
+    selection: reports or entries, as in `solve`, or None
+    """
+    parsed = None
+    if selection is not None:
+        parsed = parse_choice(
+            selection.split(",") if isinstance(selection, str) else selection, "only", "study.measure"
+        )
+    tables = _make_tables(study, instants, read_display_units("units", units), parsed)
+    lines = [format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)]
+    return format_heading(study.results) + "".join("\n" + text for text in lines)
+
+
+def _make_tables(
+    study: Study, instants: Array | None, units: Units, requested: ReportChoice | None = None
+) -> list[TextTable]:
+    """Make the tables of the reports that are shown by default, or of those requested, as far as they were solved
+    for.
+    """
+    solved = study.options.selection
+    spec = study.spec
+    what = (
+        select_reports(requested, spec, find_default_reports(spec))
+        if requested is not None or not solved.entries
+        else solved
+    )
+    what = replace(what, reports=what.reports & solved.reports or solved.reports)
+    is_explicit = (requested is not None or spec.report is not None) and "foundation" in what.reports
+    narrowed = _narrow_study(study, what)
+    tables = make_tables(
+        narrowed, replace(make_labels(spec), units=units), TablesQuery(what, instants, details=is_explicit)
+    )
+    study.later_warnings.update(narrowed.later_warnings)
+    return tables
+
+
+def _narrow_study(study: Study, what: Selection) -> Study:
+    """Copy the study with the results of the selected reports only."""
+    results, reports = study.results, what.reports
+    blocks: dict[str, Any] = {block: {} for block, report in REPORT_OF.items() if report not in reports}
+    blocks |= {} if IMPULSES in reports else {IMPULSES: []}
+    blocks |= {} if EVENTS in reports else {EVENTS: {}}
+    blocks |= {} if "joints" in reports else {"certain_sums": []}
+    options = replace(study.options, requested_reports=reports)
+    return replace(study, options=options, results=dataclasses.replace(results, **blocks))
+
+
+def render_html(study: Study, instants: Array | None) -> str:
+    """Render heading and tables as an HTML fragment without scripts; all text from the spec is escaped."""
+    _, *lines = make_heading(study.results)  # the first is version and title
+    body = [make_element("style", STYLE), make_element("h4", escape_text(study.results.title))]
+    body += [make_element("p", escape_text(f"{label}: {text}" if label else text)) for label, text in lines]
+    body += [_render_table(table) for table in _make_tables(study, instants, Units())]
+    return make_element("div", "\n".join(body), class_="heun-run")
+
+
+def _render_table(table: TextTable) -> str:
+    name, _, rest = table.heading.partition("  ")
+    caption = (
+        make_element("h4", escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else ""))
+        if name
+        else ""
+    )
+    grid = ""
+    if table.columns:
+        kinds = ["left" if column.align == "left" else "" for column in table.columns]
+        named = zip(table.columns, kinds, strict=True)
+        heads = (make_element("th", escape_text(column.head), class_=kind) for column, kind in named)
+        rows = [make_element("tr", "".join(heads)), *(_render_row(row, kinds) for row in table.rows)]
+        grid = make_element("div", make_element("table", "\n".join(rows)), class_="wide")
+    return "\n".join([caption, grid, *(make_element("p", escape_text(note)) for note in table.notes)])
+
+
+def _render_row(row: tuple[str, ...] | str, kinds: Sequence[str]) -> str:
+    if isinstance(row, str):
+        return make_element("tr", make_element("td", escape_text(row), colspan=str(len(kinds)), class_="across"))
+    cells = (make_element("td", escape_text(cell), class_=kind) for cell, kind in zip(row, kinds, strict=True))
+    return make_element("tr", "".join(cells))
+
+
+def write_results(file: str | os.PathLike[str], forms: Mapping[str, Callable[[], str]]) -> None:
+    """Write the results in the format of the file's ending. Raises UsageError, OSError."""
+    path = Path(file)
+    form = forms.get(path.suffix.lower())
+    if form is None:
+        message = f"save {path.name}: results are written by the name's end: {', '.join(forms)}"
+        raise UsageError(Problem("bad-option", message, hint="diagrams are saved by study.plot(...).save(file)"))
+    path.write_text(form(), encoding="utf-8", newline="\n")

@@ -1,0 +1,178 @@
+"""Mark indeterminate components: `nan` where a self-stress has a share, and the list of those indeterminate at some
+instant.
+
+A component in any direction c of a wrench is indeterminate where c . share is; so `axial` may be determinate where x,
+y, z are not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.actions import make_joint_action
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
+from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
+from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS
+from heuncli.loads.kinetostatics.joint_axes import rotate_shares
+from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.loads.redundancy.self_stress import SelfStress
+from heuncli.multibody.mechanism.couplings import Coupling
+from heuncli.results.results import Array, Block, Mask
+
+if TYPE_CHECKING:  # loaded where a scene has sections
+    from heuncli.loads.kinetostatics.cuts import Cuts
+
+WORLD = ("x", "y", "z")
+
+
+def mask_indeterminate(values: Array, is_open: Mask) -> Array:
+    """Return the values with nan where they are indeterminate."""
+    masked: Array = np.where(is_open, np.nan, values)
+    return masked
+
+
+def find_indeterminate_wrench(stress: SelfStress, share: Array) -> tuple[Mask, Mask]:
+    """Return which of force and moment x, y, z are indeterminate, (n_t, 3) each, for a share (n_t, 6, k)."""
+    return stress.has_share(share[:, :3]), stress.has_share(share[:, 3:], stress.length)
+
+
+def list_indeterminate_names(parts: Mapping[str, Mask]) -> list[str]:
+    """List the components indeterminate at some instant: "force.z" of (n_t, 3), "axial" of (n_t,)."""
+    names = []
+    for name, is_open in parts.items():
+        if is_open.ndim == 1:
+            names += [name] if is_open.any() else []
+        else:
+            names += [f"{name}.{WORLD[i]}" for i in range(3) if is_open[:, i].any()]
+    return names
+
+
+def mark_joint(
+    block: Block, load: JointLoads, shares: tuple[Array, Array], stress: SelfStress, axes: Array | None = None
+) -> None:
+    """Mark the indeterminate components of a joint's block, in place; shares (n_t, 6, k) of its constraint, and of its
+    drive.
+
+    axes (n_t, 3, 3): the axes in which its force and moment are reported, if not the world's
+    """
+    share, free_share = shares
+    force, moment = find_indeterminate_wrench(stress, rotate_shares(share, axes))
+    parts: dict[str, Mask] = {"force": force, "moment": moment}
+    if load.axis is not None:
+        n = load.axis
+        F, M = share[:, :3], share[:, 3:]
+        axial = np.einsum("ti,tik->tk", n, F)[:, None]
+        radial_shares = F - n[:, :, None] * axial
+        torque_shares = np.einsum("ti,tik->tk", n, M)[:, None]
+        parts["axial"] = stress.has_share(axial)[:, 0]
+        parts["radial"] = np.asarray(stress.has_share(radial_shares).any(axis=1))
+        tilting = stress.has_share(M - n[:, :, None] * torque_shares, stress.length)
+        parts["tilting"] = np.asarray(tilting.any(axis=1))
+        parts["torque"] = stress.has_share(torque_shares, stress.length)[:, 0]
+        if load.drive is not None and load.joint.drive is not None:
+            parts["drive"] = is_coordinate_indeterminate(load.joint.drive.quantity, free_share, stress)
+    if load.tension is not None:
+        parts["drive"] = parts["tension"] = np.asarray(force.any(axis=1))
+    parts["pressure"] = parts.get("radial", np.asarray(force.any(axis=1)))
+    for entry in (block, *block.get("shares", {}).values()):
+        for name in parts.keys() & entry.keys():
+            entry[name] = mask_indeterminate(entry[name], parts[name])
+    block["open"] = list_indeterminate_names({name: is_open for name, is_open in parts.items() if name in block})
+
+
+def is_coordinate_indeterminate(quantity: str, free_share: Array, stress: SelfStress) -> Mask:
+    """Return whether the load of a drive or a stop along a coordinate is indeterminate, (n_t,); its share is outside
+    the constraint.
+    """
+    part, scale = (free_share[:, 3:], stress.length) if quantity == "angle" else (free_share[:, :3], 1.0)
+    return np.asarray(stress.has_share(part, scale).any(axis=1))
+
+
+def select_coordinate_share(free_share: Array, quantity: str) -> Array:
+    """Return the part of a joint's shares outside its constraint that acts along one of its coordinates."""
+    turns = np.arange(6) >= 3
+    return free_share * (turns if quantity == "angle" else ~turns)[:, None]
+
+
+def mark_ground_load(block: Block, share: Array, stress: SelfStress) -> None:
+    """Mark the indeterminate components of a load ON the ground, a support or an element, in place."""
+    force, moment = find_indeterminate_wrench(stress, share)
+    for entry in (block, *block.get("shares", {}).values()):
+        entry["force"], entry["moment"] = (
+            mask_indeterminate(entry["force"], force),
+            mask_indeterminate(entry["moment"], moment),
+        )
+
+
+def mark_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> None:
+    """Mark the indeterminate components of a coupling's block, in place: of its numbers, and of its load ON each
+    body.
+    """
+    parts: dict[str, Mask] = {}
+    for number in list_numbers(loads):
+        rows = stress.multipliers[:, [loads.rows[k] for k in number.rows]]
+        parts[number.name] = np.asarray(stress.has_share(rows, stress.length if number.is_moment else 1.0).any(axis=1))
+    for entry in (block, *block.get("shares", {}).values()):
+        for name in parts.keys() & entry.keys():
+            entry[name] = mask_indeterminate(entry[name], parts[name])
+    for number_name in ("radial", "axial", "normal", "torque", "tight", "slack"):
+        if number_name in block and number_name not in parts and depends_on_load(loads.coupling, number_name):
+            block[number_name], parts[number_name] = (
+                mask_indeterminate(block[number_name], parts[loads.load_name]),
+                parts[loads.load_name],
+            )
+    loads_by_stress = [loads.with_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
+    body_loads = [list(entry.body_loads().values()) for entry in loads_by_stress]
+    for i, (end, entry) in enumerate(block["on"].items()):
+        share = np.stack([np.concatenate(bodies[i][1:], axis=1) for bodies in body_loads], axis=-1)
+        mark_ground_load(entry, share, stress)
+        force, moment = find_indeterminate_wrench(stress, share)
+        parts |= {f"on.{end}.force": force, f"on.{end}.moment": moment}
+    block["open"] = list_indeterminate_names(parts)
+
+
+def depends_on_load(coupling: Coupling, number_name: str) -> bool:
+    """Return whether a further number depends on the load: for straight teeth the axial part does not."""
+    unit_numbers = DRIVE_ELEMENT_NUMBERS[coupling.entry.type](coupling.entry, np.ones(1), False)
+    return bool(np.any(unit_numbers[number_name]))
+
+
+def find_indeterminate_section(
+    cuts: Cuts,
+    states: BodyStates,
+    joints: Sequence[JointLoads],
+    couplings: Sequence[CouplingLoads],
+    stress: SelfStress,
+) -> dict[str, Mask]:
+    """Return for each component of a section's loads whether it is indeterminate: some self-stress has a share in
+    it.
+    """
+    from heuncli.loads.kinetostatics.sections import MOMENTS, find_attachments, static_components
+
+    is_open: dict[str, Mask] = {}
+    for k in range(stress.largest.shape[1]):
+        parts = zip(joints, stress.shares, strict=True)
+        actions = [make_joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts]
+        actions += list_coupling_actions([own.with_multipliers(stress.multipliers[:, :, k]) for own in couplings])
+        attached_loads = find_attachments(cuts.body, states, actions)
+        limit = np.where(stress.largest[:, k] > 0.0, tolerances.OPEN_SHARE * stress.largest[:, k], np.inf)
+        for name, share in static_components(cuts, states, attached_loads).items():
+            scale = limit * (stress.length if name in MOMENTS else 1.0)
+            has_share = np.abs(share) > scale.reshape(-1, *([1] * (share.ndim - 1)))
+            is_open[name] = is_open.get(name, False) | has_share
+    return is_open
+
+
+def list_indeterminate_section_names(is_open: Mapping[str, Mask]) -> list[str]:
+    """List a section's components that are indeterminate at some instant, in some cut."""
+    from heuncli.loads.kinetostatics.sections import ABOUT_CENTROID
+
+    reported = {name: mask for name, mask in is_open.items() if name not in ABOUT_CENTROID}
+    return list_indeterminate_names(
+        {name: mask.reshape(-1, 3) if mask.ndim == 3 else mask.ravel() for name, mask in reported.items()}
+    )

@@ -1,0 +1,108 @@
+"""The data of a report: a scene solved in its load cases, and the options of the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import record
+from heuncli.output.snapshots.envelopes import NumberEnvelope, make_envelope
+from heuncli.output.snapshots.golden_file import RunSnapshot
+from heuncli.output.snapshots.outcomes import Outcome
+from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants
+from heuncli.output.tables.page import Page
+from heuncli.results.results import Results
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.ask.smoothed_friction import find_partial_friction
+from heuncli.study.ask.study import Study
+from heuncli.study.compose.smoothed_friction import make_partial_note
+from heuncli.study.quantities.labels import Labels
+from heuncli.study.quantities.table_units import Units
+
+AS_IT_STANDS = "as it stands"  # the scene without the values of a case
+LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "events"})
+
+
+@record
+class ReportedRun:
+    """A solved load case.
+
+    name: empty for the scene without the values of a case
+    snapshot: its numbers with extremes and errors
+    is_searched: whether its extremes were also searched between the samples
+    """
+
+    name: str
+    title: str
+    study: Study
+    kept: RunSnapshot
+    page: Page
+    searched: bool
+
+    @property
+    def results(self) -> Results:
+        """The results of the run."""
+        return self.study.results
+
+    @cached_property
+    def uncertain_instants(self) -> DoubtfulInstants:
+        """The instants of extremes at which smoothed friction has not reached its full value."""
+        times = [t for number in self.snapshot.numbers.values() for t in (number.least_at, number.greatest_at)]
+        partial = find_partial_friction(self.study, [t for t in times if t is not None])
+        return DoubtfulInstants.with_reason(partial, make_partial_note(partial)) if partial else NO_DOUBT
+
+    @property
+    def case_label(self) -> str:
+        """The name of the case as it is shown."""
+        return self.name or AS_IT_STANDS
+
+
+class Imprint(NamedTuple):
+    """Entries of the first page that the user states; those not given are left out."""
+
+    date: str = ""
+    author: str = ""
+    project: str = ""
+
+
+@record
+class ReportData:
+    """All data of a report.
+
+    spec: the scene without the values of a case
+    text: the spec file
+    digests: of the files that the spec refers to, by their names
+    runs: the load cases of the report
+    outcomes: of all expected values, in their order
+    options: the values of --set and of the solver's options
+    omitted_cases: load cases of the spec that were not requested
+    unchecked_scenes: scenes with expected values that were not solved
+    """
+
+    spec: Spec
+    text: str
+    digests: Mapping[str, str]
+    runs: Sequence[ReportedRun]
+    outcomes: Sequence[Outcome]
+    given: Sequence[str]
+    left_out: Sequence[str]
+    unchecked: Sequence[str]
+    reduce: bool
+    units: Units
+    imprint: Imprint
+
+    @cached_property
+    def envelope(self) -> list[NumberEnvelope]:
+        """The minimum and maximum of each number, with the cases that govern."""
+        return make_envelope({run.name: run.snapshot for run in self.runs})
+
+    @property
+    def labels(self) -> Labels:
+        """The kinds of all named objects."""
+        return self.runs[0].page.labels
+
+    @property
+    def has_cases(self) -> bool:
+        """Whether the report names load cases."""
+        return len(self.runs) > 1 or bool(self.runs[0].name)

@@ -1,0 +1,202 @@
+"""The rows of a sweep as columns of numbers, and the choice of what to draw: the horizontal variable, fixed variables.
+
+Words make the choice: NAME=VALUE fixes a variable, the name of a variable puts it on the horizontal axis, the name of a
+measure (or a part of it that only one has) draws only that measure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import compress
+
+import numpy as np
+
+from heuncli.analyses.variants.axes import parse_figure
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import suggest
+from heuncli.base.text_safety import escape
+from heuncli.output.figures.refusals import NotDrawable
+from heuncli.results.results import Array, Mask
+
+MIN_DISTINCT_SHARE = 0.8  # of the rows: two variables with more distinct values form no grid
+MIN_ROWS = 4  # fewer rows form a grid
+
+
+class SweepVariable(NamedTuple):
+    """A varied quantity: its name, unit (empty for SI), and values (n,), which are numbers or indices of `texts`."""
+
+    name: str
+    unit: str
+    values: Array
+    texts: tuple[str, ...] = ()
+
+    @property
+    def axis_label(self) -> str:
+        """The label of its axis."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def levels(self) -> Array:
+        """Its distinct values, ascending."""
+        return np.unique(self.values)
+
+    def format_value(self, value: float) -> str:
+        """Format a value."""
+        if self.texts:
+            return self.texts[int(value)]
+        return f"{value:.6g} {self.unit}".rstrip()
+
+
+class SweepNumbers(NamedTuple):
+    """A measure in each row.
+
+    values (n,): SI, nan if there is none
+    errors (n,): as stated by the runs, 0 if there is none
+    missing_reasons: why the row of a solved variant has no number, else empty
+    """
+
+    text: str
+    unit: str
+    values: Array
+    errors: Array
+    lost: tuple[str, ...]
+
+
+class SweepTable(NamedTuple):
+    """A sweep: its variables and measures.
+
+    codes: of each row the code of the error that prevented its solution, else empty
+    n_planned: number of variants, if known
+    random: whether the variables were drawn at random or listed row by row; None if that must be inferred from the rows
+    """
+
+    title: str
+    origin: str
+    variables: tuple[SweepVariable, ...]
+    measures: tuple[SweepNumbers, ...]
+    codes: tuple[str, ...]
+    planned: int | None
+    random: bool | None = None
+
+    @property
+    def n_rows(self) -> int:
+        """The number of rows."""
+        return len(self.codes)
+
+
+class SweepSelection(NamedTuple):
+    """What is drawn of a sweep.
+
+    variables: those that vary in its rows, the horizontal one first if it was named
+    has_named_axis: whether the horizontal variable was named
+    fixed_texts: the fixed variables with their values
+    """
+
+    table: SweepTable
+    varied: tuple[SweepVariable, ...]
+    named: bool
+    held: tuple[str, ...]
+
+    @property
+    def is_scattered(self) -> bool:
+        """Whether its points are at random places, and not on a grid."""
+        if len(self.variables) < 2:
+            return bool(self.table.random) and bool(self.variables)
+        if self.table.random is not None:
+            return self.table.random
+        rows = self.table.n_rows
+        return (
+            rows >= MIN_ROWS
+            and sum(len(variable.levels) >= MIN_DISTINCT_SHARE * rows for variable in self.variables) >= 2
+        )
+
+
+def select_sweep(table: SweepTable, words: Sequence[str]) -> SweepSelection:
+    """Select what some words pick from a sweep. Raises NotDrawable."""
+    row_mask = np.ones(table.n_rows, dtype=bool)
+    x_name: str | None = None
+    measures: list[SweepNumbers] = []
+    for word in words:
+        name, equals, value = word.partition("=")
+        variable = next((candidate for candidate in table.variables if candidate.name == name.strip()), None)
+        if equals and variable is not None:
+            row_mask &= _find_rows(variable, value.strip())
+        elif variable is not None:
+            x_name = variable.name
+        else:
+            measures.append(_find_measure(table, word))
+    selected = _select_rows(table._replace(measures=tuple(measures) or table.measures), row_mask)
+    varying = [candidate for candidate in selected.variables if len(candidate.levels) > 1]
+    varying.sort(key=lambda candidate: candidate.name != x_name)
+    if x_name is not None and x_name not in [candidate.name for candidate in varying]:
+        raise NotDrawable(f"{x_name} has one value in what is drawn", "name another to run across, or hold fewer")
+    fixed_texts = tuple(
+        f"{candidate.name} = {candidate.format_value(candidate.values[0])}"
+        for candidate in selected.variables
+        if len(candidate.levels) == 1
+    )
+    return SweepSelection(selected, tuple(varying), x_name is not None, fixed_texts)
+
+
+def _find_rows(variable: SweepVariable, text: str) -> Mask:
+    """Return the mask of the rows in which a variable has a value."""
+    if variable.texts:
+        row_mask = np.array([variable.texts[int(k)] == text for k in variable.values], dtype=bool)
+    else:
+        figure = parse_figure(text)
+        if figure is None or figure.unit not in ("", variable.unit):
+            unit = f" in {variable.unit}" if variable.unit else ""
+            raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {make_example(variable)}")
+        row_mask = np.isclose(variable.values, figure.value, rtol=tolerances.SAME_VALUE, atol=0.0)
+    if not row_mask.any():
+        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {make_example(variable)}")
+    return np.asarray(row_mask)
+
+
+def make_example(variable: SweepVariable) -> str:
+    """Return an existing value in the form in which it is typed: NAME=VALUE."""
+    levels = variable.levels
+    if variable.texts:
+        return f"{variable.name}={escape(variable.texts[int(levels[0])])}"
+    return f"{variable.name}={levels[len(levels) // 2]:.12g}"
+
+
+def _find_measure(table: SweepTable, word: str) -> SweepNumbers:
+    """Return the measure that a word names completely or in part."""
+    exact = [column for column in table.measures if word == column.text]
+    found = exact or [column for column in table.measures if word in column.text]
+    if len(found) == 1:
+        return found[0]
+    names = [column.name for column in table.variables] + [column.text for column in table.measures]
+    if found:
+        raise NotDrawable(f"{word}: {len(found)} measures have this in their words", f"name one: {found[0].text}")
+    hint = suggest(word, names, "columns") or f"there are: {', '.join(names)}"
+    raise NotDrawable(f"{word}: no column of the sweep has this name", hint)
+
+
+def _select_rows(table: SweepTable, row_mask: Mask) -> SweepTable:
+    """Return some of the rows."""
+    if row_mask.all():
+        return table
+    variables = tuple(_drop_unused_texts(column._replace(values=column.values[row_mask])) for column in table.variables)
+    measures = tuple(
+        column._replace(
+            values=column.values[row_mask],
+            errors=column.errors[row_mask],
+            missing_reasons=tuple(compress(column.missing_reasons, row_mask)),
+        )
+        for column in table.measures
+    )
+    return table._replace(
+        variables=variables, measures=measures, codes=tuple(compress(table.codes, row_mask)), n_planned=None
+    )
+
+
+def _drop_unused_texts(variable: SweepVariable) -> SweepVariable:
+    """Return the variable with only those of its texts that occur."""
+    if not variable.texts:
+        return variable
+    levels, places = np.unique(variable.values, return_inverse=True)
+    texts = tuple(variable.texts[int(k)] for k in levels)
+    return variable._replace(values=places.astype(np.float64), texts=texts)

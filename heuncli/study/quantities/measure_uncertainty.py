@@ -1,0 +1,92 @@
+"""The error of one measure as its run states it, absolute and in SI."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from heuncli.base import tolerances
+from heuncli.base.records import replace
+from heuncli.results.path_words import split_path
+from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, MAGNITUDES, error_kind_of_path, find_quantity
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.ask.measure import MeasureRequest, Peak
+from heuncli.study.ask.study import Study
+from heuncli.study.model.selection import list_entries, split_entry
+from heuncli.study.quantities.digits import find_certainty, find_load_error, is_load
+from heuncli.study.quantities.labels import make_unit_labels
+from heuncli.study.quantities.table_units import Units
+
+SI = Units({})
+SQUARE_ROUNDING = 4.0 * tolerances.EPS  # relative to the largest square along a run of cuts: rounding of its polynomial
+
+
+def find_unit(path: str, spec: Spec) -> str:
+    """Return the SI unit of a path; empty if it has none, or if it is unknown before the run."""
+    words = split_path(path)
+    entry, remaining = split_entry(words, list_entries(spec))
+    keys = [*entry, *remaining] if entry is not None else words
+    while keys and find_quantity(keys) is None:  # words after the quantity select one of its numbers: .x, .0.x
+        keys.pop()
+    return _unit_of_keys(keys, spec)
+
+
+def _unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
+    """Return the SI unit of the quantity under some keys; of two units, that of an angle or of a travel."""
+    row = find_quantity(keys)
+    if row is None or not row.units:
+        return ""
+    entry_keys = keys[2:] if keys[0] == IMPULSES else keys
+    turns = len(row.units) > 1 and make_unit_labels(spec).is_rotational(entry_keys[0], entry_keys[1])
+    return row.units[1 if turns else 0]
+
+
+def find_measure_error(request: MeasureRequest, peak: Peak, study: Study) -> float | None:
+    """Return the error of a measure, as tables and golden files state it; None if the run states none, as for
+    counts.
+    """
+    numbers = study.find_numbers(request.path)
+    keys = numbers.keys
+    if keys[0] == EVENTS:
+        return _find_event_error(keys, peak, study)
+    unit = _unit_of_keys(keys, study.spec)
+    if not unit:
+        return None
+    error = _find_unit_error(keys, unit, study)
+    if (
+        error is not None
+        and request.how == "min"
+        and CUT in numbers.axes
+        and (numbers.is_vector or keys[-1] in MAGNITUDES)
+    ):
+        return max(error, _find_root_error(peak.value, study.magnitudes.by_unit.get(unit, 0.0)))
+    return error
+
+
+def _find_unit_error(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
+    """Return the error of numbers of a kind and unit."""
+    kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
+    magnitudes = study.load_magnitudes if is_load(kind, unit) else study.magnitudes
+    if (kind, unit) in magnitudes.errors:
+        return max(magnitudes.errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
+    labels = replace(make_unit_labels(study.spec), units=SI)
+    if is_load(kind, unit) and study.results.horizon is None:
+        return find_load_error(study.results, labels, magnitudes, kind, unit) or None
+    return find_certainty(study.results, labels, study.magnitudes).error_of(kind, unit) or None
+
+
+def _find_root_error(value: float, largest: float) -> float:
+    """Return the error of the least magnitude along a run of cuts: the root of a polynomial that is as accurate as its
+    largest value.
+    """
+    rounding = SQUARE_ROUNDING * largest * largest
+    return rounding / max(value, math.sqrt(rounding)) if rounding > 0.0 else 0.0
+
+
+def _find_event_error(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:
+    """Return the error of an event's instant [s]."""
+    event = study.results.events.get(keys[1])
+    if event is None or "time" not in keys[2:3]:
+        return None
+    errors = [e for t, e in zip(event["time"], event["error"], strict=True) if float(t) == peak.value]
+    return float(max(errors)) if errors and all(map(math.isfinite, errors)) else None
