@@ -38,7 +38,7 @@ class Problem(NamedTuple):
     message: str
     location: SourceLocation | None = None
     hint: str = ""
-    about: str = ""
+    entry_path: str = ""
 
     def __str__(self) -> str:
         path = f"{shorten_text(self.location.path)}: " if self.location and self.location.path else ""

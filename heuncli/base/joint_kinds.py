@@ -30,7 +30,7 @@ class Hold(NamedTuple):
     A distance has one row, along the line between the points.
     """
 
-    asks: Literal["point", "line", "plane", "distance", "curve"]
+    gap_type: Literal["point", "line", "plane", "distance", "curve"]
     guides: tuple[Direction, ...]
     shifts: tuple[Direction, ...] = ()
 
@@ -46,7 +46,7 @@ class Turn(NamedTuple):
     joint there and this row in addition.
     """
 
-    asks: Literal["free", "axis", "square", "alike", "all"]
+    condition: Literal["free", "axis", "square", "alike", "all"]
     dots: tuple[tuple[Direction, Direction], ...]
     turns: tuple[Direction, ...] = ()
     ball: bool = False
@@ -112,11 +112,11 @@ class JointKind(NamedTuple):
     # what it is in a scene declared planar, None: it cannot be there
     planar: str | None = None
     # what may take its place and hold less, the gentlest first: in space and in a planar scene
-    looser: tuple[str, ...] = ()
-    looser_in_plane: tuple[str, ...] = ()
+    weaker_kinds: tuple[str, ...] = ()
+    weaker_planar_kinds: tuple[str, ...] = ()
     # what it is called elsewhere; and by users, where that is not its name
     synonyms: tuple[str, ...] = ()
-    spoken: str | None = None
+    display_name: str | None = None
 
     @property
     def guides(self) -> tuple[Direction, ...]:

@@ -25,7 +25,7 @@ WORD_OVERHEAD = 4  # characters that a name costs by itself
 class _EffortBudget:
     """The effort left for the present file. State of the module: hints are made in forty places."""
 
-    left = MAX_EFFORT
+    remaining = MAX_EFFORT
 
 
 def reset_effort() -> None:

@@ -196,7 +196,7 @@ class ImpulseColumns:
 
     columns: Columns
     unmet: Array
-    idle: int
+    massless_count: int
 
 
 def solve_impulses(kernel: workspace.Workspace, t: float, state: Array, loads: Array, jumps: Array) -> ImpulseColumns:

@@ -28,7 +28,7 @@ class CachedStage(NamedTuple):
     """The result of a stage and the trace of the input it read."""
 
     result: Any
-    looked_at: tuple[InputTrace, ...]
+    traces: tuple[InputTrace, ...]
 
     def is_valid_for(self, inputs: tuple[Any, ...]) -> bool:
         """Whether the stage would read the same values from this input."""

@@ -217,8 +217,8 @@ class Extremes(NamedTuple):
     high: Array
     high_at: Array
     high_column: Indices
-    searched: bool
-    complete: bool = True
+    is_searched: bool
+    is_complete: bool = True
     places: tuple[tuple[CutPosition, CutPosition], ...] = ()
 
     def select(self, groups: slice) -> Extremes:

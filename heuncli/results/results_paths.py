@@ -43,7 +43,7 @@ class PathValues(NamedTuple):
     """
 
     values: Array
-    timed: bool
+    is_timed: bool
     axes: Shape
     instant: int | None = None
     keys: tuple[str, ...] = ()

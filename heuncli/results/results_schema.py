@@ -65,8 +65,8 @@ class Quantity(NamedTuple):
     units: tuple[str, ...]
     shape: Shape
     meaning: str
-    timed: bool = True
-    own_form: bool = False
+    is_timed: bool = True
+    has_own_form: bool = False
 
     @property
     def is_words(self) -> bool:

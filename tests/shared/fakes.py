@@ -144,7 +144,7 @@ class FakeStudy:
         """At the asked instants."""
         return self.resample(self.times)
 
-    of_one_instant = False
+    has_one_instant = False
 
     def find_numbers(self, path: str) -> PathValues:
         """The numbers at a path of the results."""
@@ -187,8 +187,8 @@ class FakeStudy:
         """What stands for the scene with its runs of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
 
-    instants_at_once = 1000
-    extremes = Study.search_extremes
+    chunk_size = 1000
+    search_extremes = Study.search_extremes
     magnitudes = MAGNITUDES
 
 

@@ -28,7 +28,7 @@ class WeightPlace:
 
     body: int
     name: str
-    place: Array
+    point: Array
     radius: float | None
 
 
@@ -41,9 +41,9 @@ class Candidate:
     direction, and by moments of second order.
     """
 
-    at: WeightPlace
+    weight_place: WeightPlace
     radius: float
-    across: Array
+    plane_directions: Array
     by_mass: Array
     by_product: Array
     by_square: Array

@@ -34,12 +34,12 @@ class Counterweight:
     reference_direction (3,): the direction from which `angle` is counted
     """
 
-    at: WeightPlace
+    weight_place: WeightPlace
     product: Array
     mass: float
     radius: float
     angle: float
-    first: Array
+    reference_direction: Array
 
     @property
     def position(self) -> Array:

@@ -166,7 +166,7 @@ class PieceNodes:
 
     begin: float
     turns: int
-    sense: float
+    direction: float
     begins: Array
     ends: Array
     sizes: Indices

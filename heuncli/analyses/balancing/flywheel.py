@@ -62,10 +62,10 @@ class WorkCurve:
     eps: Array
     half_slope: Array
     weights: Array
-    W_at: Array
-    eps_at: Array
+    W_nodes: Array
+    eps_nodes: Array
     steady: float
-    between: Callable[[Array], tuple[Array, Array, Array, Array]]
+    interpolate: Callable[[Array], tuple[Array, Array, Array, Array]]
 
     def compute_rates(self, E0: float, J: float) -> Array:
         """Return ω along the cycle [rad/s], (m,); 0 where the energy does not suffice."""
@@ -208,7 +208,7 @@ def find_flywheel(scene: LoadedScene, joint: str, mean: float, delta: float) -> 
 class WorkErrors(NamedTuple):
     """Errors of the constant torque, the work and the reduced inertia."""
 
-    even: float
+    constant_torque: float
     work: float
     inertia: float
 

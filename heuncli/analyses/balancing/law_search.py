@@ -35,7 +35,7 @@ class LawDeviations(NamedTuple):
     """
 
     places: Array
-    undecided: tuple[str, ...]
+    undecided_laws: tuple[str, ...]
 
 
 def iter_angle_laws(values: Iterable[Expression], joint: str, rate: float) -> Iterator[Expression]:

@@ -42,7 +42,7 @@ class CycleNumbers(NamedTuple):
     nodes: PieceNodes
     values: Array
     notes: tuple[str, ...]
-    settled: bool
+    is_resolved: bool
 
 
 @record
@@ -53,7 +53,7 @@ class LoadedScene:
     """
 
     setup: Setup
-    followed: FollowedRun
+    followed_run: FollowedRun
     joint: str
 
     def recover(self, x: Array) -> Recovery:

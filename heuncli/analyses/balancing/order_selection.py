@@ -34,7 +34,7 @@ class OrderSelection:
     noise: error of every order in addition to that of the nodes
     """
 
-    asked: tuple[float, ...] | None = None
+    requested: tuple[float, ...] | None = None
     noise: float = 0.0
 
     def select_orders(self, nodes: CycleNodes, values: Array, threshold: float) -> Indices:

@@ -49,7 +49,7 @@ class TwoPeriods:
     study: Study
     seconds: float
     begin: float
-    about: Array
+    reference_point: Array
 
     @property
     def rate(self) -> float:
@@ -172,7 +172,7 @@ def sum_bodies(effects: MassEffects) -> dict[str, Array]:
 class PeriodDifference:
     """Difference of two periods: relative to the mean magnitude, bound for any order, and of the peaks."""
 
-    part: float
+    relative: float
     orders: float
     peak: float
 

@@ -38,7 +38,7 @@ class ResolvedNumbers(NamedTuple):
 
     nodes: PieceNodes
     values: Array
-    settled: bool
+    is_resolved: bool
 
 
 class CyclePieces(NamedTuple):
@@ -47,7 +47,7 @@ class CyclePieces(NamedTuple):
     begins: Array
     ends: Array
     sizes: Array
-    before: Array
+    parent_tails: Array
 
     def select(self, which: Mask | Indices) -> CyclePieces:
         """Return the selected pieces."""

@@ -28,12 +28,12 @@ class OrderRow:
     amplitude: Array
     phase: Array
     size: float
-    own: float
+    body_sum: float
     verdict: str
     error: float = 0.0
     with_turn: float | None = None
-    against: float | None = None
-    across: bool = False
+    against_turn: float | None = None
+    is_across_axis: bool = False
     parts: Mapping[str, tuple[Array, Array]] | None = None
 
     @property
@@ -58,7 +58,7 @@ class Residual:
 
     rms: float
     peak: float
-    at: float
+    peak_angle: float
     error: float = 0.0
 
     def to_block(self) -> Block:
@@ -98,8 +98,8 @@ class CounterweightResult:
     mass: float
     radius: float
     vector: Array
-    first: Array
-    at: Array
+    reference_direction: Array
+    position: Array
 
     def to_block(self) -> Block:
         """Return the counterweight as a JSON block."""
@@ -122,13 +122,13 @@ class Counterbalance:
     """
 
     weights: tuple[CounterweightResult, ...]
-    minimised: str
+    objective: str
     lever: float | None
     several: bool
     orders: Mapping[str, tuple[OrderRow, ...]]
-    words: Mapping[str, str]
-    before: Mapping[str, CycleLoad]
-    after: Mapping[str, CycleLoad]
+    summaries: Mapping[str, str]
+    loads_without: Mapping[str, CycleLoad]
+    loads_with: Mapping[str, CycleLoad]
     notes: tuple[str, ...] = ()
 
 
@@ -171,7 +171,7 @@ class Period:
     """A period of time [s] with which a motion repeats, and the relative difference of the last two periods."""
 
     seconds: float
-    off: float
+    relative_difference: float
 
 
 @record
@@ -191,18 +191,18 @@ class BalanceResults:
     turns: int
     rate: float | None
     samples: int
-    settled: bool
-    about: Array
+    is_resolved: bool
+    reference_point: Array
     place: str
     axis: Array | None
     effects: MassEffects
     orders: Mapping[str, tuple[OrderRow, ...]]
-    words: Mapping[str, str]
+    summaries: Mapping[str, str]
     mean: Mapping[str, Any]
     mean_error: Mapping[str, float]
     residual: Mapping[str, Residual]
-    shown: tuple[float, ...]
-    asked: bool = False
+    shown_orders: tuple[float, ...]
+    are_orders_requested: bool = False
     notes: tuple[str, ...] = ()
     counterbalance: Counterbalance | None = None
     flywheel: Flywheel | None = None

@@ -44,7 +44,7 @@ class SlopeEstimate(NamedTuple):
     least: float
     bend: float
     chord: float
-    sure: bool
+    is_reliable: bool
 
     def is_sufficient(self, error: float) -> bool:
         """Return whether the estimate locates the place well for an error of this size."""

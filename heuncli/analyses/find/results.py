@@ -24,7 +24,7 @@ class FindCondition(NamedTuple):
     relation: Sign
     value: float
     unit: str
-    own: str
+    given_unit: str
 
 
 class Crossing(NamedTuple):
@@ -38,7 +38,7 @@ class Crossing(NamedTuple):
 
     sample: Sample
     error: float
-    way: int
+    direction: int
     flat: bool = False
 
 
@@ -59,22 +59,22 @@ class Touch(NamedTuple):
 class MeasureJump(NamedTuple):
     """Adjacent samples between which the measure jumps across its value."""
 
-    before: Sample
-    after: Sample
+    left: Sample
+    right: Sample
 
 
 class UnresolvedBracket(NamedTuple):
     """Adjacent samples on different sides of the value where the search stopped: a crossing or a jump."""
 
-    before: Sample
-    after: Sample
+    left: Sample
+    right: Sample
 
 
 class PossibleMeeting(NamedTuple):
     """Samples on one side of the value between which samples and errors do not exclude that it is met."""
 
-    before: Sample
-    after: Sample
+    left: Sample
+    right: Sample
 
 
 class UnsolvedStretch(NamedTuple):
@@ -122,14 +122,14 @@ class IntervalFindings(NamedTuple):
     jumps: tuple[MeasureJump, ...]
     brackets: tuple[UnresolvedBracket, ...]
     not_excluded: tuple[PossibleMeeting, ...]
-    unsolved: tuple[UnsolvedStretch, ...]
-    met: tuple[MetStretch, ...]
+    unsolved_stretches: tuple[UnsolvedStretch, ...]
+    met_stretches: tuple[MetStretch, ...]
     least: Sample | None
     greatest: Sample | None
-    refined: bool
+    is_refined: bool
     samples: tuple[Sample, ...]
     spacing: float
-    complete: bool
+    is_complete: bool
 
     @property
     def is_met_nowhere(self) -> bool:

@@ -43,7 +43,7 @@ class CoordinateChoice:
     """
 
     names: tuple[str, ...]
-    driven: tuple[bool, ...]
+    is_driven: tuple[bool, ...]
     rows: Array
     S: Array
     left_out: tuple[str, ...]  # bodies whose spin has no inertia, and is no part of the motion

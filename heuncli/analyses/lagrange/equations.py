@@ -85,8 +85,8 @@ def invert_inertia(names: Sequence[str], epsilon: Array) -> Array:
 class VelocityTerms:
     """Computes the velocity terms C at given rates, from the freed scene with only its velocity terms at work."""
 
-    freed: FreedScene
-    chosen: CoordinateChoice
+    freed_scene: FreedScene
+    choice: CoordinateChoice
     partials: Partials
     epsilon: Array
     t: float

@@ -33,7 +33,7 @@ class FreedScene:
 
     scene: PreparedScene
     runner: Runner
-    of: PreparedScene
+    original: PreparedScene
 
     @property
     def layout(self) -> Layout:

@@ -28,15 +28,15 @@ class Instant:
     solution and linearised equations
     """
 
-    words: str
+    heading: str
     t: float
     setup: Setup
-    there: Evaluation
-    freed: FreedScene
+    driven_recovered: Evaluation
+    freed_scene: FreedScene
     state: Array
     holding: Array
-    here: Evaluation
-    found: LinearisedEquations
+    freed_recovered: Evaluation
+    linear_equations: LinearisedEquations
 
     @property
     def recovery(self) -> Recovery:

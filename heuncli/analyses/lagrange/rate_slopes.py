@@ -24,7 +24,7 @@ class RateSlopes:
     """
 
     layout: Layout
-    found: LinearisedEquations
+    linear_equations: LinearisedEquations
     turns: Array
     shifts: Array
     spins: Array

@@ -21,8 +21,8 @@ class ApparentInertia:
 
     name: str
     unit: str
-    locked: float | None
-    free: float
+    others_locked: float | None
+    others_free: float
 
 
 @record
@@ -34,7 +34,7 @@ class SectionForces:
     """
 
     s: Array
-    reach: Array
+    scale: Array
     is_run: bool
 
 
@@ -67,9 +67,9 @@ class LagrangeResults:
 
     title: str
     t: float
-    at: str
+    instant_text: str
     names: tuple[str, ...]
-    driven: tuple[bool, ...]
+    is_driven: tuple[bool, ...]
     values: Array
     rates: Array
     accelerations: Array
@@ -87,13 +87,13 @@ class LagrangeResults:
     reciprocal_energy: float
     scale: Array
     residual: float
-    seen: tuple[ApparentInertia, ...]
+    apparent_inertias: tuple[ApparentInertia, ...]
     sections: Mapping[str, SectionForces]
     partials: Mapping[str, Any]
     left_out: tuple[str, ...]
     notes: tuple[str, ...] = ()
     state_space: StateSpace | None = None
-    blows: tuple[ImpulseResults, ...] = ()
+    impulses: tuple[ImpulseResults, ...] = ()
 
     @property
     def total_force(self) -> Array:
@@ -130,14 +130,14 @@ class InertiaCurve:
 
     title: str
     name: str
-    driven: bool
+    is_driven: bool
     mean: float
     values: Array
     rate: float
     epsilon: Array
     half: Array
     forces: Mapping[str, Array]
-    reach: float
+    force_scale: float
 
     @property
     def total_force(self) -> Array:

@@ -38,8 +38,8 @@ class BodyAction(NamedTuple):
 
     kind: str
     name: str
-    by: str
-    on: Attachment
+    source: str
+    attachment: Attachment
     is_line: bool
 
 

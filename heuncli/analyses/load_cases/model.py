@@ -35,7 +35,7 @@ class PointAction:
 
     kind: str
     name: str
-    by: str
+    source: str
     point: str
     at: Array
     force: Array
@@ -121,8 +121,8 @@ class LoadCase:
     time: float
     actions: tuple[PointAction, ...]
     field: AccelerationField
-    struck: bool = False
-    over: float | None = None
+    is_impulse: bool = False
+    averaging_time: float | None = None
 
 
 @record

@@ -25,7 +25,7 @@ CONSISTENCY_TOLERANCE = 1e-9  # relative: definitions agree to the last digit, i
 class UnitSystem(NamedTuple):
     """Consistent units: their names, and the size of each in SI."""
 
-    words: tuple[str, str, str, str]
+    names: tuple[str, str, str, str]
     force: float = 1.0
     length: float = 1.0
     mass: float = 1.0

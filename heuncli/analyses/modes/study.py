@@ -64,8 +64,8 @@ class SpecModes(NamedTuple):
     motions about it.
     """
 
-    here: LinearisedState
-    at: Literal["rest", "state"]
+    linearised_state: LinearisedState
+    state_kind: Literal["rest", "state"]
     modes: list[Mode]
 
 

@@ -130,7 +130,7 @@ def format_duration(interval: ZeroInterval, motion: MotionSearch) -> str:
 class LockApproach(NamedTuple):
     """A closest approach to gimbal lock, or an interval in it, with the sine of the remaining angle."""
 
-    passed: ZeroInterval
+    interval: ZeroInterval
     sine: float
 
 

@@ -74,7 +74,7 @@ class StiffnessResults:
     decay: float
     oscillation: float
     time: float
-    own: float
+    motion_rate: float
     steps: tuple[StepLimits, ...]
     ratio: float
     share: float
@@ -90,13 +90,13 @@ class GrowthResults:
     """
 
     rate: float
-    times: float  # ln of it
+    logarithm: float  # ln of it
     exponential: bool
     directions: int
     horizon: float | None
-    expected: float | None
-    until: float  # [s]
-    stopped: str | None = None
+    expected_horizon: float | None
+    end_time: float  # [s]
+    stop_reason: str | None = None
 
 
 @record
@@ -119,9 +119,9 @@ class Probe:
     closure: LargestCondition | None
     stiffness: StiffnessResults | None
     growth: GrowthResults | None
-    across: GrowthResults | None  # out of the plane
+    out_of_plane: GrowthResults | None  # out of the plane
     reasons: dict[str, str]
-    more: tuple[tuple[str, str, int], ...]
+    further_events: tuple[tuple[str, str, int], ...]
     trouble: tuple[str, ...] = ()  # of the default method, worst first
     others: tuple[str, ...] = ()  # of other methods
 

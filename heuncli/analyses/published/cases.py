@@ -33,7 +33,7 @@ class PublishedNumber(NamedTuple):
     """One number: its path, its time (None for a state), its text, and the line of its file."""
 
     path: str
-    at: float | None
+    time: float | None
     text: str
     line: int
 
@@ -55,7 +55,7 @@ class PublishedCase(NamedTuple):
     """A case: its name, description, source, spec as text, and tables of numbers."""
 
     name: str
-    about: str
+    description: str
     source: str
     spec: str
     tables: tuple[PublishedTable, ...]

@@ -35,10 +35,10 @@ class NumberComparison(NamedTuple):
     """A published number and heun's, with the error that heun states, and the permitted difference."""
 
     number: PublishedNumber
-    printed: PrintedNumber
-    found: float
-    stated: float
-    allowed: float
+    published: PrintedNumber
+    computed: float
+    stated_error: float
+    tolerance: float
     verdict: str
 
     @property

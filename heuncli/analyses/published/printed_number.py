@@ -16,7 +16,7 @@ class PrintedNumber(NamedTuple):
 
     text: str
     value: float
-    last: float
+    last_digit: float
 
     @property
     def digit_count(self) -> int:

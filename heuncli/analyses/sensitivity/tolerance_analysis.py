@@ -38,8 +38,8 @@ class SpreadExtremes(NamedTuple):
     """Effect of one number within its tolerance, with the distances at which the measure is smallest and largest."""
 
     contribution: Contribution
-    lowers: float
-    raises: float
+    lowest_at: float
+    highest_at: float
 
 
 Evaluate = Callable[[Mapping[str, float]], NoisyValue]  # the measure, for given distances of numbers from their values

@@ -48,8 +48,8 @@ class StoredSweep(NamedTuple):
 
     number: int
     head: SweepHead
-    done: int
-    begun: str
+    variant_count: int
+    start_time: str
 
 
 class Store:

@@ -23,7 +23,7 @@ class DesignVariable(NamedTuple):
     low: float
     high: float
     unit: str
-    own: float | None = None
+    spec_value: float | None = None
 
     def to_value(self, place: float) -> float:
         """Return the value at a place of [0, 1], rounded to significant digits, so that the value shown is the value
@@ -55,7 +55,7 @@ class TuneGoal(NamedTuple):
 
     measure: str
     unit: str
-    greatest: bool
+    is_maximised: bool
 
     @property
     def sign(self) -> float:
@@ -93,7 +93,7 @@ class TuneTask:
     variables: tuple[DesignVariable, ...]
     goal: TuneGoal
     constraints: tuple[TuneConstraint, ...] = ()
-    most: int = 400
+    max_variants: int = 400
     precision: float = 1e-6
     seed: int = 0
 
@@ -103,8 +103,8 @@ class MeasureReading(NamedTuple):
 
     value: float | None
     error: float | None = None
-    at: float | None = None
-    word: str = ""
+    instant: float | None = None
+    reason: str = ""
 
 
 class TrialOutcome(NamedTuple):
@@ -168,8 +168,8 @@ class ToleranceMove(NamedTuple):
     true distance is smaller or larger
     """
 
-    by: float
-    until: str
+    distance: float
+    limit: str
 
 
 class ToleranceRange(NamedTuple):
@@ -193,15 +193,15 @@ class TuneResults:
     """
 
     task: TuneTask
-    own: TrialOutcome
+    spec_outcome: TrialOutcome
     history: tuple[Trial, ...]
     best: Trial | None
-    feasible: bool
+    is_feasible: bool
     ending: Ending
     gain: float | None
     floor: float
-    freedoms: tuple[ToleranceRange, ...]
-    active: tuple[bool, ...]
+    tolerance_ranges: tuple[ToleranceRange, ...]
+    active_constraints: tuple[bool, ...]
     scales: tuple[float, ...]
     failures: Mapping[str, int]
 

@@ -53,7 +53,7 @@ class Sample(NamedTuple):
     error: float = 0.0
     why: tuple[str, str] = ("", "")
     singular: bool = False
-    withheld: float | None = None
+    withheld_gap: float | None = None
 
     @property
     def side(self) -> int | None:
@@ -72,9 +72,9 @@ class CoursePrediction(NamedTuple):
 
     places: Array
     gaps: Array
-    off: Array
+    uncertainty: Array
     noise: float
-    most_off: Array
+    total_uncertainty: Array
 
 
 class CoursePeak(NamedTuple):

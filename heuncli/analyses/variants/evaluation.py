@@ -40,7 +40,7 @@ class MeasureValue(NamedTuple):
 
     value: float | None
     error: float | None = None
-    at: float | None = None
+    time: float | None = None
     word: Word = ""
 
 

@@ -71,8 +71,8 @@ class ReferenceComparison:
     setup: Setup
     reference: Trajectory
     times: Array
-    certain: DeterminateComponents
-    sections: bool
+    determinate: DeterminateComponents
+    has_sections: bool
 
     def compute_differences(self, other: Trajectory, weights: Weights = DIFFERENCE_ONLY) -> Errors:
         """Return the largest differences of another run from the reference, by kind; None where a kind cannot be

@@ -45,7 +45,7 @@ class MotionProblem:
     times: Array
     jumps: tuple[float, ...]
     deadline: float | None
-    ends: str = ""
+    end_note: str = ""
 
     @property
     def is_determined(self) -> bool:

@@ -54,7 +54,7 @@ class VerifiedReference:
     """
 
     reference: Reference
-    judge: ReferenceComparison
+    comparison: ReferenceComparison
     seconds: float
 
 

@@ -37,7 +37,7 @@ class ChartRow:
 
     method: str
     attitude: str
-    fixed: bool
+    has_fixed_step: bool
     local: float
 
 
@@ -59,8 +59,8 @@ class ChartRun:
     steps: int | None = None
     evaluations: int | None = None
     error: Errors = NOT_KNOWN
-    bounded: frozenset[str] = frozenset()
-    at: float | None = None
+    upper_bounds: frozenset[str] = frozenset()
+    failure_time: float | None = None
     code: str = ""
     reason: str = ""
     front: bool = False
@@ -77,9 +77,9 @@ class Reference:
     notes: further remarks
     """
 
-    words: str
-    own: Errors
-    until: float
+    description: str
+    error: Errors
+    last_time: float
     instants: int
     horizon: float | None = None
     notes: tuple[str, ...] = ()

@@ -38,8 +38,8 @@ ReportProgress = Callable[[int, int, str], None]  # steps done, steps in all, na
 class TimedRun:
     """A run that is being repeated: its row, the function that repeats it, and the processor seconds so far."""
 
-    charted: ChartRun
-    again: Callable[[], float]
+    chart_run: ChartRun
+    repeat: Callable[[], float]
     seconds: list[float]
 
     @property

@@ -57,7 +57,7 @@ class ProcessDeath(NamedTuple):
     code: its exit code, negative for a signal
     """
 
-    how: str
+    description: str
     code: int = 0
 
     @property

@@ -90,10 +90,10 @@ class _Clock:
     limit = 0.0
     phase = DEFAULT_PHASE
     subject = ""  # the file at work, if there are several
-    rung: str | None = None  # the phase in which an alarm ended the work
-    resting = 0.0  # no alarm acts before this time
+    interrupted_phase: str | None = None  # the phase in which an alarm ended the work
+    pause_end = 0.0  # no alarm acts before this time
     hard_end = 0.0
-    ending = _thread.allocate_lock()  # held by the thread that ends the process, or that ends the limit
+    end_lock = _thread.allocate_lock()  # held by the thread that ends the process, or that ends the limit
     silent = False  # in a worker process, whose parent reports
 
 

@@ -19,7 +19,7 @@ from heuncli.base.named_tuples import NamedTuple
 class ArgumentKind(NamedTuple):
     """A type of argument: the test of a value, the type in words, and an example in Python."""
 
-    is_met: Callable[[object], bool]
+    accepts: Callable[[object], bool]
     words: str
     example: str
 

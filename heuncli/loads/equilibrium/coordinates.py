@@ -36,7 +36,7 @@ class Coordinates:
     layout: Layout
     weights: Array
     shifts: Mask
-    answers: Indices
+    result_indices: Indices
     rates: Indices
     balls: Indices
     turns: Indices

@@ -38,7 +38,7 @@ class SpectralDecomposition:
     X: Array
     inverse: Array
     B: Array
-    lost: int
+    defect: int
 
     @property
     def single_count(self) -> int:

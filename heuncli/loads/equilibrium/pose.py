@@ -21,7 +21,7 @@ class Pose:
 
     t: float
     state: Array
-    recovered: Evaluation
+    evaluation: Evaluation
     accelerations: Array
     holding: Array
 

@@ -20,7 +20,7 @@ from heuncli.results.results import Array
 class RosenbrockStep:
     """The step from a pose up to s = h; d (f,): correction along the law's directions."""
 
-    own: RestLaw
+    law: RestLaw
     h: float
     d: Array
 

@@ -65,7 +65,7 @@ class RestPose:
     steps: int
     evaluations: int
     doubt: float
-    turn: SlowestPoint
+    slowest: SlowestPoint
 
 
 @record
@@ -73,7 +73,7 @@ class SlowestPoint:
     """The slowest point of a path before it may deviate: its state (n_state,), and the possible deviation, (n,)."""
 
     state: Array
-    astray: Array
+    deviation: Array
     push: float
 
 

@@ -41,15 +41,15 @@ class RestLaw:
 
     law: LinearisedEquations
     T: Array
-    back: Array
+    T_inverse: Array
     A: Array
     directions: SpectralDecomposition
     c: Array
     noise: Array
-    known: Array
-    summed: Array
-    bent: Array
-    rough: Array
+    eigenvalue_errors: Array
+    sum_rounding: Array
+    nonlinearity: Array
+    pose_rounding: Array
 
     @property
     def eigenvalues(self) -> Array:

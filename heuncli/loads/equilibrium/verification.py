@@ -38,9 +38,9 @@ class VerifiedPose:
     steps, evaluations: totals over all searches
     """
 
-    found: RestPose
-    way: Array
-    elsewhere: RestPose | None
+    equilibrium: RestPose
+    displacement: Array
+    alternative: RestPose | None
     steps: int
     evaluations: int
 

@@ -45,7 +45,7 @@ class ActionEnd:
     body: int
     position: Array
     point: Array | None
-    apart: bool = False
+    is_offset: bool = False
 
 
 @record
@@ -69,8 +69,8 @@ class Action:
 
     kind: Literal["load", "joint", "drive", "stop", "coupling"]
     name: str
-    to: ActionEnd
-    from_: ActionEnd | None
+    to_end: ActionEnd
+    from_end: ActionEnd | None
     force: Array
     moment: Array
     spread: tuple[DistributedForce, ...] = ()

@@ -40,7 +40,7 @@ SectionValues = Mapping[str, float]
 class CutGroup:
     """Cuts of one kind: which ones, (k,), and their properties, numbers or arrays over all cuts."""
 
-    on: Mask
+    cut_mask: Mask
     kind: str
     values: Mapping[str, float | Array]
 

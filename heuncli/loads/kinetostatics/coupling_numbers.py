@@ -31,7 +31,7 @@ class CouplingNumber:
     rows: tuple[int, ...]
     is_moment: bool = False
     factor: float = 0.0
-    linear: bool = False
+    is_linear: bool = False
 
     @property
     def is_sum(self) -> bool:

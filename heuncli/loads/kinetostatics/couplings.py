@@ -38,7 +38,7 @@ class PartLoad:
     m: Array
     m_a: Array
     multiplier: Array
-    pushed: Array | None = None
+    separating_force: Array | None = None
 
     @property
     def force(self) -> Array:

@@ -62,16 +62,16 @@ class Cuts:
     points: Array
     s: Array | None
     side: Array
-    near: float
+    plane_tolerance: float
     pieces: Array
     centroids: Array | None
-    about: str | tuple[int, Array]
+    moment_reference: str | tuple[int, Array]
     line: bool
     properties: Properties | None
     strength: float | None
     warnings: tuple[str, ...]
     form: CompositeSolid | None = None
-    struck: bool = False
+    is_impulse: bool = False
 
     @cached_property
     def auto_properties(self) -> CutProperties:

@@ -96,7 +96,7 @@ class GroundLoad(NamedTuple):
 
     force: Array
     moment: Array
-    about: Array
+    point: Array
 
     def add(self, other: GroundLoad) -> GroundLoad:
         """Add another part of the same coupling, about the point of the first."""

@@ -35,10 +35,10 @@ class Attachment:
     otherwise
     """
 
-    at: Array
+    point: Array
     force: Array
     moment: Array
-    to: Array | None = None
+    line_end: Array | None = None
 
     def share_on_pieces(self, cuts: Cuts) -> tuple[Array, Array]:
         """Return the share of it that acts on the pieces, (k,), and that share times its place, (k, 3).
@@ -246,9 +246,9 @@ class CutPlaces:
     cuts: Cuts
     R: Array
     origin: Array
-    at: Array
-    about: Array
-    centre: Array
+    cut_points: Array
+    moment_points: Array
+    centroids: Array
 
     def to_world_axes(self, v: Array, output: Array | None = None, is_position: bool = False) -> Array:
         """Return world components (n_t, k, 3) of a vector (3, n_t, k) in body axes, or of a position from the

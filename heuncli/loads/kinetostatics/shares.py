@@ -57,12 +57,12 @@ class Shares:
     none
     """
 
-    all: tuple[str, ...]
+    all_causes: tuple[str, ...]
     causes: tuple[str, ...]
-    column: CauseResults
+    cause_results: CauseResults
     joints: list[JointLoads]
     couplings: list[CouplingLoads]
-    applied: list[Action]
+    applied_actions: list[Action]
 
     @property
     def rigid_couplings(self) -> list[CouplingLoads]:

@@ -42,7 +42,7 @@ class SectionModuli:
     c2: Number
     W_T: Number
     shear: Number
-    round: bool
+    is_round: bool
     largest: fields.Largest
 
 

@@ -72,7 +72,7 @@ class Stretch:
     jumps (m,): whether the loads may jump there
     """
 
-    asked: Cuts
+    cuts: Cuts
     corners: Array
     jumps: Mask
 
@@ -217,7 +217,7 @@ class StretchPeaks(NamedTuple):
 
     height: Array
     piece: Indices
-    at: Array
+    position: Array
 
 
 def find_peaks(values: Array) -> tuple[StretchPeaks, StretchPeaks]:

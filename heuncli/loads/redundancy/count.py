@@ -38,11 +38,11 @@ class RedundancyCount(NamedTuple):
     generic: int
     at_start: int
     dependent: int
-    closed: int
+    active_rows: int
     stress: SelfStress | None
-    open: int
+    remaining: int
     giving: tuple[str, ...] = ()
-    here: CachedStress | None = None
+    start_stress: CachedStress | None = None
 
 
 def count_redundancy(scene: PreparedScene, runner: Runner, stage_cache: Stages = NO_CACHE) -> RedundancyCount:

@@ -44,10 +44,10 @@ class SelfStress:
     count: Array
     length: float
     least: Array
-    left: Array
+    largest_dropped: Array
     dependent: Array
     multipliers: Array  # (n_t, rows, k) of the closure rows
-    coupled: Array  # (rows,) weight of a coupling's multiplier as a share: 1, for a couple 1/length; 0 for joints
+    coupling_scale: Array  # (rows,) weight of a coupling's multiplier as a share: 1, for a couple 1/length; 0 for joints
 
     def has_share(self, shares: Array, length: float = 1.0) -> Mask:
         """Return whether a self-stress has a share in components (..., n_t, c, k) -> (..., n_t, c); for moments give
@@ -69,8 +69,8 @@ class StressPoses:
     times: Array
     states: Array
     gap: Array
-    closed: Array
-    chosen: Array
+    is_active: Array
+    is_independent: Array
     f: Array
     m: Array
     R: Array
@@ -162,8 +162,8 @@ def find_coupling_scale(layout: Layout, length: float) -> Array:
 class SingularValues(NamedTuple):
     """The smallest singular value of an island's J that is kept, and the largest that is not, relative, (n_t,)."""
 
-    kept: Array
-    left: Array
+    smallest_kept: Array
+    largest_dropped: Array
 
 
 def _null_space(J: Array, island: Island, is_active: Array, is_independent: Array) -> tuple[Array, SingularValues]:

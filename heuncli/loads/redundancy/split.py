@@ -36,7 +36,7 @@ class StressChoice:
     """
 
     shares: Array
-    answers: Array
+    responses: Array
     multipliers: Array
 
     def apply(self, joints: Sequence[JointLoads], states: BodyStates) -> tuple[list[JointLoads], Array]:
@@ -71,9 +71,9 @@ class StressSplit:
     """
 
     joints: list[JointLoads]
-    more: Array | None  # what they add to the multipliers of the closure rows, (n_t, rows)
-    undecided: SelfStress | None
-    stress: SelfStress | None
+    added_multipliers: Array | None  # what they add to the multipliers of the closure rows, (n_t, rows)
+    initial_stress: SelfStress | None
+    remaining_stress: SelfStress | None
     choices: tuple[StressChoice, ...]
     words: tuple[str, ...]
 

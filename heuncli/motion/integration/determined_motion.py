@@ -25,7 +25,7 @@ class DeterminedMotion:
     """
 
     is_so: bool
-    told: tuple[str, ...]
+    notes: tuple[str, ...]
 
     def add_to_block(self, block: Block) -> Block:
         """Add the notes to the block `model`, next to those on reductions that were made or not made."""

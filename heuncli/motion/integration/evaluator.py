@@ -44,10 +44,10 @@ class Evaluation:
     rows: Table
     parts: Table  # of the rows that are sums
     gap: Array
-    idle: Array
+    massless_count: Array
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
     residual: Array  # of all rows, J Vdot + gamma at the accelerations found, relative to its terms
-    may_stay: Array  # the residual that rows left out as dependent may have
+    allowed_residual: Array  # the residual that rows left out as dependent may have
     holding: Array  # (n_t, contacts and latch places): 0 open, 1 closed, also if others close it (Layout.closed)
     causes: Columns | None = None  # (n_t, n_c): one column per load row, then CAUSES; their sum is all
 

@@ -100,20 +100,20 @@ class Trajectory:
     seconds: float
     segments: Segments = NO_SEGMENTS  # without discontinuities, contact events or impulses
     # start records of the first step, of some others and of those after impulses
-    kept: StepRecords = NO_RECORDS
+    records: StepRecords = NO_RECORDS
     pivots: Array = np.zeros(0)  # least pivot of the closures in each step
-    settled: Array = np.zeros(0)  # for each step, whether its stages were projected onto the closures
+    is_projected: Array = np.zeros(0)  # for each step, whether its stages were projected onto the closures
     branches: Array = np.zeros((0, 0))
-    turned: Array = np.zeros(0)
-    undecided: int = 0
-    stopped: str | None = None  # the rope that would have to push just after the last instant
-    ended: bool = False  # ended by its ending condition
-    behind: Array = np.zeros(0)  # branches that hold after the last step
-    blows: tuple[ImpulseEvent, ...] = ()
+    branch_changed: Array = np.zeros(0)
+    uncertain_count: int = 0
+    pushing_rope: str | None = None  # the rope that would have to push just after the last instant
+    ended_by_condition: bool = False  # ended by its ending condition
+    final_branches: Array = np.zeros(0)  # branches that hold after the last step
+    impulse_events: tuple[ImpulseEvent, ...] = ()
     holding: Array = np.zeros((1, 0))  # (n_steps + 1, contacts): closed in each step, and after the last one
     notes: tuple[str, ...] = ()  # notes on contacts
-    courses: StepPolynomials | None = None
-    within: Callable[[Array], Array] | None = None  # for other steps than the kernel's: returns states at instants
+    polynomials: StepPolynomials | None = None
+    interpolate: Callable[[Array], Array] | None = None  # for other steps than the kernel's: returns states at instants
 
     @property
     def end_time(self) -> float:

@@ -44,10 +44,10 @@ class Elimination:
     K: Array
     rows: Indices
     columns: Indices
-    right: Array
-    left: Array
-    unsure: Array
-    known: Array
+    right_null: Array
+    left_null: Array
+    null_errors: Array
+    entry_errors: Array
 
     def solve(self, forces: Array) -> Array:
         """Solve K x = forces (f, m) for forces that vanish on `left_null`; x is zero along what is indifferent."""
@@ -68,7 +68,7 @@ class Indifference:
     """
 
     T: Array
-    found: Elimination
+    elimination: Elimination
     reach: float
 
     @property
@@ -87,13 +87,13 @@ class IndifferentMotions:
     of at most entry_errors (m, m); soft motions keep their digits there
     """
 
-    right: Array
-    left: Array
-    unsure: float
-    held: Array
-    to: Array
+    right_null: Array
+    left_null: Array
+    error: float
+    compliance: Array
+    to_pivots: Array
     K: Array
-    known: Array
+    entry_errors: Array
 
     def mutual_stiffness(self, X: Array) -> Array:
         """Return the stiffness of motions (f, k) among each other, (k, k) [1/s^2]."""

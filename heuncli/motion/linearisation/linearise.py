@@ -36,7 +36,7 @@ class LinearisedEquations:
     by_rate: Array  # (n, n) d accelerations / d rates
     tangent: Array  # (n, f) orthonormal, by the layout's weights: displacements that the closures admit
     drift: Array  # (n, f) change of rates that a displacement along the tangent needs: 0 where nothing moves
-    across: Array  # (n, m) smallest displacements that open one of the m independent closure rows by 1 m
+    opening_directions: Array  # (n, m) smallest displacements that open one of the m independent closure rows by 1 m
     twists: Array  # (n_b, 6, n) of each body, tree order: turn, and shift of its centre of mass; world axes
     attitudes: Array  # (n_b, 3, 3) body to world, tree order
     centres: Array  # (n_b, 3) of mass
@@ -44,7 +44,7 @@ class LinearisedEquations:
     omega: Array  # (n_b, 3)
     velocities: Array  # (n_b, 3) of the centres
     mass: Array  # (n, n) mass matrix of the tree, without artificial inertia
-    posed: PoseDirections | None = None  # where rows constrain speeds
+    pose_directions: PoseDirections | None = None  # where rows constrain speeds
 
 
 @record

@@ -19,13 +19,13 @@ class SceneModes:
     """
 
     title: str
-    at: Literal["rest", "state"]
-    steady: bool  # something moves steadily; the modes are seen from its frame
-    held: bool  # there are drives, and they are held
+    reference: Literal["rest", "state"]
+    is_steady: bool  # something moves steadily; the modes are seen from its frame
+    has_held_drives: bool  # there are drives, and they are held
     modes: tuple[Mode, ...]
     shapes: tuple[dict[str, complex], ...]
     largest: tuple[tuple[str, ...], ...]  # the coordinates that move most in each mode, lengths relative to the size
-    without: tuple[str, ...] = ()  # forces left out and drives held, as `forces.push`
+    omitted_paths: tuple[str, ...] = ()  # forces left out and drives held, as `forces.push`
 
     def to_block(self) -> dict[str, Any]:
         """Return the modes as in the JSON output."""

@@ -34,9 +34,9 @@ class ReducedEquations:
     A11: Array
     A21: Array
     A22: Array
-    pushed: Array  # (f,) accelerations left at the state itself
-    loads: float  # magnitude of the terms of that sum
-    terms: float  # magnitude of the terms of the stiffness
+    remaining_acceleration: Array  # (f,) accelerations left at the state itself
+    load_scale: float  # magnitude of the terms of that sum
+    stiffness_scale: float  # magnitude of the terms of the stiffness
 
     @property
     def count(self) -> int:
@@ -174,7 +174,7 @@ class MasslessSpin:
 
     body: int
     axis: Array
-    along: Array
+    tangent: Array
 
     def rate_change(self, linear: LinearisedEquations, T: Array) -> Array:
         """Return the change of the rate by displacements T if w stayed: w . (turn x n), (f,)."""

@@ -45,7 +45,7 @@ class RollingEquations:
     T: Array
     V: Array
     A: Array
-    pushed: Array
+    remaining_acceleration: Array
 
 
 def has_rolling(linear_state: LinearisedState) -> bool:

@@ -40,10 +40,10 @@ class LinearisedState:
     runner: Runner
     t: float
     holding: Array
-    found: LinearisedEquations
-    at: Evaluation
+    linear: LinearisedEquations
+    evaluation: Evaluation
     system: ReducedEquations
-    loose: IndifferentMotions
+    indifferent: IndifferentMotions
     reach: float  # how far rounding moves the rest pose [rad, or relative to the size]
 
     @property

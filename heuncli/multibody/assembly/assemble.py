@@ -24,11 +24,11 @@ from heuncli.scene.shapes.rotations import cross_rows
 class StartPoses:
     """The poses at the start, and how they were found; the fields are described at PoseAssembly."""
 
-    drawn: AssemblyPoses
+    drawn_poses: AssemblyPoses
     poses: AssemblyPoses
     tree: PlacementTree
-    fitted: set[int]
-    folded: tuple[str, ...]
+    fitted_bodies: set[int]
+    folded_joints: tuple[str, ...]
     gap: float
 
 

@@ -62,7 +62,7 @@ class JointCondition:
     q: Array
     axis: Array
     to_axis: Array
-    across: Array
+    normals: Array
     pose: JointConstraint
     rate: JointConstraint
     relative: Array

@@ -28,9 +28,9 @@ class AssemblyIsland:
     """
 
     members: list[int]
-    via: list[int]
+    tree_joints: list[int]
     closures: list[int]
-    above: int
+    parent: int
 
 
 FitIsland = Callable[[AssemblyIsland, bool], None]

@@ -35,7 +35,7 @@ class MemberStep:
     own: Array
     follow: Array
     N: Array
-    before: int
+    parent: int
     rest: Array
     lack: Array
 

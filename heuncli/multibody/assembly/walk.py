@@ -28,7 +28,7 @@ class PlacementTree:
     """
 
     order: list[int]
-    via: list[int]
+    tree_joint: list[int]
     parent: list[int]
     depth: list[int]
 

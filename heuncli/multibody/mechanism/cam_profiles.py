@@ -35,8 +35,8 @@ class Flank:
     centres: Array
     places: Array
     radius: Array
-    leaves: Array
-    falls_behind: Array
+    separation_rates: Array
+    lag_rates: Array
 
     def repeat_around(self, axis: Array, line: Array) -> Array:
         """Repeat a line of points (n, 3) as often as the lift is repeated in a turn of the disc, one after the

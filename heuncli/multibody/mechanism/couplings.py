@@ -77,7 +77,7 @@ class CouplingPart:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
-    apart: Array | tuple[float, float, float] = NO_VECTOR
+    separating_force: Array | tuple[float, float, float] = NO_VECTOR
     cam: CamShape | None = None
     radius: float = 0.0
     strand: int = 0
@@ -158,8 +158,8 @@ class Coupling:
 
     name: str
     rows: tuple[CoupledRow, ...]
-    given: spec.Coupling
-    stretched: CoupledRow | None = None
+    entry: spec.Coupling
+    stretched_row: CoupledRow | None = None
 
     @property
     def loading_rows(self) -> tuple[CoupledRow, ...]:

@@ -42,7 +42,7 @@ class GearMember:
     point: Array
     axis: Array
     coordinates: tuple[Coordinate, ...]
-    along: Coordinate | None
+    travel: Coordinate | None
 
     @property
     def sign(self) -> float:

@@ -292,7 +292,7 @@ class Law(NamedTuple):
     name: str
     quantity: Literal["angle", "travel", "length"]
     value: Expression
-    of_rope: bool = False
+    is_rope: bool = False
 
     @property
     def path(self) -> str:
@@ -328,7 +328,7 @@ class Mechanism:
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     loads: tuple[Load, ...]
-    blows: tuple[Blow, ...] = ()
+    impulses: tuple[Blow, ...] = ()
     stops: tuple[Stop, ...] = ()
     conditions: tuple[Condition, ...] = ()
     points: Mapping[str, NamedPoint] = MappingProxyType({})
@@ -424,7 +424,7 @@ class Assembly:
     rotation: Array
     velocity: Array
     angular_velocity: Array
-    chosen: tuple[str, ...]
+    start_choices: tuple[str, ...]
     gap: float
-    moved: tuple[str, ...] = ()
-    started: tuple[str, ...] = ()
+    displaced_bodies: tuple[str, ...] = ()
+    start_motions: tuple[str, ...] = ()

@@ -30,9 +30,9 @@ class Reduction:
     scene: PreparedScene
     embed: Callable[[Array, Array], Array]
     restrict: Callable[[float, Array], Array]
-    told: tuple[str, ...]
-    hidden: tuple[str, ...] = ()
-    kept: tuple[str, ...] = ()
+    explanations: tuple[str, ...]
+    limitations: tuple[str, ...] = ()
+    exceptions: tuple[str, ...] = ()
 
 
 @record
@@ -43,7 +43,7 @@ class ReducedScene:
     """
 
     steps: tuple[Reduction, ...]
-    kept: tuple[str, ...]
+    exceptions: tuple[str, ...]
 
     @property
     def explanations(self) -> tuple[str, ...]:

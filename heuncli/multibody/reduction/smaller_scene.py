@@ -69,7 +69,7 @@ class BodyParts:
     The bodies of placements are numbered as in the larger scene.
     """
 
-    of: tuple[BodyPlacement, ...]
+    placements: tuple[BodyPlacement, ...]
     roots: tuple[int, ...]
 
     def get_placement(self, body: int) -> BodyPlacement:

@@ -42,7 +42,7 @@ class Spin:
 
     axis: Array
     moment: float
-    across: float
+    transverse_moment: float
     rate: float
 
     @property

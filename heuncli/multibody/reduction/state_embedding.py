@@ -35,9 +35,9 @@ class StateEmbedding:
     centres: bodies without parent, with their new centres
     """
 
-    at: Indices
+    indices: Indices
     constant: Array
-    mixed: tuple[tuple[Indices, Array], ...]
+    rotations: tuple[tuple[Indices, Array], ...]
     centres: tuple[MovedCentre, ...]
 
     def embed(self, times: Array, states: Array) -> Array:

@@ -25,7 +25,7 @@ class IdleSpin:
 
     body: int
     axes: Array
-    lent: Array
+    artificial_inertia: Array
 
 
 def find_idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:

@@ -50,7 +50,7 @@ class ValuePrograms(NamedTuple):
     """
 
     pack: Pack
-    at: dict[int, Program]
+    by_identity: dict[int, Program]
     drives: tuple[Program, ...]
 
     def find_program(self, e: Expression) -> Program:

@@ -32,7 +32,7 @@ class PreparedScene:
 
     mechanism: Mechanism
     start: Assembly
-    idle: tuple[IdleSpin, ...]
+    idle_spins: tuple[IdleSpin, ...]
     layout: Layout
 
     @property
@@ -111,7 +111,7 @@ class Arrangement:
     the start.
     """
 
-    idle: tuple[IdleSpin, ...]
+    idle_spins: tuple[IdleSpin, ...]
     omega: Array
     frame: LayoutFrame
 

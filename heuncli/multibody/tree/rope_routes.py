@@ -35,7 +35,7 @@ class RopePoint:
     turn: the pin's coordinate, times the factor to the sheave's rotation about its axis
     """
 
-    given: spec.Passage
+    passage: spec.Passage
     body: int
     point: Array
     axis: Array

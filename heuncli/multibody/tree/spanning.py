@@ -46,7 +46,7 @@ class TreeLink:
 class SpanningTree:
     """Bodies, parents first, each with the joint to its parent; and the joints that were cut."""
 
-    hangs: tuple[TreeLink, ...]
+    links: tuple[TreeLink, ...]
     cut: tuple[int, ...]
 
 

@@ -121,7 +121,7 @@ class FormattedNumber(NamedTuple):
     """
 
     row: LoadNumber
-    found: Sequence[tuple[ReportedRun, CaseExtremes]]
+    case_extremes: Sequence[tuple[ReportedRun, CaseExtremes]]
     unit: str
     size: float
     texts: Mapping[str, tuple[str, str]]

@@ -29,7 +29,7 @@ class CaseExtreme(NamedTuple):
     """
 
     value: float | str
-    at: float | None
+    time: float | None
     place: str | None
 
 
@@ -44,8 +44,8 @@ class CaseExtremes(NamedTuple):
     high: CaseExtreme
     error: float
     unit: str
-    parts_open: bool
-    whole: bool
+    is_partly_open: bool
+    is_known: bool
 
     @property
     def values(self) -> list[float]:
@@ -177,10 +177,10 @@ class GreatestOfCases(NamedTuple):
     unit: str
     high: Bound
     error: float
-    how: Style
+    number_style: Style
     size: float
     place: str
-    at: str
+    instant: str
 
     def format_value(self) -> str:
         """Format the largest value with its unit and its error."""

@@ -27,7 +27,7 @@ class LoadNumber(NamedTuple):
     label: str
     path: str
     family: str
-    even: bool = False
+    is_magnitude: bool = False
     vector: str = ""
 
 

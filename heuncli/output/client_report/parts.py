@@ -37,7 +37,7 @@ class ReportCell(NamedTuple):
     """A cell of a table; is_governing: whether its value governs, so that it is bold."""
 
     text: str
-    governs: bool = False
+    is_governing: bool = False
 
 
 class ReportTable(NamedTuple):

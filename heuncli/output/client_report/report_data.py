@@ -36,9 +36,9 @@ class ReportedRun:
     name: str
     title: str
     study: Study
-    kept: RunSnapshot
+    snapshot: RunSnapshot
     page: Page
-    searched: bool
+    is_searched: bool
 
     @property
     def results(self) -> Results:
@@ -85,9 +85,9 @@ class ReportData:
     digests: Mapping[str, str]
     runs: Sequence[ReportedRun]
     outcomes: Sequence[Outcome]
-    given: Sequence[str]
-    left_out: Sequence[str]
-    unchecked: Sequence[str]
+    options: Sequence[str]
+    omitted_cases: Sequence[str]
+    unchecked_scenes: Sequence[str]
     reduce: bool
     units: Units
     imprint: Imprint

@@ -85,7 +85,7 @@ class GoverningCase(NamedTuple):
     """The case that governs a section; rank: by which sections are compared, the first number counting most."""
 
     run: ReportedRun
-    size: tuple[float, ...]
+    rank: tuple[float, ...]
 
 
 def _find_governing_case(data: ReportData, name: str) -> GoverningCase:
@@ -140,8 +140,8 @@ class SectionUtilisation(NamedTuple):
     name: str
     run: ReportedRun
     mises: CaseExtremes
-    used: CaseExtremes | None
-    lacks: Sequence[str]
+    utilisation: CaseExtremes | None
+    uncertain_cases: Sequence[str]
 
     @property
     def is_known(self) -> bool:

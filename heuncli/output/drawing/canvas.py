@@ -26,8 +26,8 @@ class TerminalStyle(NamedTuple):
     """What a terminal shows: its number of columns, and whether it has braille and colours."""
 
     width: int
-    braille: bool
-    colours: bool
+    has_braille: bool
+    has_colours: bool
 
     @property
     def uses_letters(self) -> bool:

@@ -22,7 +22,7 @@ class Trace(NamedTuple):
     x: Array
     y: Array
     pen: int = 0
-    thin: bool = False
+    is_thin: bool = False
 
 
 class Band(NamedTuple):
@@ -53,10 +53,10 @@ class Polygon(NamedTuple):
     name: str
     corners: Array
     pen: int | None = None
-    filled: bool = False
-    solid: bool = False
+    is_filled: bool = False
+    is_opaque: bool = False
     width: float = 1.0
-    outlined: bool = True
+    has_outline: bool = True
 
 
 class Arrow(NamedTuple):
@@ -72,7 +72,7 @@ class Arrow(NamedTuple):
     by_y: float
     pen: int | None = None
     name: str = ""
-    told: str = ""
+    description: str = ""
 
 
 class Spot(NamedTuple):
@@ -86,7 +86,7 @@ class Spot(NamedTuple):
     text: str = ""
     pen: int | None = None
     shape: str = "circle"
-    filled: bool = False
+    is_filled: bool = False
     note: str = ""
 
 
@@ -109,7 +109,7 @@ class Symbol(NamedTuple):
     x: float
     y: float
     symbol: str
-    along: tuple[float, float] = (1.0, 0.0)
+    direction: tuple[float, float] = (1.0, 0.0)
     pen: int | None = None
     name: str = ""
 
@@ -138,7 +138,7 @@ class PlaceLabel(NamedTuple):
     text: str
     letter: str = ""
     pen: int | None = None
-    spare: bool = False
+    is_optional: bool = False
 
 
 class VerticalMark(NamedTuple):
@@ -151,7 +151,7 @@ class VerticalMark(NamedTuple):
     x: float
     text: str
     note: str = ""
-    above: bool = False
+    is_above: bool = False
 
 
 class Blank(NamedTuple):
@@ -208,9 +208,9 @@ class Scaling(NamedTuple):
     label: str
     low: float
     high: float
-    logarithmic: bool = False
-    named: tuple[tuple[float, str], ...] = ()
-    unlabelled: bool = False
+    is_logarithmic: bool = False
+    tick_texts: tuple[tuple[float, str], ...] = ()
+    hides_label: bool = False
 
     @property
     def shown_label(self) -> str:
@@ -239,10 +239,10 @@ class Panel(NamedTuple):
     y: Scaling
     items: tuple[Item, ...]
     height: float = HEIGHT
-    equal: bool = False
-    bare: bool = False
+    has_equal_scales: bool = False
+    is_bare: bool = False
     title: str = ""
-    layered: bool = False
+    is_layered: bool = False
 
 
 def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:

@@ -19,8 +19,8 @@ class PanelBox(NamedTuple):
     top: float
     right: float
     bottom: float
-    across: Scaling
-    up: Scaling
+    x_scaling: Scaling
+    y_scaling: Scaling
 
     def to_pixel_x(self, value: float) -> float:
         """Return the pixel of a value on the horizontal axis."""

@@ -46,7 +46,7 @@ class Mark(NamedTuple):
     y: float
     shape: str
     colour: str
-    filled: bool
+    is_filled: bool
     size: float = 4.0
 
 
@@ -64,9 +64,9 @@ class Text(NamedTuple):
     size: float = 12.0
     anchor: Literal["start", "middle", "end"] = "start"
     colour: str = "#000000"
-    bold: bool = False
-    turned: bool = False
-    halo: bool = False
+    is_bold: bool = False
+    is_vertical: bool = False
+    has_halo: bool = False
 
 
 Shape = Line | Area | Mark | Text
@@ -78,7 +78,7 @@ class VectorDrawing(NamedTuple):
     width: float
     height: float
     title: str
-    words: str
+    description: str
     shapes: Sequence[Shape]
 
 

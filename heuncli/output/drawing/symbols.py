@@ -22,7 +22,7 @@ class SymbolPart(NamedTuple):
     """
 
     points: Points
-    closed: bool = False
+    is_closed: bool = False
     fill: str = ""
 
 

@@ -54,7 +54,7 @@ class DeckNode(NamedTuple):
     """A point of the body that carries loads: its number, its place, and a label."""
 
     number: int
-    at: Array
+    place: Array
     label: str
 
 

@@ -54,7 +54,7 @@ class ActingLoad(NamedTuple):
     place: Array
     vector: Array
     pen: int
-    turns: bool = False
+    is_moment: bool = False
 
     @property
     def magnitude(self) -> float:
@@ -77,10 +77,10 @@ class ActingLoads(NamedTuple):
     is_impact: whether they are the impulses of an impact
     """
 
-    all: Sequence[ActingLoad]
-    spreads: Sequence[DistributedLoad]
-    open: Sequence[str]
-    struck: bool = False
+    loads: Sequence[ActingLoad]
+    distributed: Sequence[DistributedLoad]
+    indeterminate: Sequence[str]
+    is_impact: bool = False
 
     def select(self, *, moments: bool) -> list[ActingLoad]:
         """Return the forces, or the moments."""

@@ -50,7 +50,7 @@ class Extreme(NamedTuple):
 
     value: float
     s: float
-    at: float
+    time: float
 
 
 class BarLine(NamedTuple):
@@ -60,7 +60,7 @@ class BarLine(NamedTuple):
     values: (k,), nan where it is open
     """
 
-    at: float
+    time: float
     s: Array
     values: Array
     low: Extreme

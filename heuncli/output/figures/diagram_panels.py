@@ -37,7 +37,7 @@ class BarCurves(NamedTuple):
     pen: int
     bar: WholeBar
     lines: Mapping[str, BarLine]
-    reaches: Mapping[str, BarRange]
+    ranges: Mapping[str, BarRange]
 
     def find_extremes(self, quantity: str) -> tuple[Extreme, Extreme]:
         """Return the lowest and highest value of a quantity."""
@@ -69,7 +69,7 @@ class DisplayScales(NamedTuple):
 
     s: float
     value: float
-    up: float
+    sign: float
     units: tuple[str, str]
 
 

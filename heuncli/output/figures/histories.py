@@ -76,7 +76,7 @@ class PanelCourse(NamedTuple):
 class HorizontalAxis(NamedTuple):
     """The horizontal axis: its path (None for time), its display unit, and how many of these are one SI unit."""
 
-    over: str | None
+    path: str | None
     unit: str
     size: float
 

@@ -43,7 +43,7 @@ class ModeLines(NamedTuple):
     title: str
     one: list[Array]
     other: list[Array]
-    apart: bool
+    is_quarter_later: bool
 
 
 class MovingLine(NamedTuple):

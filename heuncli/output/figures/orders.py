@@ -27,7 +27,7 @@ class BalancedScene(NamedTuple):
     """A balance in a figure, and its name there (file and case); empty if it is the only one."""
 
     name: str
-    found: BalanceResults
+    results: BalanceResults
 
 
 def make_orders_figure(sources: Sequence[BalancedScene], units: Units) -> Figure:

@@ -24,8 +24,8 @@ class Plane(NamedTuple):
     """A plane: its directions (3,) to the right and upwards, its normal, and the names of the two directions."""
 
     right: Array
-    up: Array
-    across: Array
+    upward: Array
+    normal: Array
     names: tuple[str, str]
 
     @property

@@ -23,7 +23,7 @@ class CurveBounds(NamedTuple):
 
     low: Array
     high: Array
-    fine: bool
+    is_fine: bool
 
 
 def find_bounds(times: Array, values: Array, smooth: Mask, error: float) -> CurveBounds:

@@ -60,7 +60,7 @@ class SweepNumbers(NamedTuple):
     unit: str
     values: Array
     errors: Array
-    lost: tuple[str, ...]
+    missing_reasons: tuple[str, ...]
 
 
 class SweepTable(NamedTuple):
@@ -76,7 +76,7 @@ class SweepTable(NamedTuple):
     variables: tuple[SweepVariable, ...]
     measures: tuple[SweepNumbers, ...]
     codes: tuple[str, ...]
-    planned: int | None
+    n_planned: int | None
     random: bool | None = None
 
     @property
@@ -94,9 +94,9 @@ class SweepSelection(NamedTuple):
     """
 
     table: SweepTable
-    varied: tuple[SweepVariable, ...]
-    named: bool
-    held: tuple[str, ...]
+    variables: tuple[SweepVariable, ...]
+    has_named_axis: bool
+    fixed_texts: tuple[str, ...]
 
     @property
     def is_scattered(self) -> bool:

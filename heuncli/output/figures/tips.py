@@ -54,10 +54,10 @@ class LargestVector(NamedTuple):
 
     x: float
     y: float
-    size: float
+    magnitude: float
     error: float
-    at: float
-    steady: bool
+    time: float
+    is_constant: bool
 
 
 def make_tip_curves(

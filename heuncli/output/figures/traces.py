@@ -23,7 +23,7 @@ class PointPath(NamedTuple):
 
     name: str
     body: str
-    way: Array
+    positions: Array
 
 
 def make_paths(source: FigureSource, names: Sequence[str]) -> list[PointPath]:

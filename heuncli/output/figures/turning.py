@@ -30,7 +30,7 @@ TURN_TOLERANCE = 1e-6  # of a turn: tolerance for a run that ends with a whole t
 class VectorSource(NamedTuple):
     """Vectors that are evaluated at instants: (n,) to (n, k, 3), and their errors (k,)."""
 
-    at: Callable[[Array], Array]
+    evaluate: Callable[[Array], Array]
     errors: Array
 
 

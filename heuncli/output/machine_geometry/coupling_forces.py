@@ -28,8 +28,8 @@ class CouplingForce(NamedTuple):
     """
 
     name: str
-    on: str
-    places: Array
+    body: str
+    points: Array
     forces: Array
 
 

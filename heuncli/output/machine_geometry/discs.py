@@ -28,8 +28,8 @@ class Disc(NamedTuple):
     centre: Array
     axis: Array
     radius: float
-    solid: bool = True
-    spins: bool = True
+    is_solid: bool = True
+    has_spokes: bool = True
 
     @property
     def rim(self) -> Array:

@@ -29,7 +29,7 @@ class JointSymbol(NamedTuple):
     """
 
     name: str
-    what: str
+    load_kind: str
     joint: str
     symbols: tuple[str, str]
     slides: bool

@@ -51,7 +51,7 @@ class BodyGeometry(NamedTuple):
     points: Mapping[str, Array]
     surfaces: tuple[Surface, ...]
     lines: tuple[Array, ...]
-    spread: bool = False
+    is_ellipsoid: bool = False
     bars: tuple[Array, ...] = ()
 
     @property
@@ -97,12 +97,12 @@ class Machine(NamedTuple):
     bodies: tuple[BodyGeometry, ...]
     joints: tuple[JointGeometry, ...]
     lines: tuple[LineGeometry, ...]
-    grounded: Mapping[str, Array]
+    ground_points: Mapping[str, Array]
     paths: tuple[Array, ...] = ()
     belts: tuple[BeltGeometry, ...] = ()
     ropes: tuple[RopeGeometry, ...] = ()
     marks: tuple[Mark, ...] = ()
-    acting: tuple[JointSymbol, ...] = ()
+    joint_symbols: tuple[JointSymbol, ...] = ()
 
 
 def make_machine(spec: Spec, faces: int = ROUND_FACES, scene: PreparedScene | None = None) -> Machine:

@@ -38,10 +38,10 @@ class FixedMark(NamedTuple):
     """
 
     symbol: str
-    told: str
+    description: str
     body: str
     place: Array
-    along: Array
+    direction: Array
     name: str = ""
 
     def locate(self, poses: Poses) -> tuple[Array, Array]:
@@ -56,7 +56,7 @@ class LengthMark(NamedTuple):
     """
 
     symbol: str
-    told: str
+    description: str
     ends: tuple[tuple[str, Array], tuple[str, Array]]
     length: float
     sign: float
@@ -74,7 +74,7 @@ class RoadMark(NamedTuple):
     """The plane that a wheel rolls on, drawn at the contact point."""
 
     symbol: str
-    told: str
+    description: str
     wheel: RollingWheel
     name: str = ""
 

@@ -27,8 +27,8 @@ class SimplifiedMesh(NamedTuple):
 
     corners: Array
     triangles: IndexArray
-    number: IndexArray
-    cell: float
+    corner_numbers: IndexArray
+    cell_size: float
 
 
 def simplify_mesh(corners: Array, triangles: IndexArray, max_triangles: int = MAX_TRIANGLES) -> SimplifiedMesh:

@@ -35,8 +35,8 @@ class BeltGeometry(NamedTuple):
     name: str
     carrier: str
     strands: Array
-    pulled: tuple[str, str]
-    counted: tuple[tuple[str, float], ...]
+    pulley_bodies: tuple[str, str]
+    travel_factors: tuple[tuple[str, float], ...]
 
     def compute_travel(self, coordinates: Block) -> Array:
         """Compute the travel of the belt at the instants of the results, (n,) [m]."""
@@ -61,8 +61,8 @@ class _GearingModel(NamedTuple):
 
     joints: Sequence[Any]
     bodies: Sequence[Any]
-    names: dict[int, str]
-    number: dict[str, int]
+    body_names: dict[int, str]
+    joint_numbers: dict[str, int]
 
 
 def make_pitch_geometry(spec: Spec) -> PitchGeometry:

@@ -24,9 +24,9 @@ class Poses(NamedTuple):
     """
 
     times: Array
-    places: dict[str, Array]
-    attitudes: dict[str, Array]
-    turns: dict[str, Array]
+    positions: dict[str, Array]
+    orientations: dict[str, Array]
+    quaternions: dict[str, Array]
 
     @property
     def first(self) -> Poses:

@@ -38,7 +38,7 @@ class SpanGeometry(NamedTuple):
     axis: Array | None = None
     at_a: float = 0.0
     at_b: float = 0.0
-    way: float = 1.0
+    direction: float = 1.0
 
 
 class ArcGeometry(NamedTuple):
@@ -48,10 +48,10 @@ class ArcGeometry(NamedTuple):
     axis: the arc runs counter-clockwise about it; in the axes of the body `axis_body`
     """
 
-    before: int
+    span: int
     body: str
     centre: Array
-    along: str
+    axis_body: str
     axis: Array
 
 
@@ -62,9 +62,9 @@ class RopeGeometry(NamedTuple):
     """
 
     name: str
-    strands: tuple[SpanGeometry, ...]
+    spans: tuple[SpanGeometry, ...]
     arcs: tuple[ArcGeometry, ...]
-    standing: tuple[tuple[tuple[str, Array], tuple[str, Array]], ...]
+    ground_ends: tuple[tuple[tuple[str, Array], tuple[str, Array]], ...]
 
 
 def collect_ropes(mechanism: Mechanism) -> tuple[RopeGeometry, ...]:

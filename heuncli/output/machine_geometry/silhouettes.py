@@ -29,7 +29,7 @@ class SolidEdges(NamedTuple):
     surface: Surface
     normals: Array
     pieces: Array
-    beside: Indices
+    adjacent_faces: Indices
 
 
 def find_solid_edges(surface: Surface) -> SolidEdges:

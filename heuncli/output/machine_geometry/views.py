@@ -32,10 +32,10 @@ VIEW_EXAMPLES = "such as --view z or --view 30,20"
 class SceneView(NamedTuple):
     """Unit vectors (3,) to the right, up, and to the eye; and a description of the direction of view."""
 
-    right: Array
-    up: Array
-    toward: Array
-    words: str
+    right_direction: Array
+    up_direction: Array
+    eye_direction: Array
+    description: str
 
     def project(self, points: Array) -> Array:
         """Project points or vectors (..., 3) onto the drawing plane, (..., 2)."""

@@ -20,10 +20,10 @@ class Change(NamedTuple):
     unit: str
     old: Value | str | None
     new: Value | str | None
-    allowed: float | None = None
-    why: str = ""
-    alike: int = 0
-    at: float | None = None
+    tolerance: float | None = None
+    reason: str = ""
+    n_similar: int = 0
+    time: float | None = None
 
     @property
     def difference(self) -> float | None:

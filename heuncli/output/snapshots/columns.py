@@ -54,7 +54,7 @@ class SnapshotColumn(NamedTuple):
     path: str
     unit: str
     kind: str
-    even: bool
+    is_magnitude: bool
     values: Array
 
 
@@ -83,7 +83,7 @@ class ResultView(NamedTuple):
 class SnapshotScope(NamedTuple):
     """Of which reports numbers are stored, and the labels of the scene."""
 
-    wanted: frozenset[str]
+    reports: frozenset[str]
     labels: Labels
 
     def collect_runs(self, results: Results) -> list[CutRun]:

@@ -21,9 +21,9 @@ class Bound(NamedTuple):
     """
 
     value: float
-    at: float | None
+    time: float | None
     case: str | None
-    alike: tuple[str, ...] = ()
+    similar: tuple[str, ...] = ()
     is_rounding: bool = False
 
     @property

@@ -31,18 +31,18 @@ class Outcome(NamedTuple):
     """
 
     kind: str
-    of: str
+    subject: str
     failure: str | None
     line: int = 1
     column: int = 1
     case: str = ""
     when: str = ""
-    expected: str = ""
-    found: str = ""
-    allowed: str = ""
+    expected_text: str = ""
+    found_text: str = ""
+    tolerance_text: str = ""
     block: Mapping[str, Any] = EMPTY_BLOCK
-    warned: bool = False
-    skipped: bool = False
+    is_warning: bool = False
+    is_skipped: bool = False
     note: str = ""
 
     @property

@@ -45,8 +45,8 @@ class SnapshotCourse(NamedTuple):
     sums: over the whole course of each column, if they were computed
     """
 
-    told: ResultView
-    own: Mapping[str, SnapshotColumn]
+    view: ResultView
+    columns: Mapping[str, SnapshotColumn]
     even: Mapping[str, Array]
     even_at: Array
     bounds: Mapping[str, SnapshotBounds]

@@ -30,9 +30,9 @@ class TablesQuery(NamedTuple):
     details: include what is shown only on request by name
     """
 
-    what: Selection
-    at: Array | None = None
-    every: bool = False
+    selection: Selection
+    instants: Array | None = None
+    show_all: bool = False
     details: bool = False
 
 

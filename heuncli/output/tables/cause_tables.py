@@ -64,12 +64,12 @@ class ShareLine(NamedTuple):
     """
 
     label: str
-    at: str
+    position: str
     row: NumberRow
     shares: dict[str, float]
     total: float | None
-    lost: bool = False
-    beside: bool = False
+    is_beyond_horizon: bool = False
+    is_uncertain: bool = False
 
 
 LineGroups = Sequence[tuple[str, Sequence[ShareLine]]]  # titles and lines

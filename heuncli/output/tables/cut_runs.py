@@ -43,7 +43,7 @@ class RunQuantity(NamedTuple):
     name: str
     label: str
     unit: str
-    even: bool = False
+    is_magnitude: bool = False
     bounds: tuple[str, ...] = ("min", "max")
     size: float = 1.0
 

@@ -63,7 +63,7 @@ class GroupExtremes(NamedTuple):
 
     group: RowGroup
     extremes: Extremes
-    beyond: Array | None = None
+    last_values: Array | None = None
 
 
 def drop_components(block: TableBlock) -> TableBlock:

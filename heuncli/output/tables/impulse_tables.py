@@ -50,8 +50,8 @@ class ImpactReport(NamedTuple):
     results: Results
     labels: Labels
     certain: Certainty
-    of: Magnitudes
-    along: Sequence[Mapping[str, Extremes]] = ()
+    magnitudes: Magnitudes
+    run_extremes: Sequence[Mapping[str, Extremes]] = ()
     details: bool = True
 
 

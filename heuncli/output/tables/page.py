@@ -59,12 +59,12 @@ class Page(NamedTuple):
     results: Results
     labels: Labels
     certain: Certainty
-    of: Magnitudes
-    beyond: Results | None = None
-    struck: Sequence[Mapping[str, Extremes]] = ()
-    along_runs: Mapping[str, RunExtremes] = NO_EXTREMES
+    magnitudes: Magnitudes
+    last_instant: Results | None = None
+    impact_extremes: Sequence[Mapping[str, Extremes]] = ()
+    run_extremes: Mapping[str, RunExtremes] = NO_EXTREMES
     details: bool = True
-    doubted: DoubtfulInstants = NO_DOUBT
+    doubtful: DoubtfulInstants = NO_DOUBT
 
     def make_columns(self, results: Results) -> Array:
         """Return all rows of all blocks as columns for the search, (n_t, n), magnitudes squared."""

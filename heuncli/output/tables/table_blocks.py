@@ -73,9 +73,9 @@ class NumberRow(NamedTuple):
     family: str
     kind: str
     values: Array
-    even: bool = False
+    is_magnitude: bool = False
     vector: str = ""
-    beside: float = 0.0
+    largest_term: float = 0.0
 
 
 class RowGroup(NamedTuple):
@@ -88,7 +88,7 @@ class RowGroup(NamedTuple):
     name: str
     note: str
     rows: tuple[NumberRow, ...]
-    whole: bool = False
+    is_whole_scene: bool = False
 
     @property
     def title(self) -> str:

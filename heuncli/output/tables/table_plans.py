@@ -36,9 +36,9 @@ class TablePlan(NamedTuple):
     heading: Callable[[Results, Labels], str]
     note: Callable[[str, Labels], str] = lambda name, labels: ""
     only: str | None = None
-    lasting: bool = True
+    has_extremes: bool = True
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
-    detail: bool = False
+    is_detail: bool = False
 
     @property
     def is_foundation(self) -> bool:

@@ -27,8 +27,8 @@ class TextColumn(NamedTuple):
     head: str
     align: Align = "point"
     vector: str = ""
-    once: bool = False
-    spare: bool = False
+    is_shown_once: bool = False
+    is_optional: bool = False
 
 
 class TextTable(NamedTuple):

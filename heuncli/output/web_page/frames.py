@@ -38,7 +38,7 @@ class PageFrames(NamedTuple):
     """The instants (n,) [s] of a page, and the notes that the page shows about them."""
 
     times: Array
-    told: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES) -> PageFrames:

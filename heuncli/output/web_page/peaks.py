@@ -28,8 +28,8 @@ class LoadColumn(NamedTuple):
     values: Array
     kind: str
     unit: str
-    square: bool = False
-    run: str = ""
+    is_squared: bool = False
+    cut_run: str = ""
 
 
 class Peaks(NamedTuple):
@@ -39,7 +39,7 @@ class Peaks(NamedTuple):
     """
 
     times: Array
-    sought: bool
+    is_searched: bool
 
 
 def find_peaks(study: Study, labels: Labels, certain: Certainty) -> Peaks:

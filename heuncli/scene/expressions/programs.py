@@ -99,7 +99,7 @@ class Expression:
     constants: tuple[float, ...] = ()
     tables: tuple[TableFunction, ...] = ()
     switches: tuple[Switch, ...] = ()
-    held: tuple[str, ...] = ()
+    held_branches: tuple[str, ...] = ()
     dimension: tuple[int, int, int] | None = None  # if it was written with a unit
     is_truth: bool = False  # it is 1 or 0, and changes only where one of its branches does
 

@@ -29,7 +29,7 @@ MAX_MISMATCHES = 20  # reported together
 class Mismatch(NamedTuple):
     """An unmatched bracket or quote: its index in the text, a message and a hint."""
 
-    at: int
+    index: int
     message: str
     hint: str
 

@@ -74,10 +74,10 @@ class ColumnLayout(NamedTuple):
     before: number of lines before the numbers
     """
 
-    mark: str | None
+    separator: str | None
     names: list[str]
     width: int
-    before: int
+    header_lines: int
 
 
 def read_column_numbers(text: str, *keys: object) -> Columns:

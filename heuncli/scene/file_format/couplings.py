@@ -168,7 +168,7 @@ class Cam(NamedTuple):
     radius: float = 0.0
     normal: tuple[float, float, float] | None = None
     phase: float = 0.0
-    both: bool = False
+    is_two_sided: bool = False
     restitution: float | None = None
     type: Literal["cam"] = "cam"
 

@@ -17,7 +17,7 @@ class KeyRow(NamedTuple):
     """A row of a chapter's table: the keys, the types that have them (empty: all), unit, default and meaning."""
 
     keys: tuple[str, ...]
-    of: tuple[str, ...]
+    types: tuple[str, ...]
     unit: str
     default: str
     meaning: str

@@ -21,7 +21,7 @@ GIVEN_FIELDS = "="  # the fields that the spec gave
 class Lookup(NamedTuple):
     """A key that was looked up, and the name of the mapping; KEYS: which keys there are, in which order."""
 
-    of: str
+    container: str
     key: str
 
 

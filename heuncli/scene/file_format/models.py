@@ -180,7 +180,7 @@ class Joint(Generic[Ref, V]):
     p_name: str | None = None
     q_name: str | None = None
     path: Path | None = None
-    way: int = -1
+    path_index: int = -1
     one_sided: bool = False
 
     @property
@@ -279,7 +279,7 @@ class Elastic(Generic[V]):
     stiffness: V
     damping: V
     preload: V
-    given: Vector
+    extra_load: Vector
 
 
 class Bushing(NamedTuple):
@@ -373,7 +373,7 @@ class Latch:
     every: it catches again after it was released
     """
 
-    at: float | None
+    position: float | None
     stop: str | None
     sides: tuple[int, ...]
     when: Condition | None
@@ -469,9 +469,9 @@ class ResultCondition(NamedTuple):
     ends: bool
     of: str
     limit: float
-    above: bool
+    is_above: bool
     why: str = ""
-    given: float | None = None
+    entry_value: float | None = None
 
 
 WatchedCondition = Condition | ResultCondition

@@ -43,8 +43,8 @@ class NamedFile(NamedTuple):
     """
 
     content: bytes
-    unread: PortableFinding | None = None
-    outside: PortableFinding | None = None
+    read_error: PortableFinding | None = None
+    outside_warning: PortableFinding | None = None
 
 
 class NamedFiles:

@@ -48,7 +48,7 @@ class Parameters:
     """
 
     values: dict[str, float | None]
-    given: dict[str, DimensionedParameter]
+    given_quantities: dict[str, DimensionedParameter]
     findings: list[tuple[str, Finding]]
     uses: dict[str, set[object]]
 

@@ -75,7 +75,7 @@ class VerdictPlan(NamedTuple):
     """
 
     verdicts: list[tuple[Rule, tuple[Violation, ...] | None]]
-    reached: dict[str, Any]
+    path_targets: dict[str, Any]
 
 
 class MeaningRecord(NamedTuple):

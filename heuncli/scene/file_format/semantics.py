@@ -130,7 +130,7 @@ class HeldCoordinate(NamedTuple):
 
     joint: str
     quantity: Literal["angle", "travel", "length"]
-    at: float | None
+    position: float | None
     sides: tuple[int, ...]
 
 

@@ -102,6 +102,6 @@ class DescribedMachine(NamedTuple):
     stops: tuple[DescribedEntry, ...] = ()
     couplings: tuple[DescribedEntry, ...] = ()
     analysis: Mapping[str, SpecValue] = EMPTY_MAPPING
-    told: tuple[str, ...] = ()
+    header_lines: tuple[str, ...] = ()
     remarks: Mapping[str, str] = EMPTY_MAPPING
     left_out: tuple[Problem, ...] = ()

@@ -31,7 +31,7 @@ class ModelReader(NamedTuple):
     root: str
     form: str
     module: str
-    asks: frozenset[str]
+    options: frozenset[str]
     repairs: tuple[str, ...] = ()
 
     def read_machine(

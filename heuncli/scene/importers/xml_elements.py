@@ -31,7 +31,7 @@ class XmlElement:
 
     tag: str
     attributes: dict[str, str]
-    inner: list[XmlElement]
+    children: list[XmlElement]
     line: int
     column: int
 

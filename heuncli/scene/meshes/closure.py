@@ -129,7 +129,7 @@ class MeshShells(NamedTuple):
     number: IndexArray
     volumes: Array
     triangles: IndexArray
-    turned: bool
+    is_reversed: bool
 
 
 def find_shells(

@@ -58,10 +58,10 @@ class TriangleFaces(NamedTuple):
     normals: Array
     offsets: Array
     corners: IndexArray
-    joined: IndexArray
-    double: Array
-    narrow: Mask
-    joins: bool
+    joined_corners: IndexArray
+    double_areas: Array
+    is_narrow: Mask
+    has_joined_corners: bool
 
 
 def require_no_crossing(corners: Array, triangles: IndexArray, tolerance: float) -> None:

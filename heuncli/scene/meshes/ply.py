@@ -29,14 +29,14 @@ class PlyProperty(NamedTuple):
 
     name: str
     kind: str
-    counted: str | None
+    length_kind: str | None
 
 
 class PlyElement(NamedTuple):
     """A number of items of one kind, with their properties."""
 
     name: str
-    many: int
+    count: int
     properties: list[PlyProperty]
 
 

@@ -50,7 +50,7 @@ class Box(ThickSolid):
     """
 
     center: Array
-    half: Array
+    half_size: Array
     axes: Array
     density: float
 

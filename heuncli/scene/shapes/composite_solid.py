@@ -127,7 +127,7 @@ class CompositeSolid:
     """
 
     parts: tuple[Solid, ...]
-    near: float
+    tolerance: float
 
     def whole_inertia(self) -> Array:
         """Compute the pseudo-inertia of the body about its origin, (4, 4)."""

@@ -23,14 +23,14 @@ class CuttingPlanes:
     n: Array
     e1: Array
     d: Array
-    beside: Array
+    shifted_d: Array
 
 
 @record
 class RoundFigure:
     """Circles or rings where planes meet a shape (is_met): centres (k, 3), outer and inner radii (k,) [m]."""
 
-    met: Flags
+    is_met: Flags
     center: Array
     outer: Array
     inner: Array
@@ -40,7 +40,7 @@ class RoundFigure:
 class RectangleFigure:
     """Rectangles of one size with sides along e1 (width) and e2 (height) [m], centres (k, 3)."""
 
-    met: Flags
+    is_met: Flags
     center: Array
     width: float
     height: float
@@ -50,8 +50,8 @@ class RectangleFigure:
 class UnknownFigure:
     """Figures of no other kind, and the reason."""
 
-    met: Flags
-    why: str
+    is_met: Flags
+    reason: str
 
 
 @record
@@ -62,7 +62,7 @@ class ProfileFigure:
     missing: by plane number, why the properties of a figure are not known
     """
 
-    met: Flags
+    is_met: Flags
     values: Mapping[str, Array]
     missing: Mapping[int, str]
 

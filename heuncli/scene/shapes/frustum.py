@@ -74,8 +74,8 @@ class CutMidlines:
     error where a cut is small.
     """
 
-    met: Flags
-    through: Flags
+    is_met: Flags
+    leaves_both_ends: Flags
     length: Array
     x: Array
     z: Array

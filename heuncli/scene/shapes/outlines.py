@@ -33,7 +33,7 @@ class Outline:
     part: identifies the shape of which the figures are separate regions; None: they belong to no other figure
     """
 
-    met: Flags
+    is_met: Flags
     corners: Corners
     hole: Corners | None = None
     hollow: Flags | None = None

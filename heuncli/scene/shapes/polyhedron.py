@@ -102,10 +102,10 @@ class Polyhedron(ThickSolid):
     tolerance: deviation of corners of one plane from each other, due to the digits of the file [m]
     """
 
-    corners_at: Array
+    vertices: Array
     triangles: Indices
     density: float
-    near: float
+    tolerance: float
 
     @cached_property
     def middle(self) -> Array:

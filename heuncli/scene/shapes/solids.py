@@ -53,7 +53,7 @@ class Solid(Protocol):
 class ExactSolid:
     """Base of the shapes given by their dimensions, whose corners need no tolerance."""
 
-    near = 0.0
+    tolerance = 0.0
 
 
 class ThickSolid(ExactSolid):
@@ -72,7 +72,7 @@ def end_corners(solid: Solid, n: Array) -> Array:
 class PointMass(ExactSolid):
     """A point mass [kg] at a place [m]."""
 
-    at: Array
+    place: Array
     mass: float
 
     def whole_inertia(self) -> Array:

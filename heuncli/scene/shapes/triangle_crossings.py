@@ -32,7 +32,7 @@ class TriangleCrossings:
     triangle: Indices
     plane: Indices
     lone: Indices
-    up: Mask
+    lone_is_above: Mask
     h: Array
     part: Array
 

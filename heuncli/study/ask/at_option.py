@@ -34,7 +34,7 @@ class InstantRequest(NamedTuple):
     word: str
     kind: Literal["at", "first", "last", "extreme", "impulse"]
     what: str = ""
-    at: float = 0.0
+    time: float = 0.0
 
 
 class LoadCaseInstant(NamedTuple):
@@ -42,7 +42,7 @@ class LoadCaseInstant(NamedTuple):
 
     name: str
     time: float
-    blow: int | None = None
+    impulse: int | None = None
 
 
 def parse(words: str) -> list[InstantRequest]:

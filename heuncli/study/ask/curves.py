@@ -34,8 +34,8 @@ class CurveComparison(NamedTuple):
 
     points: int
     outside: int
-    expected: float
-    found: float
+    expected_value: float
+    found_value: float
     at: float
     x: float
     file: str

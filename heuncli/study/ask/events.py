@@ -174,8 +174,8 @@ class WatchedNumber(NamedTuple):
     study: Study
     setup: Setup
     condition: ResultCondition
-    even: bool
-    along: bool
+    is_magnitude: bool
+    is_along_cuts: bool
 
     def sample(self, times: Array) -> Array:
         """Return the number minus its limit at instants (n,), ascending; nan where it is indeterminate."""

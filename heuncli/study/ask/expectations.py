@@ -30,14 +30,14 @@ class Case:
     """
 
     location: SourceLocation
-    of: str
+    path: str
     when: str
-    expected: Array
-    found: Array | None
+    expected_values: Array
+    found_values: Array | None
     tolerance: float
     failure: str | None
-    below: float | None = None
-    above: float | None = None
+    upper_bound: float | None = None
+    lower_bound: float | None = None
     extreme: Peak | None = None
     curve: CurveComparison | None = None
 

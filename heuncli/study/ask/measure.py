@@ -55,7 +55,7 @@ class MeasureRequest(NamedTuple):
 
     how: Literal["", "max", "min", "abs", "first", "final", "at"]
     path: str
-    at: float | None = None
+    time: float | None = None
 
 
 def find_reports(path: str) -> frozenset[str] | None:
@@ -171,7 +171,7 @@ class Peak(NamedTuple):
     """
 
     value: float
-    at: float | None
+    time: float | None
     place: CutPosition | None = None
     open_at: float | None = None
 

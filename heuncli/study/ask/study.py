@@ -50,9 +50,9 @@ class Study:
     options: Options
     setup: Setup
     history: History
-    composed: Recovery | None  # the results were composed of it; None if they were composed part by part
+    result_recovery: Recovery | None  # the results were composed of it; None if they were composed part by part
     results: Results
-    struck: Impulses | None = None
+    impulse_results: Impulses | None = None
     changes: Mapping[str, ConditionChanges] = MappingProxyType({})
 
     @cached_property

@@ -62,12 +62,12 @@ class Recovery:
     """
 
     setup: Setup
-    recovered: Evaluation
+    solutions: Evaluation
     least_norm: bool
-    given: tuple[Action, ...] = ()
+    given_actions: tuple[Action, ...] = ()
     causes: tuple[str, ...] | None = None
-    told: bool = False
-    compared: ComparedInstants | None = None
+    skips_open_search: bool = False
+    state_instants: ComparedInstants | None = None
 
     def with_cuts(self, setup: Setup) -> Recovery:
         """Return the same with the cuts of another setup; what was computed stays."""

@@ -39,7 +39,7 @@ class ComposedInstants(NamedTuple):
 
     times: Array
     recovery: Recovery
-    shown: Block
+    blocks: Block
     unknown: Array
     balance: Balance
 

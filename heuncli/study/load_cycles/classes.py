@@ -26,8 +26,8 @@ class LevelCrossings(NamedTuple):
     """How often levels (n,) are crossed upwards, and downwards."""
 
     levels: Array
-    up: Array
-    down: Array
+    upward: Array
+    downward: Array
 
     def count_by_reference(self, reference: float) -> Array:
         """Count by 5.1: upwards at the reference and above it, downwards below it, (n,)."""

@@ -51,7 +51,7 @@ class UnfitCounting(NamedTuple):
     """An invalid option of Counting: its field, what is required, and an example."""
 
     name: str
-    expected: str
+    requirement: str
     example: str
 
 
@@ -77,7 +77,7 @@ class Counting(NamedTuple):
     cycles: float | None = None
     bins: int = BINS
     repeat: int = 1
-    closed: bool = False
+    is_endless: bool = False
 
     def find_unfit(self) -> Sequence[UnfitCounting]:
         """Return the options that cannot be used."""
@@ -107,10 +107,10 @@ class Collective:
     """The counted cycles of a history; ranges and levels in its SI unit. shares (slopes, classes): of the damage."""
 
     history: LoadHistory
-    asked: Counting
+    counting: Counting
     points: int
     cycles: Cycles
-    below: BelowError
+    below_error: BelowError
     matrix: Matrix
     counts: Array
     shares: Array

@@ -35,7 +35,7 @@ class MemoryBudget:
     """
 
     memory: float
-    a_number: float
+    bytes_per_number: float
 
 
 def require_memory(setup: Setup, budget: MemoryBudget, *, in_parts: bool = False) -> None:

@@ -24,13 +24,13 @@ class Options:
     tolerance: float | None = None
     method: str | None = None
     step: float | None = None  # of a method of fixed step [s]
-    wanted: frozenset[str] | None = None
+    requested_reports: frozenset[str] | None = None
     entries: frozenset[EntryKeys] = frozenset()
     axes: str = "world"
     time_limit: float | None = None
     least_norm: bool = False
     reduce: bool = True  # whether a smaller scene may be solved where the results are the same
-    room: MemoryBudget | None = None  # for the results; None: no limit
+    memory_budget: MemoryBudget | None = None  # for the results; None: no limit
     in_parts: bool = False  # whether results of many instants may be kept in a file; possible if they are only exported
     load_seconds: float = 0.0  # time for reading the spec, for the block `work`
 

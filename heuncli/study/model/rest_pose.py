@@ -47,8 +47,8 @@ class Rest:
     steps: int
     evaluations: int
     seconds: float
-    beside: tuple[Array, ...]
-    told: tuple[str, ...]
+    nearby_states: tuple[Array, ...]
+    sentences: tuple[str, ...]
     warnings: tuple[str, ...]
 
     @property

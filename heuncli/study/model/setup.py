@@ -61,12 +61,12 @@ class Setup:
     runner: Runner
     method: Method | None
     model: Block
-    reduced: ReducedScene | None = None
-    asked: Selection = EVERYTHING
+    reduction: ReducedScene | None = None
+    selection: Selection = EVERYTHING
     rest: Rest | None = None
-    auto: bool = False
+    is_auto: bool = False
     step: float | None = None
-    known: CachedStress | None = None
+    self_stress: CachedStress | None = None
 
     @cached_property
     def moment_point(self) -> Array:

@@ -46,9 +46,9 @@ class Style(NamedTuple):
     """
 
     decimals: int
-    exponent: bool = False
+    has_exponent: bool = False
     rounding: float = 0.0
-    known: bool = True
+    is_known: bool = True
 
     def write(self, value: float) -> str:
         """Format the number: `open` for nan, `0` below the certain digits, `?` for an unknown number."""
@@ -76,7 +76,7 @@ class Certainty(NamedTuple):
 
     errors: Mapping[tuple[str, str], float]
     rounding: Mapping[str, float]
-    beside: frozenset[float] = frozenset()
+    singular_times: frozenset[float] = frozenset()
 
     def error_of(self, kind: str, unit: str) -> float:
         """The estimated error of numbers of this kind and unit, at least their rounding."""

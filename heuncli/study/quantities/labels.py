@@ -29,8 +29,8 @@ class JointInfo(NamedTuple):
     """A joint's type and its two ends as `body.point`."""
 
     type: str
-    from_: str
-    to: str
+    first_end: str
+    second_end: str
 
 
 class ForceInfo(NamedTuple):
@@ -53,7 +53,7 @@ class StopInfo(NamedTuple):
     high: float | None
     restitution: float = 0.0
     latch: bool = False
-    at: float | str | None = None
+    catch: float | str | None = None
 
 
 class SectionInfo(NamedTuple):
@@ -61,7 +61,7 @@ class SectionInfo(NamedTuple):
 
     body: str
     first_axis: str = "body x"
-    about: str = "the cut's point"
+    moment_point: str = "the cut's point"
 
 
 DEFAULT_UNITS = Units()
@@ -80,7 +80,7 @@ class Labels:
     forces: Mapping[str, ForceInfo] = NO_ENTRIES
     sections: Mapping[str, SectionInfo] = NO_ENTRIES
     stops: Mapping[str, StopInfo] = NO_ENTRIES
-    about: str | None = None
+    moment_point: str | None = None
     units: Units = DEFAULT_UNITS
 
     def is_rotational(self, block: str, name: str) -> bool:

@@ -38,9 +38,9 @@ class Series(NamedTuple):
     unit: str
     components: tuple[str, ...]
     values: Array
-    static: bool = False
+    is_static: bool = False
     cause: str = ""
-    of_cuts: bool = False
+    has_cuts: bool = False
 
     @property
     def path(self) -> str:
@@ -88,7 +88,7 @@ class _Walk(NamedTuple):
 
     kind: str
     labels: Labels
-    at_a_blow: bool = False
+    is_impulse: bool = False
 
     def iter_block(self, keys: tuple[str, ...], node: Node, block: Block, is_run: bool = False) -> Iterator[Series]:
         """Yield the quantities of a block and of its sub-blocks; is_run: whether it belongs to a run of cuts."""

@@ -30,7 +30,7 @@ HINT = (
 class Units(NamedTuple):
     """The display units of tables for SI units of the results, where these differ."""
 
-    shown: Mapping[str, DisplayUnit] = STRESS
+    display_units: Mapping[str, DisplayUnit] = STRESS
 
     def find(self, unit: str) -> DisplayUnit:
         """Return the display unit of an SI unit, and how many of it make one."""

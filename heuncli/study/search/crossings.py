@@ -45,7 +45,7 @@ class Crossings(NamedTuple):
 
     begins: bool
     times: Array
-    up: Mask
+    is_rise: Mask
     error: Array
     jumps: Mask
     gaps: bool

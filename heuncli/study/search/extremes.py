@@ -56,7 +56,7 @@ class ColumnSearch(NamedTuple):
     groups: Sequence[Sequence[int]]
     errors: Array
     even: Mask
-    along: Callable[[Results], Sequence[tuple[str, Array]]] | None = None
+    cut_columns: Callable[[Results], Sequence[tuple[str, Array]]] | None = None
     bent: bool = False
     sides: tuple[float, ...] = BOTH_SIDES
 
@@ -104,7 +104,7 @@ class Best(NamedTuple):
     """The best of each target so far, (2n,): its height, time and column."""
 
     height: Array
-    at: Array
+    time: Array
     column: Indices
 
     def update(self, height: Array, times: Array, column: Indices, target: Indices) -> None:

@@ -35,10 +35,10 @@ class Bends(NamedTuple):
     rise_after: rise from c back to b if the slope from d to c continues
     """
 
-    left: Array
-    right: Array
-    up: Array
-    down: Array
+    kappa_before: Array
+    kappa_after: Array
+    rise_before: Array
+    rise_after: Array
 
     def select(self, mask: Mask | Indices) -> Bends:
         """Return the bends of the marked intervals."""

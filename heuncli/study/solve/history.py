@@ -63,17 +63,17 @@ class History:
     """
 
     times: Array
-    answers: Callable[[slice], Evaluation]
+    find_solutions: Callable[[slice], Evaluation]
     tolerance: float
     estimate: ErrorEstimate
-    checked: CheckedRun | None = None
-    blows: tuple[ImpulseEvent, ...] = ()
-    beside: tuple[tuple[ImpulseEvent, ...], ...] = ()
+    checked_run: CheckedRun | None = None
+    impulses: tuple[ImpulseEvent, ...] = ()
+    check_impulses: tuple[tuple[ImpulseEvent, ...], ...] = ()
     jumps: tuple[float, ...] = ()
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
-    compared: ComparedInstants | None = None
+    state_instants: ComparedInstants | None = None
     notes: tuple[str, ...] = ()
 
     @property

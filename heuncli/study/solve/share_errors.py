@@ -39,7 +39,7 @@ class ComparedShares(NamedTuple):
     kind: str
     quantity: str
     values: Array
-    more: Array
+    factor: Array
 
 
 def iter_compared_shares(

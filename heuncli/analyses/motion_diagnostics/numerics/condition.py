@@ -38,7 +38,7 @@ class ConditionNumbers(NamedTuple):
 
     mass: Array
     closure: Array
-    light: Array
+    lightest_motion: Array
 
 
 def compute_conditions(layout: Layout, layout_coordinates: Coordinates, recovered: Evaluation) -> ConditionNumbers:

@@ -57,7 +57,7 @@ class DisturbanceGrowth:
     times: Array
     logarithm: Array
     steps: Array
-    stopped: str | None = None
+    stop_reason: str | None = None
 
 
 class RunPiece:

@@ -48,8 +48,8 @@ class ChartFrame(NamedTuple):
     """The field in pixels, and its scales."""
 
     box: LabelBox
-    across: Scale
-    up: Scale
+    time_scale: Scale
+    error_scale: Scale
 
     def x(self, value: float) -> float:
         """Return the pixel column of a time."""

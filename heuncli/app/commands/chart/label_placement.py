@@ -53,7 +53,7 @@ class PlacedLabel(NamedTuple):
 
     text: str
     box: LabelBox
-    to: tuple[float, float] | None = None
+    anchor: tuple[float, float] | None = None
 
 
 Points = Sequence[tuple[float, float]]

@@ -54,7 +54,7 @@ class ChartPoint(NamedTuple):
 
     seconds: float
     error: float
-    bound: bool
+    is_bound: bool
     front: bool
 
 

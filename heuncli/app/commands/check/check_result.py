@@ -29,9 +29,9 @@ class CheckResult(NamedTuple):
     problems: tuple[Problem, ...] = ()
     error: int = 0
     seconds: float = 0.0
-    said: tuple[str, ...] = ()
+    messages: tuple[str, ...] = ()
     golden: GoldenUpdate | None = None
-    refused: bool = False
+    is_usage_error: bool = False
 
     @property
     def exit_code(self) -> int:

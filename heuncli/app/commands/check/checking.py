@@ -55,7 +55,7 @@ class CheckTask(NamedTuple):
     name: the spec's name in that file
     """
 
-    found: FoundSpec
+    spec: FoundSpec
     file: str | None = None
     name: str = ""
 

@@ -27,7 +27,7 @@ class FoundSpec(NamedTuple):
     """
 
     path: str
-    below: str | None = None
+    folder: str | None = None
     problem: Problem | None = None
 
 

@@ -29,8 +29,8 @@ class CheckSummary(NamedTuple):
     strict: whether orphans fail
     """
 
-    checked: Sequence[CheckResult]
-    skipped: Sequence[SkippedFolder] = ()
+    results: Sequence[CheckResult]
+    skipped_folders: Sequence[SkippedFolder] = ()
     orphans: Sequence[str] = ()
     strict: bool = False
 

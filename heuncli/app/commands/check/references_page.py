@@ -36,7 +36,7 @@ class ReferenceResult(NamedTuple):
 
     case: PublishedCase
     tables: tuple[TableComparison, ...]
-    checked: CheckResult
+    result: CheckResult
 
     @property
     def exit_code(self) -> int:

@@ -28,10 +28,10 @@ class Difference(NamedTuple):
     notes: remarks for the user
     """
 
-    before: str
-    after: str
+    old_path: str
+    new_path: str
     changes: Sequence[tuple[str, Change]]
-    compared: int
+    compared_count: int
     notes: Sequence[str] = ()
 
 

@@ -60,9 +60,9 @@ class FindPage(NamedTuple):
     title: str
     condition: FindCondition
     interval: Interval
-    found: IntervalFindings
+    findings: IntervalFindings
     scan: int
-    most: int
+    max_variants: int
     units: Units
 
     def format_place(self, x: float, error: float = 0.0) -> str:

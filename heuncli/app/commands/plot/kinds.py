@@ -20,7 +20,7 @@ class FigureKind(NamedTuple):
     """
 
     what: str
-    heeds: tuple[str, ...]
+    options: tuple[str, ...]
 
 
 COMMON_OPTIONS = ("words", "output", "width", "time_limit", "quiet")

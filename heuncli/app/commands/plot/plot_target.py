@@ -22,7 +22,7 @@ class PlotTarget(NamedTuple):
     """The files, the kind of figure, and its paths."""
 
     files: Sequence[str]
-    what: str
+    kind: str
     paths: Sequence[str]
 
 

@@ -45,10 +45,10 @@ class RunTask(NamedTuple):
     request: RunRequest
     form: str
     options: Options
-    what: Selection
-    asked: Sequence[MeasureRequest]
+    selection: Selection
+    measures: Sequence[MeasureRequest]
     units: Units
-    counted: CollectiveTask | None = None
+    collective: CollectiveTask | None = None
 
 
 def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:

@@ -58,7 +58,7 @@ class SensitivityPage(NamedTuple):
     title: str
     numbers: tuple[WrittenNumber, ...]
     heads: tuple[tuple[str, str], ...]
-    found: tuple[MeasureFindings, ...]
+    findings: tuple[MeasureFindings, ...]
     runs: int
     units: Units
 

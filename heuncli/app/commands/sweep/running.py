@@ -36,7 +36,7 @@ NO_NUMBER = ("bad-option", "unknown-path")  # codes of a measure that is not a n
 class SweepTask(NamedTuple):
     """A sweep to run: its evaluator, head, keys and store, and the part (shard) of it."""
 
-    asker: VariantEvaluator
+    evaluator: VariantEvaluator
     head: SweepHead
     keys: VariantKeys
     store: Store
@@ -58,7 +58,7 @@ class PendingVariant(NamedTuple):
     """A variant that is being solved: its key and its values."""
 
     key: bytes
-    given: tuple[str, ...]
+    values: tuple[str, ...]
 
 
 def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> int:

@@ -30,7 +30,7 @@ MAX_BATCH = 2000  # largest number of variants of a batch
 class BatchResults(NamedTuple):
     """The results of a batch, and the time it took [s]."""
 
-    answers: tuple[VariantResult, ...]
+    results: tuple[VariantResult, ...]
     seconds: float
 
 

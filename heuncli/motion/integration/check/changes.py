@@ -41,7 +41,7 @@ class ConditionChanges:
     name: str
     begins: bool
     times: Array
-    to: Mask
+    values: Mask
     error: Array
 
     def select_before(self, t: float) -> ConditionChanges:

@@ -95,17 +95,17 @@ class CheckedRun:
     """
 
     run: Trajectory
-    answers: Callable[[slice], Evaluation]
+    evaluate: Callable[[slice], Evaluation]
     motion: float
     loads: ErrorEstimate
     errors: Mapping[tuple[str, str], float]
     horizon: float | None
     kinetic: float
-    beside: tuple[tuple[ImpulseEvent, ...], ...]
+    check_impulses: tuple[tuple[ImpulseEvent, ...], ...]
     check_seconds: float
-    lost_seconds: float  # time of runs that missed the tolerance
+    discarded_seconds: float  # time of runs that missed the tolerance
     changes: tuple[ConditionChanges, ...] = ()  # of the conditions
-    begun_anew: str | None = None  # why another method than the chosen one was used
+    restart_reason: str | None = None  # why another method than the chosen one was used
 
 
 @record
@@ -124,11 +124,11 @@ class RunComparison:
     runs: tuple[Trajectory, ...]
     times: Array
     states: tuple[ComparedStates, ...]
-    asked: Mask
+    is_requested: Mask
     error: Array
     horizon: float | None
     seconds: float
-    several: Evaluation | None
+    evaluation: Evaluation | None
 
     @property
     def motion(self) -> float:

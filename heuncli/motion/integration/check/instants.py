@@ -30,7 +30,7 @@ class JoinedStates:
     place (n,): index of each instant, counted through both sources
     """
 
-    kept: Array
+    run_states: Array
     others: Array
     place: Indices
 
@@ -54,7 +54,7 @@ class ComparisonInstants:
 
     times: Array
     states: JoinedStates
-    asked: Mask
+    is_requested: Mask
 
 
 def choose_instants(runner: Runner, run: Trajectory) -> ComparisonInstants:

@@ -70,7 +70,7 @@ class ContactProblem:
     rates (k,): rates of opening that given impulses and drives add
     """
 
-    touch: TouchingContacts
+    touching: TouchingContacts
     A: Array
     moves: Mask
     rates: Array
@@ -84,11 +84,11 @@ class ContactOutcome:
     work: of all impulses [J]
     """
 
-    struck: ContactImpulses
+    impulses: ContactImpulses
     holding: Array
     at_rest: Mask
     columns: Columns
-    after: Array
+    after_state: Array
     work: float
 
 
@@ -157,8 +157,8 @@ class UnrefinedImpulses:
     others: those of a sequence whose impulses stay, because their rates follow from those of the basis
     """
 
-    touch: TouchingContacts
-    struck: ContactImpulses
+    touching: TouchingContacts
+    impulses: ContactImpulses
     units: Columns
     basis: Indices
     others: Indices

@@ -44,8 +44,8 @@ class GivenImpulse:
     drives: for each driven joint, the rates before and after
     """
 
-    before: float
-    after: float
+    before_time: float
+    after_time: float
     blows: tuple[int, ...]
     drives: dict[int, tuple[float, float]]
 
@@ -88,7 +88,7 @@ class BodyImpulse:
     blow: int
     force: Array
     moment: Array
-    at: Array
+    position: Array
 
 
 @record
@@ -108,15 +108,15 @@ class ImpulseEvent:
 
     time: float
     names: tuple[str, ...]
-    recovered: Evaluation
+    evaluation: Evaluation
     causes: tuple[str, ...]
     impulses: tuple[BodyImpulse, ...]
-    after: Array
+    after_state: Array
     kinetic: tuple[float, float]
     work: float
     holding: Array = np.zeros(0)
-    shared: tuple[SharedImpulse, ...] = ()
-    told: float | None = None
+    shared_impulses: tuple[SharedImpulse, ...] = ()
+    display_time: float | None = None
 
     @property
     def reported_time(self) -> float:
@@ -233,13 +233,13 @@ class ImpulseResult:
     """
 
     time: float
-    found: Answered
+    solution: Answered
     causes: tuple[str, ...]
-    after: Array
+    after_state: Array
     work: float
     holding: Array
-    struck: tuple[str, ...] = ()
-    shared: tuple[SharedImpulse, ...] = ()
+    struck_names: tuple[str, ...] = ()
+    shared_impulses: tuple[SharedImpulse, ...] = ()
 
 
 def make_impulse_event(

@@ -31,9 +31,9 @@ UNWATCHED = -1.0  # a contact that a latch holds at its limit, so that it is not
 class LatchConditions(NamedTuple):
     """The conditions of each latch: whether it is extended, is drawn back, and whether its value is passed."""
 
-    out: tuple[bool, ...]
-    back: tuple[bool, ...]
-    passed: tuple[bool, ...]
+    is_extended: tuple[bool, ...]
+    is_drawn_back: tuple[bool, ...]
+    is_value_passed: tuple[bool, ...]
 
 
 def evaluate_latches(layout: Layout, truths: Sequence[float], truths_before: Sequence[float] = ()) -> LatchConditions:
@@ -55,7 +55,7 @@ class LatchCatch:
     """A latch that catches: the number of its contact, the value of its coordinate there, and the rate before."""
 
     contact: int
-    at: float
+    value: float
     rate: float
 
 

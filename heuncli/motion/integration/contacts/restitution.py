@@ -37,7 +37,7 @@ class ContactImpulses:
     rate: Array
     depends: Mask
     count: Indices
-    settled: Mask
+    comes_to_rest: Mask
 
     @property
     def takes_part(self) -> Mask:

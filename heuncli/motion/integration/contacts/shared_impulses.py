@@ -31,9 +31,9 @@ class SharedImpulse:
     """
 
     names: tuple[str, ...]
-    held: tuple[str, ...] = ()
+    bilateral_names: tuple[str, ...] = ()
     impacts: int = 0
-    settled: tuple[str, ...] = ()
+    resting_names: tuple[str, ...] = ()
 
 
 @record
@@ -52,7 +52,7 @@ class LoadedContact:
     column: int = -1
     is_held: bool = False
     impacts: int = 0
-    settled: bool = False
+    comes_to_rest: bool = False
 
 
 def list_bilateral_contacts(layout: Layout) -> list[LoadedContact]:

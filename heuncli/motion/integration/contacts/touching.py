@@ -32,7 +32,7 @@ class TouchingContacts:
     length (k,): ratio of the unit of the gap to a length [m]
     """
 
-    which: Indices
+    indices: Indices
     loads: Array
     rate: Array
     noise: Array

@@ -30,11 +30,11 @@ class OpenPath(NamedTuple):
     """
 
     path: Path
-    of: tuple[str, str]
-    told: str
+    coordinate: tuple[str, str]
+    message: str
     longer: str
     unit: tuple[str, float]
-    about: str
+    owner: str
 
 
 def iter_open_paths(mechanism: Mechanism) -> Iterator[OpenPath]:

@@ -27,10 +27,10 @@ class ErrorWording:
     moment_scale [N m] or [N m s]: largest moment given besides the loads
     """
 
-    answers: str = "accelerations"
+    results: str = "accelerations"
     moment: str = "moment"
     unit: str = "N m"
-    given: float = 0.0
+    moment_scale: float = 0.0
 
 
 def require_solvable(scene: PreparedScene, evaluation: Evaluation, wording: ErrorWording = ErrorWording()) -> None:  # noqa: B008

@@ -35,16 +35,16 @@ class Method:
     # rows of F3, F4, ...; those of an implicit method apply to stages 1, 2, ... minus the start, then to F0, F1,
     # F2
     dense: tuple[Row, ...] = ()
-    determined: bool = False  # nothing is integrated: every instant follows from the drives
-    fixed: bool = False  # the step is given, and no error is tested
+    is_determined: bool = False  # nothing is integrated: every instant follows from the drives
+    has_fixed_step: bool = False  # the step is given, and no error is tested
     by_step: bool = False  # no dense output: an instant within a step is reached by an extra step from its start
     implicit: bool = False  # the stages are solved for (kernel/collocation.py), by the numbers in `collocation`
     attitude: int = QUATERNION  # how attitudes are held within a step
-    foreign: str = ""  # its name in SciPy, where its steps are taken (motion/integration/run/scipy_loop.py)
+    scipy_name: str = ""  # its name in SciPy, where its steps are taken (motion/integration/run/scipy_loop.py)
     # stability limit: the largest h |lambda| with |R(-h |lambda|)| = 1 for decay exp(lambda t); 0: not watched
     stable: float = 0.0
     # where in a step its interpolation errs most, on open and closed chains (tests/convergence/test_between_ends.py)
-    within: tuple[float, ...] = (0.5, 0.85)
+    sample_fractions: tuple[float, ...] = (0.5, 0.85)
     collocation: Mapping[str, Any] | None = None
     check: Method | None = None  # the method of its check run, where that is another one
 

@@ -47,9 +47,9 @@ class LoopStart:
     state: Array
     local: float
     rate: float = 0.0
-    following: bool = False
+    is_replay: bool = False
     late: bool = False
-    watched: bool = False
+    watch_stiffness: bool = False
 
 
 class KernelLoop:

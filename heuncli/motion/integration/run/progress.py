@@ -26,7 +26,7 @@ class RunProgress:
     """
 
     scene: Evaluator
-    moving: IntegratedScene
+    integrated_scene: IntegratedScene
     kernel: KernelLoop
     steps: StepRecorder
     last: float

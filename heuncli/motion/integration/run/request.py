@@ -34,7 +34,7 @@ class MotionTask:
     start: Array | None = None
     deadline: float | None = None
     most_steps: int = tolerances.MOST_STEPS
-    keeping: bool = False
+    stores_polynomials: bool = False
 
     @cached_property
     def instants(self) -> Array:

@@ -39,7 +39,7 @@ class ScipySteps:
 
     ends: list[float]
     states: list[Array]
-    within: list[Callable[[float], Array]]
+    interpolants: list[Callable[[float], Array]]
     pieces: list[Segment]
 
     def interpolate(self, integrated_scene: IntegratedScene, times: Array) -> Array:

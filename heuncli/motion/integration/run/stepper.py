@@ -55,7 +55,7 @@ class EarlyEnd(NamedTuple):
     rope: the rope that would have to push just after it; None if the condition that ends the run became true
     """
 
-    told: float
+    last_time: float
     rope: str | None = None
 
 

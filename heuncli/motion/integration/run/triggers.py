@@ -25,7 +25,7 @@ class DueTriggers(NamedTuple):
     """Impulses that are due at an instant, and the conditions of latches there, if there are any."""
 
     blows: tuple[int, ...]
-    said: LatchConditions | None
+    latch_conditions: LatchConditions | None
 
 
 class Triggers:

@@ -32,10 +32,10 @@ class JointOrientation:
     A joint without an axis counts as along the normal.
     """
 
-    along: bool
+    is_normal: bool
     axis: Array
-    off: float
-    second: bool = False
+    misalignment: float
+    is_second: bool = False
 
     @property
     def turns_in_plane(self) -> bool:
@@ -54,7 +54,7 @@ class PlaneView:
     scene: PreparedScene
     E: Array
     upright: tuple[bool, ...]
-    stances: tuple[JointOrientation, ...]
+    orientations: tuple[JointOrientation, ...]
     reach: float  # of places [m]: the scene's size and how far it is from the origin
 
     @cached_property

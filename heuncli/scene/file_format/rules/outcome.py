@@ -44,9 +44,9 @@ class NumberKind(NamedTuple):
 
     dimensions: tuple[u.Dimension, ...]
     axes: Shape
-    timed: bool
+    is_timed: bool
     instant: int | None = None
-    known: bool = True
+    is_known: bool = True
 
 
 class UnknownWord(NamedTuple):
@@ -55,7 +55,7 @@ class UnknownWord(NamedTuple):
     """
 
     word: str
-    known: Collection[str]
+    valid_words: Collection[str]
 
 
 class TextResult(NamedTuple):
@@ -72,7 +72,7 @@ class ResolvedPath(NamedTuple):
 
     quantity: Quantity
     keys: list[str]
-    rest: list[str]
+    selectors: list[str]
 
 
 def find_cut_runs(draft: DraftDocument) -> dict[str, bool]:

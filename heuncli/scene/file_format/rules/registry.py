@@ -38,7 +38,7 @@ class DraftDocument(NamedTuple):
     document: Document
     names: SceneNames
     unread: frozenset[str]
-    reached: dict[str, Any]
+    path_targets: dict[str, Any]
 
 
 Check = Callable[[DraftDocument], Iterable[Violation]]
@@ -54,7 +54,7 @@ class Rule(NamedTuple):
     code: str
     check: Check
     is_warning: bool
-    follows: bool
+    may_be_consequence: bool
     for_check: bool
 
 

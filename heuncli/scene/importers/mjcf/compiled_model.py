@@ -44,7 +44,7 @@ class CompiledModel(NamedTuple):
     model: Any
     file: str
     lines: dict[str, dict[int, int]]
-    warned: tuple[str, ...] = ()
+    warning_texts: tuple[str, ...] = ()
 
     def count(self, kind: str) -> int:
         """Return the number of parts of a kind."""

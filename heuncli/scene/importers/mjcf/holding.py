@@ -30,7 +30,7 @@ class HeldJoints(NamedTuple):
     """
 
     joints: tuple[int, ...]
-    followed: tuple[JointEquality, ...]
+    couplings: tuple[JointEquality, ...]
 
 
 def choose_held_joints(c: CompiledModel, tree: JointTree, closures: LoopClosures, q: Any) -> HeldJoints:

@@ -37,8 +37,8 @@ class JointLaws(NamedTuple):
     parameters: tuple[DescribedParameter, ...]
     drives: tuple[DescribedEntry, ...]
     initial: dict[str, dict[str, str]]
-    driven: frozenset[int]
-    told: tuple[str, ...]
+    driven_joints: frozenset[int]
+    header_lines: tuple[str, ...]
     couplings: tuple[DescribedEntry, ...]
     left_out: tuple[Problem, ...]
 

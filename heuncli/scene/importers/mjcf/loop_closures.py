@@ -38,8 +38,8 @@ class JointEquality(NamedTuple):
     """
 
     equality: int
-    slave: int
-    master: int | None
+    follower: int
+    leader: int | None
     polynomial: tuple[float, ...]
 
 
@@ -52,10 +52,10 @@ class LoopClosures(NamedTuple):
 
     joints: tuple[DescribedEntry, ...]
     couplings: tuple[JointEquality, ...]
-    carried: frozenset[int]
+    imported_equalities: frozenset[int]
     rods: frozenset[int]  # the tendons that are rods
     left_out: tuple[Problem, ...]
-    told: tuple[str, ...]
+    header_lines: tuple[str, ...]
 
 
 class ClosureEnd(NamedTuple):

@@ -37,7 +37,7 @@ class ModelFiles(NamedTuple):
     """
 
     folder: str
-    included: dict[str, bytes]
+    models: dict[str, bytes]
 
 
 def collect_model_files(root: XmlElement, file: str) -> ModelFiles:

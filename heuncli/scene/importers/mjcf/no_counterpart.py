@@ -35,7 +35,7 @@ class UnsupportedFeature(NamedTuple):
     """
 
     kind: str
-    has: Callable[[CompiledModel], Iterable[int]]
+    find: Callable[[CompiledModel], Iterable[int]]
     what: str
     hint: str
 

@@ -46,7 +46,7 @@ class JointTree(NamedTuple):
     """
 
     names: dict[int, str]
-    wanted: dict[int, str]
+    originals: dict[int, str]
     carriers: dict[str, int]  # the bodies between stacked joints, and the body that they carry
     steps: tuple[TreeJoint, ...]
 

@@ -29,7 +29,7 @@ class JointQuantity(NamedTuple):
 
     key: str
     zero: str
-    another: str
+    example_value: str
     unit: str
     friction: str
 

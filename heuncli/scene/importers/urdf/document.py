@@ -115,8 +115,8 @@ class Robot:
     title: str
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
-    silent: dict[str, int]
-    whole: bool
+    ignored_tags: dict[str, int]
+    is_complete: bool
 
 
 def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:

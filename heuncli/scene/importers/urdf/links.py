@@ -32,10 +32,10 @@ class SpecJoint(NamedTuple):
     joint: the joint of the URDF, if any
     """
 
-    wanted: str
+    original: str
     type: str
-    from_: PointKey
-    to: PointKey
+    start: PointKey
+    end: PointKey
     keys: dict[str, Any]
     remarks: tuple[str, ...] = ()
     joint: UrdfJoint | None = None

@@ -43,8 +43,8 @@ class ValidatedRobot:
     tree: LinkTree
     masses: dict[str, LinkMass]
     shapes: dict[str, tuple[str, tuple[DescribedEntry, ...]]]
-    placed: dict[str, PlacedLink]
-    grounded: bool
+    placed_links: dict[str, PlacedLink]
+    is_grounded: bool
 
 
 def build_machine(

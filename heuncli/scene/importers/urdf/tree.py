@@ -25,8 +25,8 @@ class LinkTree(NamedTuple):
     """
 
     links: list[UrdfLink]
-    above: dict[str, UrdfJoint]
-    followed: dict[str, MimicRelation]
+    parent_joints: dict[str, UrdfJoint]
+    leaders: dict[str, MimicRelation]
 
     @property
     def root(self) -> UrdfLink:

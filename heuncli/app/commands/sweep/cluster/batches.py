@@ -31,7 +31,7 @@ class VariantBatch(NamedTuple):
     """
 
     variants: tuple[Variant, ...]
-    lost: int = 0
+    lost_workers: int = 0
     alone: bool = False
 
 

@@ -42,10 +42,10 @@ class PartialResults(NamedTuple):
     failure: why this worker cannot solve anything
     """
 
-    answers: tuple[VariantResult, ...] = ()
+    results: tuple[VariantResult, ...] = ()
     seconds: float = 0.0
-    lacking: str = ""
-    broken: str = ""
+    missing_file: str = ""
+    failure: str = ""
 
 
 # The first request to a worker, as text: without heun there, none of its functions could be sent.

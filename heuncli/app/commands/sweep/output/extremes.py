@@ -19,8 +19,8 @@ class MeasureExtremes(NamedTuple):
 
     least: int
     greatest: int
-    least_too: Array
-    greatest_too: Array
+    may_be_least: Array
+    may_be_greatest: Array
 
     @property
     def is_constant(self) -> bool:

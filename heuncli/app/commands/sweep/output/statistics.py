@@ -37,9 +37,9 @@ class MeasureStatistics(NamedTuple):
 
     combination: dict[str, str]
     measure: int
-    drawn: int
+    drawn_count: int
     left_out: int
-    found: SampleStatistics | None
+    sample: SampleStatistics | None
     error: float
     indices: tuple[SobolIndices, ...] | None = None
     samples: int = 0

@@ -19,7 +19,7 @@ class ShownRows(NamedTuple):
     """The selected rows by their index in the sweep, and the columns of all rows."""
 
     rows: Mapping[int, SweptRow]
-    gathered: ColumnBuffer
+    columns: ColumnBuffer
     extremes: tuple[MeasureExtremes | None, ...]
 
     @property
