@@ -45,7 +45,7 @@ class DeterminateLoadErrors(LoadErrors):
         self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
     ) -> None:
         """Use the reference's terms only: with those of a diverged run its own loads would count as rounding."""
-        super().take(name, values, rounding, np.repeat(terms[0::2], 2), more)
+        super().add_values(name, values, rounding, np.repeat(terms[0::2], 2), more)
 
     def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
         """Add the determinate components of the joints, and the couplings if nothing is indeterminate."""

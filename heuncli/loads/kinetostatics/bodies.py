@@ -168,7 +168,7 @@ class KernelBodyStates(BodyStates):
 
     def _compute_rows(self, name: str) -> Array:
         if name in self.__dict__:
-            return super()._found(name)
+            return super()._compute_rows(name)
         if name in KERNEL_FIELDS:
             return self._joint_point_rows(name)
         point, quantity = DERIVED_FIELDS[name]

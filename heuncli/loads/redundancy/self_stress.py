@@ -47,7 +47,9 @@ class SelfStress:
     largest_dropped: Array
     dependent: Array
     multipliers: Array  # (n_t, rows, k) of the closure rows
-    coupling_scale: Array  # (rows,) weight of a coupling's multiplier as a share: 1, for a couple 1/length; 0 for joints
+    coupling_scale: (
+        Array  # (rows,) weight of a coupling's multiplier as a share: 1, for a couple 1/length; 0 for joints
+    )
 
     def has_share(self, shares: Array, length: float = 1.0) -> Mask:
         """Return whether a self-stress has a share in components (..., n_t, c, k) -> (..., n_t, c); for moments give

@@ -112,7 +112,7 @@ def to_array(value: m.Vec | m.Matrix | None) -> Array | None:
     return None if value is None else np.array(value, dtype=float)
 
 
-def make_directed(value: m.Directed[m.Vec] | None) -> Directed | None:
+def make_directed(value: m.FramedVector[m.Vec] | None) -> Directed | None:
     """Return a vector with its frame, or None."""
     return None if value is None else Directed(np.array(value.vector), value.in_body)
 
@@ -279,7 +279,7 @@ def build_friction(name: str, f: m.Friction, joint: int) -> JointLoad:
     return JointLoad(name, "friction", joint, None, 0.0, f.coefficient, speed, presses=presses, reach=reach)
 
 
-def build_impulse(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
+def build_impulse(b: m.AppliedImpulse[str, m.Vec], index: dict[str, int]) -> Blow:
     """Build an impulse or impulsive couple."""
     return Blow(
         b.name, index[b.body], to_array(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every

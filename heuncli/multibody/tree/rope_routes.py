@@ -35,7 +35,7 @@ class RopePoint:
     turn: the pin's coordinate, times the factor to the sheave's rotation about its axis
     """
 
-    passage: spec.Passage
+    passage: spec.RopePassage
     body: int
     point: Array
     axis: Array
@@ -97,7 +97,7 @@ def route_rope(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Cou
 # Where it passes
 
 
-def make_rope_point(mechanism: Mechanism, start: Assembly, name: str, k: int, passage: spec.Passage) -> RopePoint:
+def make_rope_point(mechanism: Mechanism, start: Assembly, name: str, k: int, passage: spec.RopePassage) -> RopePoint:
     """Make one point of a rope."""
     names = [body.name for body in mechanism.bodies]
     body = GROUND if passage.end.body == "ground" else names.index(passage.end.body)

@@ -38,10 +38,10 @@ if TYPE_CHECKING:
 class ShareSource(Protocol):
     """Solves a run's loads by cause at any instants."""
 
-    def shares_at(self, times: Array) -> Results:
+    def compute_shares(self, times: Array) -> Results:
         """Return the results with shares at instants (n,), in ascending order."""
 
-    def shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
+    def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
         """Return the results with shares at instants (n,), with a run of cuts that is cut only at these places."""
 
 
@@ -127,7 +127,7 @@ class Page(NamedTuple):
 
         n = len(search_result.low) - len(search_result.places)
         instants = np.unique(np.concatenate([search_result.low_at[:n], search_result.high_at[:n]]))
-        numbers = self._collect_shares(shares.shares_at(instants)) if n else {}
+        numbers = self._collect_shares(shares.compute_shares(instants)) if n else {}
         span, tables, start = float(np.ptp(self.results.time)), list[TextTable](), 0
         for block in self._find_searched_blocks(self.results):
             count = sum(len(group.rows) for group in block.groups)
@@ -138,7 +138,7 @@ class Page(NamedTuple):
             tables += self._make_run_share_tables(run, search_result, k, shares)
         return tables
 
-    def _collect_shares(self, results: Results) -> dict[cause_tables.Key, cause_tables.SharedNumber]:
+    def _collect_shares(self, results: Results) -> dict[cause_tables.NumberKey, cause_tables.NumberWithShares]:
         from heuncli.output.tables import cause_tables
 
         return cause_tables.collect_shares(results, convert_units(iter_series(results, self.labels), self.labels.units))
@@ -151,7 +151,7 @@ class Page(NamedTuple):
 
         extremes, places = self._find_run_extremes(search_result, k)
         instants = np.unique(np.concatenate([extremes.low_at, extremes.high_at]))
-        results = shares.shares_along(run.name, instants, [place for both in places for place in both])
+        results = shares.compute_shares_along(run.name, instants, [place for both in places for place in both])
         return cause_tables.make_run_extremes_tables(run, results, extremes, places, self.certain)
 
     @staticmethod

@@ -27,9 +27,9 @@ MAX_MISMATCHES = 20  # reported together
 
 
 class Mismatch(NamedTuple):
-    """An unmatched bracket or quote: its index in the text, a message and a hint."""
+    """An unmatched bracket or quote: its offset in the text, a message and a hint."""
 
-    index: int
+    offset: int
     message: str
     hint: str
 
@@ -57,7 +57,7 @@ def find_mismatches(text: str, stop_index: int) -> list[Mismatch]:
         except MismatchError as error:
             found_mismatches.append(error.mismatch)
             index = error.onward
-    return found_mismatches if found_mismatches and found_mismatches[0].at <= stop_index else []
+    return found_mismatches if found_mismatches and found_mismatches[0].offset <= stop_index else []
 
 
 def find_next_line(text: str, index: int) -> int:

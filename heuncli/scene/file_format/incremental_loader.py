@@ -63,7 +63,7 @@ class IncrementalLoader(SpecLoader):
         self.by_parameters = set_blocks <= {"parameters"}
         if self.by_parameters:  # parameters do not change the rest of the data
             return {**first_data, **{block: value for block, value in data.items() if block in set_blocks}}
-        return _reuse_data(super().completed(data), first_data)
+        return _reuse_data(super().complete_data(data), first_data)
 
     def resolve_document(self, document: f.Document, meaning: ResolveInputs) -> Spec:
         """Resolve the document into a scene, with unchanged values taken from the first one."""
@@ -78,7 +78,7 @@ class IncrementalLoader(SpecLoader):
     def collect_names(self) -> SceneNames:
         """Collect everything that the spec names; if only parameters differ, reuse the names of the first loading."""
         if not self.by_parameters:
-            return super().names()
+            return super().collect_names()
         first_names = self.first.first_names
         entries = {**first_names.entries, "parameters": as_mapping(self.data.get("parameters"))}
         return SceneNames(entries, first_names.points, first_names.joints, {})
@@ -98,7 +98,7 @@ class IncrementalLoader(SpecLoader):
         """
         same_names = self.by_parameters and parameters.keys() == self.first.evaluated_parameters.values.keys()
         calculations = self.first.calculations if same_names else None
-        return replace(super().scope(parameters, given_parameters), calculations=calculations)
+        return replace(super().make_scope(parameters, given_parameters), calculations=calculations)
 
     def make_reader(self, context: ReadContext) -> DocumentReader:
         """Make a reader that reuses entries of the first loading."""
@@ -121,12 +121,12 @@ class IncrementalLoader(SpecLoader):
             differing = frozenset(self._iter_changed_lookups(ReadContext(scope, scope)))
             if record.lookups.isdisjoint(differing):
                 return record.table, record.findings
-        return super().table(name, entry, scope)
+        return super().build_entry_table(name, entry, scope)
 
     def load_mesh(self, file: str) -> tuple[TriangleMesh | None, list[TableProblem]]:
         """Return the mesh of a file; it is read once for all variants."""
         mesh = self.first.first_meshes.get(file)
-        return (mesh, []) if mesh is not None else super().surface(file)
+        return (mesh, []) if mesh is not None else super().load_mesh(file)
 
     def iter_violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """Yield the violations of the active rules; apply only the rules whose verdict may have changed."""
@@ -222,7 +222,7 @@ class IncrementalReader(DocumentReader):
         ones.
         """
         if not self.by_parameters:
-            return super().document()
+            return super().read_document()
         updated_blocks: dict[str, Any] = {}
         for block, name in self.first.find_changed_entries(self.changed_lookups):
             if block in f.SINGLE_BLOCKS:
@@ -249,12 +249,12 @@ class IncrementalReader(DocumentReader):
         has_same_data = record is not None and type(record.entry) is model and is_same(data, record.data)
         if record is not None and has_same_data and record.lookups.isdisjoint(self.changed_lookups):
             return record.entry
-        return super().model(path, data, model)
+        return super().read_model(path, data, model)
 
     def read_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
         """Return the body with its shapes read; the first one if it is unchanged."""
         first_body, first_shaped_body = self.first.shaped_bodies.get(path, (None, None))
-        new = super().with_shapes(path, body)
+        new = super().read_shapes(path, body)
         if (
             new is None
             or first_shaped_body is None

@@ -106,12 +106,12 @@ class TrackedFiles(NamedFiles):
     def read_content(self, name: str) -> bytes | bytearray:
         """Read the bytes of a file and record its name."""
         self.names[name] = None
-        return super().content(name)
+        return super().read_content(name)
 
     def find_outside_warning(self, name: str) -> Finding | None:
         """Return the warning about a file's place and record its name."""
         self.names[name] = None
-        return super().outside(name)
+        return super().find_outside_warning(name)
 
 
 class PreloadedFiles(NamedFiles):

@@ -115,7 +115,7 @@ class RecordingLoader(SpecLoader):
 
     def load_spec(self) -> Spec:
         """Load the scene. Raises SpecError."""
-        self.resolved = super().spec()
+        self.resolved = super().load_spec()
         return self.resolved
 
     def resolve_document(self, document: f.Document, meaning: ResolveInputs) -> Spec:
@@ -125,7 +125,7 @@ class RecordingLoader(SpecLoader):
 
     def collect_names(self) -> SceneNames:
         """Collect everything that the spec names."""
-        self.first_names = super().names()
+        self.first_names = super().collect_names()
         return self.first_names
 
     def evaluate_parameter_block(self) -> Parameters:
@@ -138,7 +138,7 @@ class RecordingLoader(SpecLoader):
         self, parameters: Mapping[str, float | None], given_parameters: Mapping[str, DimensionedParameter]
     ) -> Scope:
         """Make the scope of names that a constant number may use; the calculations are recorded."""
-        return replace(super().scope(parameters, given_parameters), calculations=self.calculations)
+        return replace(super().make_scope(parameters, given_parameters), calculations=self.calculations)
 
     def make_reader(self, context: ReadContext) -> DocumentReader:
         """Make a reader that records what it reads."""
@@ -158,7 +158,7 @@ class RecordingLoader(SpecLoader):
     ) -> tuple[TableFunction | None, list[TableProblem]]:
         """Build and record the table of an entry, and list what is wrong with it."""
         self.log.take()
-        table, problems = super().table(name, entry, self._watch_scope(scope))
+        table, problems = super().build_entry_table(name, entry, self._watch_scope(scope))
         self.table_records[name] = TableRecord(table, entry, self.log.take(), problems)
         return table, problems
 
@@ -200,7 +200,7 @@ class RecordingLoader(SpecLoader):
     def collect_locations(self) -> dict[str, SourceLocation]:
         """Collect the locations for later stages."""
         self.located_paths = self.list_located_paths()
-        self.first_locations = super().locations()
+        self.first_locations = super().collect_locations()
         return self.first_locations
 
     def find_changed_entries(self, changed_lookups: frozenset[Lookup]) -> list[tuple[str, Any]]:
@@ -271,20 +271,20 @@ class RecordingReader(DocumentReader):
 
     def read_document(self) -> f.Document:
         """Read every block that can be read."""
-        self.first.document = super().document()
+        self.first.document = super().read_document()
         return self.first.document
 
     def read_model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
         """Read and record one model."""
         self.first.log.take()
-        entry = super().model(path, data, model)
+        entry = super().read_model(path, data, model)
         if entry is not None:
             self.first.entry_records[path] = EntryRecord(entry, data, self.first.log.take())
         return entry
 
     def read_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
         """Return the body with its shapes read, and record both."""
-        whole = super().with_shapes(path, body)
+        whole = super().read_shapes(path, body)
         if whole is not None:
             self.first.shaped_bodies[path] = body, whole
         return whole
@@ -303,7 +303,7 @@ class RecordingResolver(Resolver):
 
     def resolve_entries(self, block: str, method: str) -> dict[Any, Any]:
         """Resolve and record the entries of a block."""
-        resolved = super().entries(block, method)
+        resolved = super().resolve_entries(block, method)
         for name, value in resolved.items():
             self._record((block, name), value, partial(self._resolve_watched, block, method, name))
         return resolved
@@ -314,7 +314,7 @@ class RecordingResolver(Resolver):
 
     def resolve_single(self, method: str) -> Any:
         """Resolve and record a part that belongs to the document as a whole."""
-        value = super().single(method)
+        value = super().resolve_single(method)
         self._record((method, None), value, lambda: self.watching_resolver.resolve_single(method))
         return value
 

@@ -386,7 +386,7 @@ class Resolver:
         to_vector = vector if load.to_vector is None else self.attach_locations(load.to_vector, path, "to_vector")
         return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
-    def impulse(self, name: str, blow: f.ImpulseEntry) -> m.Blow[str, m.Vec]:
+    def impulse(self, name: str, blow: f.ImpulseEntry) -> m.AppliedImpulse[str, m.Vec]:
         body, point = blow.body, None
         if blow.on is not None:
             body, point = blow.on.body, self.end(blow.on).point if blow.on.at is not None else None
@@ -483,7 +483,7 @@ class Resolver:
         return m.Stop(name, coordinate.joint, coordinate.quantity, None, None, 0.0, latch)
 
 
-def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:
+def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.FramedVector[m.Vec] | None:
     """Return a vector in world axes unless the value says otherwise."""
     if value is None:
         return None

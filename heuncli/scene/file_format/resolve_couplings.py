@@ -174,7 +174,7 @@ def resolve_rope(resolver: ReferenceResolver, name: str, entry: f.RopeEntry) -> 
     return c.Rope(passages, length, entry.tension_only, entry.restitution, law, *elastic_properties)
 
 
-def resolve_passage(resolver: ReferenceResolver, entry: f.PassageEntry) -> c.Passage:
+def resolve_passage(resolver: ReferenceResolver, entry: f.PassageEntry) -> c.RopePassage:
     """Resolve a place that a rope passes."""
     written_end = entry.point if entry.point is not None else entry.sheave
     assert written_end is not None

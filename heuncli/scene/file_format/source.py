@@ -172,7 +172,7 @@ def find_syntax_problems(file: str, text: str, error: yaml.MarkedYAMLError) -> l
         line_column = line_and_column(text, find_too_deep_bracket(text[:stop_index]))
         return [Problem("too-deep", TOO_DEEP, SourceLocation(file, *line_column), TOO_DEEP_HINT)]
     if unmatched := find_mismatches(text, stop_index):
-        locations = [SourceLocation(file, *line_and_column(text, one.at)) for one in unmatched]
+        locations = [SourceLocation(file, *line_and_column(text, one.offset)) for one in unmatched]
         return [
             Problem("not-yaml", f"not YAML: {one.message}", locations[k], one.hint) for k, one in enumerate(unmatched)
         ]

@@ -36,7 +36,7 @@ class PlyElement(NamedTuple):
     """A number of items of one kind, with their properties."""
 
     name: str
-    count: int
+    item_count: int
     properties: list[PlyProperty]
 
 
@@ -103,7 +103,7 @@ def parse_header(content: bytes) -> PlyHeader:
             raise mesh_file_finding(
                 "a line of the PLY head is none", "format, element, property; comments begin so"
             ) from None
-    if order is None or any(not 0 <= element.many <= len(content) for element in elements):
+    if order is None or any(not 0 <= element.item_count <= len(content) for element in elements):
         raise mesh_file_finding("the head of the PLY file announces more than there is", SAVE_AGAIN_HINT)
     return PlyHeader(order, elements, line_end + 1)
 
@@ -129,7 +129,7 @@ def find_corner_list(element: PlyElement) -> int:
 def truncated_finding(element: PlyElement) -> Finding:
     """Make the error for a file that ends too early."""
     return mesh_file_finding(
-        f"it breaks off: its head announces {element.many} of '{element.name}', there are fewer", SAVE_AGAIN_HINT
+        f"it breaks off: its head announces {element.item_count} of '{element.name}', there are fewer", SAVE_AGAIN_HINT
     )
 
 
@@ -141,10 +141,10 @@ class _TextBody:
 
     def take_lines(self, element: PlyElement) -> list[bytes]:
         """Read the lines of an element, one for each item."""
-        lines = self.lines[self.position : self.position + element.many]
-        if len(lines) < element.many:
+        lines = self.lines[self.position : self.position + element.item_count]
+        if len(lines) < element.item_count:
             raise truncated_finding(element)
-        self.position += element.many
+        self.position += element.item_count
         return lines
 
     def skip(self, element: PlyElement) -> None:
@@ -197,9 +197,9 @@ class _BinaryBody:
             else:
                 fields += [(f"n{i}", self.order + p.length_kind), (str(i), self.order + p.kind, list_length or 0)]
         row = np.dtype(fields)
-        if self.position + row.itemsize * element.many > len(self.content):
+        if self.position + row.itemsize * element.item_count > len(self.content):
             raise truncated_finding(element)
-        return np.frombuffer(self.content, row, element.many, self.position)
+        return np.frombuffer(self.content, row, element.item_count, self.position)
 
     def skip(self, element: PlyElement) -> None:
         """Skip an element."""
@@ -236,7 +236,7 @@ class _BinaryBody:
             np.dtype(self.order + corner_list.kind),
         )
         position, found = self.position, []
-        for _ in range(element.many):
+        for _ in range(element.item_count):
             position += size_before
             if position + length_type.itemsize > len(self.content):
                 raise truncated_finding(element)

@@ -137,7 +137,7 @@ def _never(one: CheckResult) -> bool:
     return False
 
 
-def _make_death_result(task: CheckTask, death: jobs.Died) -> CheckResult:
+def _make_death_result(task: CheckTask, death: jobs.ProcessDeath) -> CheckResult:
     """Make the result of a spec whose process died."""
     path = task.spec.path
     hint = "the memory may not have sufficed: --jobs 1; else please report it with the spec"

@@ -111,7 +111,7 @@ def _never(one: ReferenceResult) -> bool:
     return False
 
 
-def _make_death_result(name: str, death: jobs.Died) -> ReferenceResult:
+def _make_death_result(name: str, death: jobs.ProcessDeath) -> ReferenceResult:
     """Make the result of a case whose process died."""
     problem = death.make_problem("checked it", "please report it")
     messages = tuple(format_problems([problem], f"{name}: "))

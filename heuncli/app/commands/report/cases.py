@@ -47,7 +47,7 @@ class DigestedFiles(NamedFiles):
 
     def read_content(self, name: str) -> bytes | bytearray:
         """Return the bytes of a file. Raises Finding."""
-        content = super().content(name)
+        content = super().read_content(name)
         self.digests[name] = digest(content)
         return content
 

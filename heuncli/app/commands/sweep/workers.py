@@ -74,7 +74,7 @@ def answer_of(evaluator: VariantEvaluator, values: Mapping[str, str]) -> Variant
         return make_failed_result(error)
 
 
-def make_death_result(death: jobs.Died) -> VariantResult:
+def make_death_result(death: jobs.ProcessDeath) -> VariantResult:
     """Make the result of a variant that ended two processes, or one at the hard end of its time limit."""
     if death.is_time_up:
         return VariantResult(code="time-limit", reason="the time limit was reached, and the work did not stop")

@@ -78,7 +78,7 @@ def solve_in_worker(evaluator: VariantEvaluator, values: Mapping[str, str]) -> V
         return make_failed_result(error)
 
 
-def make_death_result(values: Mapping[str, str], death: jobs.Died) -> VariantResult:
+def make_death_result(values: Mapping[str, str], death: jobs.ProcessDeath) -> VariantResult:
     """Make the result of a variant whose process died."""
     if death.is_time_up:
         return VariantResult(code=TIME_LIMIT_CODE)

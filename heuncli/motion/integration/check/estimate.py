@@ -73,7 +73,7 @@ class LoadDifferences(Protocol):
     def errors(self) -> Mapping[tuple[str, str], float]:
         """Return the estimated errors by kind and unit, at instants before the horizon."""
 
-    def kinetic(self) -> float:
+    def largest_kinetic_energy(self) -> float:
         """Return the largest kinetic energy over the run [J]."""
 
     @property
@@ -173,7 +173,7 @@ def make_checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> Ch
             )
     evaluate = make_evaluate(runs, best, loads.by_cause)
     seconds = best.seconds + time.perf_counter() - clock_start
-    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.kinetic()
+    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.largest_kinetic_energy()
     check_impulses = tuple(run.impulse_events for run in best.runs[1:])
     return CheckedRun(
         a, evaluate, *error_results, check_impulses, seconds, discarded_seconds, find_condition_changes(runs, best)
