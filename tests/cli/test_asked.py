@@ -289,7 +289,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / "four_bar.yaml"))
     monkeypatch.setattr(Recovery, "decided", property(forbidden))
-    monkeypatch.setattr(load_errors, "joint_loads", forbidden)
+    monkeypatch.setattr(load_errors, "find_joint_loads", forbidden)
     study = asked(spec, ["coordinates.rocker.angle"])
     assert measure_value(MeasureRequest("max", "coordinates.rocker.angle"), study).value > 0.0
     assert study.results.accuracy["balance_residual"] < 1e-9

@@ -81,23 +81,23 @@ def foreign(*_: Any, **__: Any) -> Any:
         ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the scene was set up"),
         ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the scene was set up"),
         ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the scene was set up"),
-        ("heuncli.loads.equilibrium.search.slopes", "run rest.yaml", "on the way to the rest pose"),
+        ("heuncli.loads.equilibrium.search.make_rest_law", "run rest.yaml", "on the way to the rest pose"),
         (
             "heuncli.scene.expressions.discontinuities._find_switch_changes",
             "run driven.yaml",
             "while jumps in time were searched",
         ),
         (
-            "heuncli.motion.integration.check.estimate.instants_of",
+            "heuncli.motion.integration.check.estimate.choose_instants",
             "run swinging.yaml",
             "while the motion was integrated and checked",
         ),
         (
-            "heuncli.motion.integration.check.estimate.instants_of",
+            "heuncli.motion.integration.check.estimate.choose_instants",
             "check swinging.yaml",
             "swinging.yaml: the time limit",
         ),
-        ("heuncli.study.compose.recovery.body_states", "run swinging.yaml", "while loads were computed"),
+        ("heuncli.study.compose.recovery.make_body_states", "run swinging.yaml", "while loads were computed"),
         (
             "heuncli.study.search.extremes.find_best",
             "run swinging.yaml",
@@ -243,7 +243,7 @@ def test_of_several_specs_only_the_one_that_does_not_stop_is_lost(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "rest.yaml").write_text(REST)
-    monkeypatch.setattr("heuncli.loads.equilibrium.search.slopes", foreign)
+    monkeypatch.setattr("heuncli.loads.equilibrium.search.make_rest_law", foreign)
     monkeypatch.setattr(timeout, "HARD_END", 0.2)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "0.5")
     assert done.returncode == 4
@@ -283,7 +283,7 @@ def test_a_limit_in_a_thread_of_a_program_uses_no_signal_and_ends_nothing_else()
 def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The others are checked all the same."""
     (folder / "rest.yaml").write_text(REST)
-    monkeypatch.setattr("heuncli.loads.equilibrium.search.slopes", rung)
+    monkeypatch.setattr("heuncli.loads.equilibrium.search.make_rest_law", rung)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "60")
     assert done.returncode == 4
     assert "1 passed, 0 failed, 1 spec not solved" in done.stdout

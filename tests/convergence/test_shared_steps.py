@@ -52,7 +52,7 @@ def test_what_is_told_is_no_less_than_the_error(w: int, jumps: int, monkeypatch:
     off /= s.setup.runner.layout.size
     assert off > 1e-12  # more than rounding
     assert off <= found.accuracy["estimate"]["motion"] <= LOOSE
-    monkeypatch.setattr(runs, "shared_steps", lambda *_: False)  # by the difference of the two alone
+    monkeypatch.setattr(runs, "has_shared_steps", lambda *_: False)  # by the difference of the two alone
     assert study(text(w, jumps), method="DOP853").results.accuracy["estimate"]["motion"] < 1e-3 * off
 
 

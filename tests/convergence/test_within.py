@@ -122,7 +122,7 @@ def others(setup: Setup, run: Trajectory) -> Array:
 @pytest.mark.parametrize("name", MOVING)
 def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """States at other instants are those of a run that was asked for them; which are asked changes no step."""
-    monkeypatch.setattr(step_records, "KEPT", kept)
+    monkeypatch.setattr(step_records, "MAX_RECORD_NUMBERS", kept)
     setup = scene(name)
     times = asked(setup)
     run, bare = trajectory(setup, times), trajectory(setup, times[[0, -1]])

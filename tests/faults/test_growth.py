@@ -189,7 +189,7 @@ class Heard(Exception):
 def test_a_long_run_says_so_while_it_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """A sheave of 1e-9 kg on a pin, whose spin answers to rounding of the rope's pull: named, with the reason."""
     monkeypatch.setattr(slow_runs, "PATIENCE", 0.5)
-    monkeypatch.setattr(slow_runs, "LONG", 1.0)
+    monkeypatch.setattr(slow_runs, "LONG_RUN", 1.0)
 
     def hear(text: str) -> None:
         raise Heard(text)

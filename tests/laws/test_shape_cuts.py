@@ -234,7 +234,7 @@ def test_many_planes_are_cut_a_share_at_a_time(name: str, monkeypatch: pytest.Mo
 def counted(limits: Any, asked: list[int]) -> Any:
     """The same, with how many planes it is asked for."""
 
-    def of(self: composite_solid.Form, n: Array, d: Array, side: Array) -> Any:
+    def of(self: composite_solid.CompositeSolid, n: Array, d: Array, side: Array) -> Any:
         asked.append(len(d))
         return limits(self, n, d, side)
 

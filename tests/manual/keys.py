@@ -69,7 +69,7 @@ PLACES = tuple(dict.fromkeys(places()))
 SPELLED = {"*": "·", "^2": "²", "^3": "³", "^4": "⁴"}
 
 
-def unit_of_value(name: str, value: fields.ReadValue) -> str | None:
+def unit_of_value(name: str, value: fields.ValueReader) -> str | None:
     """The unit that the manual writes for a kind of scene/file_format/fields.py; None where other keys decide it."""
     if value.dimension is None or isinstance(value, fields.DirectionComponent):
         return None
@@ -95,12 +95,12 @@ def unit_of(field: Field) -> str | None:
     return found.pop() if len(found) == 1 else None
 
 
-def values(field: Field) -> Iterator[fields.ReadValue]:
+def values(field: Field) -> Iterator[fields.ValueReader]:
     """The values that stand in a field's annotation."""
     yield from within(field.annotation)
 
 
-def within(annotation: Any) -> Iterator[fields.ReadValue]:
+def within(annotation: Any) -> Iterator[fields.ValueReader]:
     """The values within an annotation; those of models apart."""
     for value in getattr(annotation, "__metadata__", ()):
         if isinstance(value, fields.ValueReader):

@@ -177,7 +177,7 @@ def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatc
         block = energy(*given)
         return block | {"kinetic": block["kinetic"] + np.where(np.arange(len(block["kinetic"])) == 3, np.inf, 0.0)}
 
-    monkeypatch.setattr(recovery, "energy", broken)
+    monkeypatch.setattr(recovery, "energy_block", broken)
     with Path("swinging.yaml").open("a") as spec:
         spec.write("expect: [{of: energy.kinetic, peak: max, is: 1}]\n")
     done = heun(*words)

@@ -120,7 +120,7 @@ def test_what_is_not_finite_is_refused_in_the_same_words(small: None, monkeypatc
         block = energy(layout, recovered, *given)
         return block | {"kinetic": np.where(recovered.times > 0.55, np.inf, block["kinetic"])}
 
-    monkeypatch.setattr(recovery, "energy", broken)
+    monkeypatch.setattr(recovery, "energy_block", broken)
     told = []
     for in_parts in (False, True):
         with pytest.raises(SolveError) as caught:
