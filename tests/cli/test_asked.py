@@ -296,7 +296,7 @@ def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_state_integrates_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Runner, "trajectory", forbidden)
+    monkeypatch.setattr(Runner, "run", forbidden)
     found = solve(load(str(SPECS / "flywheel.yaml"))).results
     assert found.work["steps"] == 0 and found.sections
 

@@ -34,7 +34,7 @@ def shot(call):
 from heuncli.__main__ import main
 if where.startswith("os."):
     import heuncli.base.files
-    from heuncli.app.cli import files
+    from heuncli.base import files
     write = files.write
     def writing(*given):
         setattr(os, where[3:], shot(getattr(os, where[3:])))
@@ -91,7 +91,7 @@ def test_a_signal_once_it_is_written_leaves_the_new_one(folder: Path, old: str |
 # Writes half of a file and dies, by a signal that nothing is done about.
 KILLED = """\
 import os, signal, sys
-from heuncli.app.cli import files
+from heuncli.base import files
 if sys.argv[1] == "named":
     del os.O_TMPFILE
 def pieces():

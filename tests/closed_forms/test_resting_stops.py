@@ -142,7 +142,7 @@ def sums(found: Results) -> list[float]:
 
 @pytest.mark.parametrize("scene", [LID.format(ends="from: ground.O, to: lid.a", limits="[0, 90 deg]"), STACK])
 def test_the_weight_alone_presses_on_stops(scene: str) -> None:
-    found = solved(scene, wanted=frozenset({"foundation", "shares"}))
+    found = solved(scene, requested_reports=frozenset({"foundation", "shares"}))
     for part in found.foundation["elements"].values():
         for component in ("force", "moment"):
             near(part["shares"]["gravity"][component], part[component], 50.0, 1e-13)

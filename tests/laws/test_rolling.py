@@ -114,7 +114,7 @@ def test_bodies_in_another_order(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_causes_add_up_and_rolling_takes_no_power(seed: int) -> None:
     """The shares of the normal force; without loads the energies stay."""
-    one = run(bare(seed), wanted=frozenset({"joints", "shares", "energy"}))
+    one = run(bare(seed), requested_reports=frozenset({"joints", "shares", "energy"}))
     own = one.couplings["rim"]
     size = max(1.0, float(np.abs(own["force"]).max()))
     near(sum(share["normal"] for share in own["shares"].values()), own["normal"], size, 1e-8)

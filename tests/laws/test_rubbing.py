@@ -131,12 +131,12 @@ def test_its_share_is_its_own_value(seed: int) -> None:
     """The shares add up to all, and that of friction is what a torque of its value does alone."""
     scene, _ = rubbing_scene(seed)
     wanted = frozenset({"joints", "forces", "shares"})
-    found = solved(scene, wanted=wanted)
+    found = solved(scene, requested_reports=wanted)
     torques = {
         name: {"type": "torque", "joint": spec["joint"], "value": float(found.forces[name]["value"][0])}
         for name, spec in rubs_of(scene).items()
     }
-    told = solved({**scene, "forces": scene["forces"] | torques}, wanted=wanted)
+    told = solved({**scene, "forces": scene["forces"] | torques}, requested_reports=wanted)
     for name, block in found.joints.items():
         size = max(1.0, float(np.abs(block["force"]).max()))
         near(sum(share["force"] for share in block["shares"].values()), block["force"], size)

@@ -39,7 +39,7 @@ def scene_of(kind: str, seed: int) -> dict[str, Any]:
 @cache
 def run(kind: str, seed: int) -> Results:
     """Its results by cause."""
-    return solved(scene_of(kind, seed), wanted=WANTED)
+    return solved(scene_of(kind, seed), requested_reports=WANTED)
 
 
 def blocks(found: Results) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -126,7 +126,7 @@ def test_a_share_is_what_its_cause_does_alone(kind: str, seed: int) -> None:
         own = alone(scene, found, cause)
         if own is None:
             continue
-        only = dict(blocks(solved(own, wanted=WANTED)))
+        only = dict(blocks(solved(own, requested_reports=WANTED)))
         for name, block in blocks(found):
             for quantity in ("force", "moment"):
                 share = np.nan_to_num(block["shares"][cause][quantity])
@@ -147,7 +147,7 @@ def test_the_share_of_motion_grows_with_the_square_of_the_speed(kind: str, seed:
         name: {k: entry_of(v, 3.0, 1.0) if isinstance(v, tuple) else v for k, v in drive.items()}
         for name, drive in scene.get("drives", {}).items()
     }
-    faster = solved({**scene, "bodies": bodies, **({"drives": drives} if drives else {})}, wanted=WANTED)
+    faster = solved({**scene, "bodies": bodies, **({"drives": drives} if drives else {})}, requested_reports=WANTED)
     F, M = size_of(faster)
     for (_, block), (_, other) in zip(blocks(found), blocks(faster), strict=True):
         for quantity in ("force", "moment"):
@@ -169,7 +169,7 @@ def test_a_force_off_the_piece_acts_through_the_acceleration_it_causes() -> None
     scene = {"gravity": [0.3, -2.0, 1.0], "ground": {"points": {"O": [0, 0, 0]}}, "bodies": {"box": body},
              "forces": forces,
              "sections": {"cut": {"body": "box", "at": [0.5, 0, 0], "normal": [1, 0, 0]}}}  # fmt: skip
-    found = solved(scene, wanted=WANTED)
+    found = solved(scene, requested_reports=WANTED)
     m, A = 1.2, np.diag([1.0 + 0.36, 4.0 + 0.36, 4.0 + 1.0]) * 1.2 / 12
     piece, centre, middle = 0.6 * 1.0 * 0.6, np.array([0.8, 0.2, -0.1]), np.array([0.1, 0.2, -0.1])
     for name, told in forces.items():
@@ -201,7 +201,7 @@ def fixed_point(seed: int) -> tuple[Results, dict[str, Array]]:
                    for name, f in (("on", on), ("off", off))},
         "sections": {"cut": {"body": "box", "at": [0.7, 0, 0], "normal": [1, 0, 0], "reduce_to": "ground.O"}},
     }  # fmt: skip
-    return solved(scene, wanted=WANTED), {"sigma": sigma, "g": g, "on": on, "off": off}
+    return solved(scene, requested_reports=WANTED), {"sigma": sigma, "g": g, "on": on, "off": off}
 
 
 def about_origin(low: Array, high: Array) -> tuple[float, Array, Array]:
@@ -248,7 +248,7 @@ def test_u_w_of_59_and_P_Q_of_61(seed: int) -> None:
 
 def test_the_door_is_open_along_its_hinges_in_every_share() -> None:
     """Its weight turns it against the hinges, its motion pulls at them; how they share the weight is open."""
-    found = solved(door(), wanted=WANTED)
+    found = solved(door(), requested_reports=WANTED)
     for name, sign in (("top", -1.0), ("bottom", 1.0)):
         shares = found.joints[name]["shares"]
         assert np.isnan(shares["gravity"]["force"][0, 2]) and np.isnan(shares["motion"]["force"][0, 2])
@@ -257,7 +257,7 @@ def test_the_door_is_open_along_its_hinges_in_every_share() -> None:
     near(found.foundation["shares"]["motion"]["force"][0], (5 * 0.4 * 2.3**2, 0.0, 0.0), 10.0, ROUNDING)
     scene = door()
     scene["joints"]["top"]["stiffness"], scene["joints"]["bottom"]["stiffness"] = 3e8, 1e8
-    split = solved(scene, wanted=WANTED)
+    split = solved(scene, requested_reports=WANTED)
     near(split.joints["top"]["shares"]["gravity"]["force"][0, 2], 0.75 * 49.05, 10.0, ROUNDING)
     near(split.joints["top"]["shares"]["motion"]["force"][0, 2], 0.0, 10.0, ROUNDING)
 
@@ -292,9 +292,9 @@ def blocks_of_blow(block: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]
 def test_a_blow_s_share_is_what_it_does_alone(kind: str, seed: int) -> None:
     """Of several at one instant; together they are the whole."""
     scene = struck(kind, seed)
-    (whole,) = solved(scene, wanted=STRUCK).impulses
+    (whole,) = solved(scene, requested_reports=STRUCK).impulses
     apart = {
-        name: solved({**scene, "impulses": {name: blow}}, wanted=STRUCK).impulses[0]
+        name: solved({**scene, "impulses": {name: blow}}, requested_reports=STRUCK).impulses[0]
         for name, blow in scene["impulses"].items()
     }
     own = {name: dict(blocks_of_blow(block)) for name, block in apart.items()}
@@ -328,7 +328,7 @@ def test_a_drive_whose_rate_jumps_is_a_cause_of_its_own() -> None:
         "impulses": {"blow": {"on": "rod.at", "vector": [0, hit, 0], "time": 0.1}},
         "analysis": {"duration": 0.2, "samples": 3},
     }  # fmt: skip
-    (block,) = solved(scene, wanted=STRUCK).impulses
+    (block,) = solved(scene, requested_reports=STRUCK).impulses
     shares = block["joints"]["pin"]["shares"]
     assert list(shares) == ["blow", "drives"]
     near(shares["drives"]["force"], (0.0, m * L / 2 * jump, 0.0), 1.0, ROUNDING)
@@ -360,7 +360,7 @@ def resting(analysis: dict[str, Any]) -> Results:
         "sections": {"cut": {"body": "rod", "at": [0.5, 0, 0], "normal": [1, 0, 0]}},
         "analysis": analysis,
     }  # fmt: skip
-    return solved(scene, wanted=WANTED)
+    return solved(scene, requested_reports=WANTED)
 
 
 def test_what_rests_on_a_stop_is_held_by_it_in_every_share() -> None:
@@ -398,7 +398,7 @@ def test_what_bears_in_a_blow_is_a_cause_by_its_name() -> None:
         "impulses": {"down": {"on": "rod.x", "vector": [0, 0, -H]}},
         "analysis": {"type": "impulse"},
     }  # fmt: skip
-    (block,) = solved(scene, wanted=STRUCK).impulses
+    (block,) = solved(scene, requested_reports=STRUCK).impulses
     assert list(block["joints"]["A"]["shares"]) == ["down", "rest"]
     near(block["joints"]["A"]["force"], (0.0, 0.0, H), 1.0, ROUNDING)  # nothing moves: the stop's is a moment
     near(block["joints"]["A"]["shares"]["down"]["force"], (0.0, 0.0, H * (1.0 - 1.5 * x / L)), 1.0, ROUNDING)
@@ -419,7 +419,7 @@ def test_a_load_of_nothing_is_a_cause_of_nothing() -> None:
         "forces": {"none": {"type": "force", "on": "bar.b", "vector": [0, 0, 0]}},
         "sections": {"middle": {"body": "bar", "at": [0.5, 0, 0], "normal": [1, 0, 0]}},
     }  # fmt: skip
-    own = solved(scene, wanted=WANTED).sections["middle"]["shares"]
+    own = solved(scene, requested_reports=WANTED).sections["middle"]["shares"]
     assert own["gravity"]["N"].tolist() == [0.0]
     assert own["gravity"]["Q2"] == pytest.approx([-4.905])
     assert not own["none"]["direct_force"].any() and not own["none"]["force"].any()
@@ -443,7 +443,7 @@ def test_a_strike_leaves_no_share_to_drives_that_are_not() -> None:
         },
         "stops": {"end": {"joint": "guide", "travel": [None, 0.1]}},
     }  # fmt: skip
-    found = solved(moving(scene, [0.0, 0.1, 0.2]), wanted=WANTED)
+    found = solved(moving(scene, [0.0, 0.1, 0.2]), requested_reports=WANTED)
     assert found.stops["end"]["force"][-1] < 0.0
     shares = found.foundation["shares"]
     assert not shares["drives"]["force"].any()
@@ -453,7 +453,7 @@ def test_a_strike_leaves_no_share_to_drives_that_are_not() -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", ["belt_drive", "screw_press"])
 def test_shares_of_couplings_add_up(name: str) -> None:
-    found = solved((SPECS / f"{name}.yaml").read_text(encoding="utf-8"), wanted=WANTED | {"couplings"})
+    found = solved((SPECS / f"{name}.yaml").read_text(encoding="utf-8"), requested_reports=WANTED | {"couplings"})
     for coupling in found.couplings.values():
         parts = [share["force"] for share in coupling["shares"].values()]
         largest = np.max(np.abs(parts))

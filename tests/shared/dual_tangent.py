@@ -22,11 +22,11 @@ def dual_tangent(layout: Layout, t: float, state: Array, closed: float = 0.0) ->
     workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, kernel_numbers(layout))
     workspace.hold([closed] * len(layout.contacts))
     workspace.start(0.0, layout.y0.tolist())
-    scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("chosen")
+    scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("row_choice")
     y: list[float] = np.asarray(state, dtype=float).tolist()
     for _ in range(2):
         if scene.closure_count:
-            chosen.choose_afresh(scene, t, y)
+            chosen.choose_rows_again(scene, t, y)
         kernel.settle(scene, t, y)
     moving: list[Any] = [Dual(x, row) for x, row in zip(y, np.eye(n), strict=True)]
     dy: list[Any] = [0.0] * n

@@ -165,7 +165,7 @@ class CouplingLoads:
         action_loads = (
             (end.body, end.position, F, M)
             for action in (*extra_actions, *friction_actions)
-            for end, F, M in action.on_bodies()
+            for end, F, M in action.iter_ends()
         )
         for body, place, body_force, body_moment in chain(part_loads, action_loads):
             position, force, moment = loads_by_body.get(

@@ -63,7 +63,7 @@ class Evaluation:
         values_by_name = fields(self)
         causes = values_by_name.pop("causes")
         return Evaluation(
-            **{name: values[instants] for name, values in values_by_name.items()}, causes=causes and causes.at(instants)
+            **{name: values[instants] for name, values in values_by_name.items()}, causes=causes and causes.select(instants)
         )
 
 

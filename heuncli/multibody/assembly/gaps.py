@@ -51,7 +51,7 @@ def _nearest_path_points(paths: Array, Ra: Array, D: Array) -> Array:
     """Find the point of each path that is nearest to its joint's point, world axes, (..., n, 3); paths as objects."""
     points = np.einsum("...ji,...j->...i", Ra, D)
     for i, path in enumerate(paths):
-        points[..., i, :] = path.at(path.nearest(points[..., i, :]))[0]
+        points[..., i, :] = path.evaluate(path.find_nearest(points[..., i, :]))[0]
     return _apply(Ra, points)
 
 

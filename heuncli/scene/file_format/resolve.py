@@ -515,12 +515,12 @@ def expand_stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.V
     if isinstance(value, float):
         return (value, value, value), m.RIGID
 
-    def three(part: float | m.Vec | None) -> m.Vec:
+    def expand(part: float | m.Vec | None) -> m.Vec:
         if part is None:
             return m.RIGID
         return (part, part, part) if isinstance(part, float) else part
 
-    return expand_to_axes(value.force), expand_to_axes(value.moment)
+    return expand(value.force), expand(value.moment)
 
 
 def make_properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Properties | None:

@@ -46,7 +46,7 @@ def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states:
         from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
 
         for name, values in DRIVE_ELEMENT_NUMBERS[spec_coupling.type](
-            spec_coupling, loads.carried_load, struck=False
+            spec_coupling, loads.carried_load, is_impulse=False
         ).items():
             numbers_by_quantity.setdefault("moment" if name == "torque" else "force", []).append(values)
     if spec_coupling.type == "cam":
