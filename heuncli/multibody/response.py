@@ -158,13 +158,13 @@ class Columns:
     def sum(self) -> Columns:
         """Sum the columns along the first axis."""
 
-        def added(table: Table) -> Table:
+        def sum_rows(table: Table) -> Table:
             whole = np.zeros(table.shape[1:], table.dtype)
             for name in table.dtype.names or ():
                 whole[name] = table[name].sum(axis=0)
             return whole
 
-        return Columns(added(self.bodies), added(self.freedoms), self.multipliers.sum(axis=0))
+        return Columns(sum_rows(self.bodies), sum_rows(self.freedoms), self.multipliers.sum(axis=0))
 
 
 def solve_columns(kernel: workspace.Workspace, t: float, state: Array, loads: Array, inertial: Array) -> Columns:

@@ -82,7 +82,7 @@ class Quantity(NamedTuple):
         return tuple(axis for axis in self.shape if run or axis is not CUT)
 
 
-def place_quantities(prefix: str, meaning: str, *quantities: Quantity) -> tuple[Quantity, ...]:
+def rows(prefix: str, meaning: str, *quantities: Quantity) -> tuple[Quantity, ...]:
     """Return quantities, in their order, with a path prefix and a common meaning."""
     return tuple(q._replace(path=f"{prefix}.{q.path}" if prefix else q.path, meaning=meaning) for q in quantities)
 
@@ -107,21 +107,21 @@ def cut_vector(name: str, unit: str) -> Quantity:
     return scalar(name, unit, (CUT, SPACE))
 
 
-def text_quantity(name: str) -> Quantity:
+def words(name: str) -> Quantity:
     """Make a text, or names."""
     return Quantity(name, (), (), "", is_timed=False)
 
 
-def block_quantity(name: str) -> Quantity:
+def block(name: str) -> Quantity:
     """Make a block that these rows do not describe: of words, and of numbers without instants."""
     return Quantity(name, (), (), "", is_timed=False, has_own_form=True)
 
 
-def share_quantities(prefix: str, *quantities: Quantity) -> tuple[Quantity, ...]:
+def shares(prefix: str, *quantities: Quantity) -> tuple[Quantity, ...]:
     """Make the shares of the causes in the wrench at a path; they sum to the wrench."""
     wrench = vector("force", "N"), vector("moment", "N·m")
     meaning = "the part that CAUSE has in it: `gravity`, a force by its name, `drives` or `motion`"
-    return place_quantities(f"{prefix}.shares.CAUSE", meaning, *(quantities or wrench))
+    return rows(f"{prefix}.shares.CAUSE", meaning, *(quantities or wrench))
 
 
 DIRECT = (
@@ -138,382 +138,155 @@ AXIAL_FORCES, TILTING_MOMENTS = ("axial", "radial", "tension"), ("tilting",)
 OPEN = "the components that are open at some instant"
 NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
-    *place_quantities("", "what was solved, as `heun model` tells it", block_quantity("model")),
-    *place_quantities("", "completed or stopped, and a message", text_quantity("status")),
-    *place_quantities("", "the instants", scalar("time", "s")),
-    *place_quantities("bodies.BODY", "of the body's origin", vector("position", "m"), vector("velocity", "m/s")),
-    *place_quantities(
-        "bodies.BODY", "attitude of the body; the columns are its axes", scalar("rotation", "1", (SPACE, SPACE))
-    ),
-    *place_quantities(
-        "bodies.BODY",
-        "the attitude as unit quaternion `w`, `x`, `y`, `z`; w ≥ 0 at the start, its sign does not jump",
-        scalar("quaternion", "1", (QUATERNION,)),
-    ),
-    *place_quantities(
-        "bodies.BODY",
-        "Rodrigues' vector of the attitude: tan(half the turn) times its axis, of the turn from the "
-        "world's axes; null at half a turn",
-        vector("rodrigues", "1"),
-    ),
-    *place_quantities(
-        "bodies.BODY",
-        "of the centre of mass",
-        vector("center", "m"),
-        vector("center_velocity", "m/s"),
-        vector("center_acceleration", "m/s²"),
-    ),
-    *place_quantities(
-        "bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")
-    ),
-    *place_quantities(
-        "bodies.BODY",
-        "momentum; moment of momentum (16) about `foundation.about`",
-        vector("momentum", "N·s"),
-        vector("moment_of_momentum", "N·m·s"),
-    ),
-    *place_quantities(
-        "points.POINT",
-        "of a named point, `body.point`",
-        vector("position", "m"),
-        vector("velocity", "m/s"),
-        vector("acceleration", "m/s²"),
-    ),
-    *place_quantities(
-        "coordinates.JOINT",
-        "turning of `to` against `from` about the axis, turns counted",
-        scalar("angle", "rad"),
-        scalar("rate", "rad/s"),
-    ),
-    *place_quantities(
-        "coordinates.JOINT", "of the coordinate; of a cylinder along its axis", scalar("acceleration", "m/s² | rad/s²")
-    ),
-    *place_quantities(
-        "coordinates.JOINT",
-        "sliding of `to` against `from` along the axis",
-        scalar("travel", "m"),
-        scalar("speed", "m/s"),
-    ),
-    *place_quantities("coordinates.JOINT", "of a cylinder about its axis", scalar("angular_acceleration", "rad/s²")),
-    *place_quantities(
-        "foundation",
-        "total ON the ground, its moment about `about`",
-        scalar("about", "m", (SPACE,), is_timed=False),
-        vector("force", "N"),
-        vector("moment", "N·m"),
-    ),
-    *place_quantities(
-        "foundation.axis",
-        "central axis: its point nearest to `about`, its direction, moment over force",
-        vector("point", "m"),
-        vector("direction", "1"),
-        scalar("pitch", "m"),
-    ),
-    *place_quantities(
-        "foundation.mass_effect",
-        "mass effect (56): +Σ m ẍ, the rates of Σ m x × ẋ and of Σ I σ",
-        vector("force", "N"),
-        vector("moment_orbital", "N·m"),
-        vector("moment_spin", "N·m"),
-    ),
-    *place_quantities(
-        "foundation.supports.JOINT",
-        "of a joint ON the ground, its moment about the `to` point",
-        vector("force", "N"),
-        vector("moment", "N·m"),
-    ),
-    *place_quantities(
-        "foundation.elements.ELEMENT",
-        "of a force, drive or stop ON the ground, its moment about `point`",
-        vector("force", "N"),
-        vector("moment", "N·m"),
-        vector("point", "m"),
-    ),
-    *share_quantities("foundation"),
-    *place_quantities("foundation.shares.CAUSE", DIRECT, vector("direct_force", "N"), vector("direct_moment", "N·m")),
-    *share_quantities("foundation.supports.JOINT"),
-    *share_quantities("foundation.elements.ELEMENT"),
-    *place_quantities(
-        "joints.JOINT",
-        "of the constraint alone, `from` ON `to`; `point`, about which the moment is, is where the `to` point is now",
-        vector("point", "m"),
-        vector("force", "N"),
-        vector("moment", "N·m"),
-    ),
-    *place_quantities(
-        "joints.JOINT", f"{OPEN}, and those that a chosen split gives", text_quantity("open"), text_quantity("chosen")
-    ),
-    *place_quantities(
-        "joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")
-    ),
-    *place_quantities(
-        "joints.JOINT",
-        "the force along the axis, the force across it, the moment across it",
-        scalar("axial", "N"),
-        scalar("radial", "N"),
-        scalar("tilting", "N·m"),
-    ),
-    *place_quantities(
-        "joints.JOINT",
-        "mean pressure of its `bearing`: force (with an axis `radial`) / (diameter · width)",
-        scalar("pressure", "Pa"),
-    ),
-    *place_quantities(
-        "joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")
-    ),
-    *place_quantities("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
-    *place_quantities("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
-    *share_quantities(
-        "joints.JOINT",
-        vector("force", "N"),
-        vector("moment", "N·m"),
-        scalar("drive", "N | N·m"),
-        scalar("tension", "N"),
-        scalar("torque", "N·m"),
-    ),
-    *place_quantities(
-        "stops.STOP",
-        "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
-        scalar("force", "N"),
-        scalar("moment", "N·m"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "the load that the coupling carries; `contact`: of a cam along the normal of its flank, "
-        "above zero where it presses",
-        scalar("force", "N"),
-        scalar("moment", "N·m"),
-        scalar("contact", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of a cam, the angle between that normal and the way of the follower",
-        scalar("pressure_angle", "rad"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of gears all of the tooth force; of a wheel what the plane presses it with",
-        scalar("normal", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of gears, the parts of the tooth force beside the tangential one",
-        scalar("radial", "N"),
-        scalar("axial", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of a screw with friction, the power that comes out by the power that goes in; 0 where none comes out",
-        scalar("efficiency", "1"),
-    ),
-    *place_quantities("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of a rope; where sheaves hold it, behind the first of them another one: the last",
-        scalar("tension", "N"),
-        scalar("last_tension", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of a belt, the pulls of its strands; below zero one would have to push",
-        scalar("tight", "N"),
-        scalar("slack", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of a wheel: what keeps it from slipping, in all, along its track and along its axle's "
-        "shadow on the plane, ON the wheel",
-        scalar("friction", "N"),
-        scalar("along", "N"),
-        scalar("aside", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING",
-        "of a wheel with a coefficient of friction, coefficient · normal − friction: it slips where that is below zero",
-        scalar("grip", "N"),
-    ),
-    *place_quantities(
-        "couplings.COUPLING.on.END",
-        "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
-        vector("point", "m"),
-        vector("force", "N"),
-        vector("moment", "N·m"),
-    ),
-    *place_quantities("couplings.COUPLING", OPEN, text_quantity("open")),
-    *share_quantities(
-        "couplings.COUPLING",
-        scalar("force", "N"),
-        scalar("moment", "N·m"),
-        scalar("contact", "N"),
-        scalar("normal", "N"),
-        scalar("along", "N"),
-        scalar("aside", "N"),
-        scalar("torque", "N·m"),
-        scalar("tension", "N"),
-        scalar("last_tension", "N"),
-    ),
-    *place_quantities("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
-    *place_quantities(
-        "sections.SECTION",
-        "n, into the piece that is cut off, and e1; e2 = n × e1",
-        vector("normal", "1"),
-        vector("first_axis", "1"),
-    ),
-    *place_quantities("sections.SECTION", OPEN, text_quantity("open")),
-    *place_quantities(
-        "sections.SECTION", "of the piece ON the remainder", cut_vector("force", "N"), cut_vector("moment", "N·m")
-    ),
-    *place_quantities(
-        "sections.SECTION", "force along n (> 0 tension), e1, e2", *(cut_scalar(name, "N") for name in SECTION_FORCES)
-    ),
-    *place_quantities(
-        "sections.SECTION", "moment about n, e1, e2", *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)
-    ),
-    *place_quantities(
-        "sections.SECTION.line",
-        "reduction line: a point of it, its direction, where the moment in the plane is "
+    *rows("", "what was solved, as `heun model` tells it", block("model")),
+    *rows("", "completed or stopped, and a message", words("status")),
+    *rows("", "the instants", scalar("time", "s")),
+    *rows("bodies.BODY", "of the body's origin", vector("position", "m"), vector("velocity", "m/s")),
+    *rows("bodies.BODY", "attitude of the body; the columns are its axes", scalar("rotation", "1", (SPACE, SPACE))),
+    *rows("bodies.BODY", "the attitude as unit quaternion `w`, `x`, `y`, `z`; w ≥ 0 at the start, its sign does not "
+        "jump", scalar("quaternion", "1", (QUATERNION,))),
+    *rows("bodies.BODY", "Rodrigues' vector of the attitude: tan(half the turn) times its axis, of the turn from the "
+        "world's axes; null at half a turn", vector("rodrigues", "1")),
+    *rows("bodies.BODY", "of the centre of mass",
+        vector("center", "m"), vector("center_velocity", "m/s"), vector("center_acceleration", "m/s²")),
+    *rows("bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")),
+    *rows("bodies.BODY", "momentum; moment of momentum (16) about `foundation.about`",
+        vector("momentum", "N·s"), vector("moment_of_momentum", "N·m·s")),
+    *rows("points.POINT", "of a named point, `body.point`",
+        vector("position", "m"), vector("velocity", "m/s"), vector("acceleration", "m/s²")),
+    *rows("coordinates.JOINT", "turning of `to` against `from` about the axis, turns counted",
+        scalar("angle", "rad"), scalar("rate", "rad/s")),
+    *rows("coordinates.JOINT", "of the coordinate; of a cylinder along its axis",
+        scalar("acceleration", "m/s² | rad/s²")),
+    *rows("coordinates.JOINT", "sliding of `to` against `from` along the axis",
+        scalar("travel", "m"), scalar("speed", "m/s")),
+    *rows("coordinates.JOINT", "of a cylinder about its axis", scalar("angular_acceleration", "rad/s²")),
+    *rows("foundation", "total ON the ground, its moment about `about`",
+        scalar("about", "m", (SPACE,), is_timed=False), vector("force", "N"), vector("moment", "N·m")),
+    *rows("foundation.axis", "central axis: its point nearest to `about`, its direction, moment over force",
+        vector("point", "m"), vector("direction", "1"), scalar("pitch", "m")),
+    *rows("foundation.mass_effect", "mass effect (56): +Σ m ẍ, the rates of Σ m x × ẋ and of Σ I σ",
+        vector("force", "N"), vector("moment_orbital", "N·m"), vector("moment_spin", "N·m")),
+    *rows("foundation.supports.JOINT", "of a joint ON the ground, its moment about the `to` point",
+        vector("force", "N"), vector("moment", "N·m")),
+    *rows("foundation.elements.ELEMENT", "of a force, drive or stop ON the ground, its moment about `point`",
+        vector("force", "N"), vector("moment", "N·m"), vector("point", "m")),
+    *shares("foundation"),
+    *rows("foundation.shares.CAUSE", DIRECT, vector("direct_force", "N"), vector("direct_moment", "N·m")),
+    *shares("foundation.supports.JOINT"),
+    *shares("foundation.elements.ELEMENT"),
+    *rows("joints.JOINT", "of the constraint alone, `from` ON `to`; `point`, about which the moment is, is where the "
+        "`to` point is now",
+        vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
+    *rows("joints.JOINT", f"{OPEN}, and those that a chosen split gives", words("open"), words("chosen")),
+    *rows("joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
+    *rows("joints.JOINT", "the force along the axis, the force across it, the moment across it",
+        scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
+    *rows("joints.JOINT", "mean pressure of its `bearing`: force (with an axis `radial`) / (diameter · width)",
+        scalar("pressure", "Pa")),
+    *rows("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
+    *rows("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
+    *rows("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
+    *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
+        scalar("tension", "N"), scalar("torque", "N·m")),
+    *rows("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
+        scalar("force", "N"), scalar("moment", "N·m")),
+    *rows("couplings.COUPLING", "the load that the coupling carries; `contact`: of a cam along the normal of its "
+        "flank, above zero where it presses", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
+    *rows("couplings.COUPLING", "of a cam, the angle between that normal and the way of the follower",
+        scalar("pressure_angle", "rad")),
+    *rows("couplings.COUPLING", "of gears all of the tooth force; of a wheel what the plane presses it with",
+        scalar("normal", "N")),
+    *rows("couplings.COUPLING", "of gears, the parts of the tooth force beside the tangential one",
+        scalar("radial", "N"), scalar("axial", "N")),
+    *rows("couplings.COUPLING", "of a screw with friction, the power that comes out by the power that goes in; 0 where "
+        "none comes out", scalar("efficiency", "1")),
+    *rows("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
+    *rows("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
+        scalar("tension", "N"), scalar("last_tension", "N")),
+    *rows("couplings.COUPLING", "of a belt, the pulls of its strands; below zero one would have to push",
+        scalar("tight", "N"), scalar("slack", "N")),
+    *rows("couplings.COUPLING", "of a wheel: what keeps it from slipping, in all, along its track and along its axle's "
+        "shadow on the plane, ON the wheel", scalar("friction", "N"), scalar("along", "N"), scalar("aside", "N")),
+    *rows("couplings.COUPLING", "of a wheel with a coefficient of friction, coefficient · normal − friction: it slips "
+        "where that is below zero", scalar("grip", "N")),
+    *rows("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about "
+        "`point`", vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
+    *rows("couplings.COUPLING", OPEN, words("open")),
+    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N"),
+        scalar("normal", "N"), scalar("along", "N"), scalar("aside", "N"), scalar("torque", "N·m"),
+        scalar("tension", "N"), scalar("last_tension", "N")),
+    *rows("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
+    *rows("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
+        vector("normal", "1"), vector("first_axis", "1")),
+    *rows("sections.SECTION", OPEN, words("open")),
+    *rows("sections.SECTION", "of the piece ON the remainder", cut_vector("force", "N"), cut_vector("moment", "N·m")),
+    *rows("sections.SECTION", "force along n (> 0 tension), e1, e2",
+        *(cut_scalar(name, "N") for name in SECTION_FORCES)),
+    *rows("sections.SECTION", "moment about n, e1, e2",
+        *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)),
+    *rows("sections.SECTION.line", "reduction line: a point of it, its direction, where the moment in the plane is "
         "zero; kind 0: a line, 1: none, 2: any",
-        cut_vector("point", "m"),
-        cut_vector("direction", "1"),
-        cut_vector("pressure_centre", "m"),
-        cut_scalar("kind", "1"),
-    ),
-    *place_quantities(
-        "sections.SECTION.stress",
+        cut_vector("point", "m"), cut_vector("direction", "1"), cut_vector("pressure_centre", "m"),
+        cut_scalar("kind", "1")),
+    *rows("sections.SECTION.stress",
         "extremes over the section, [on the safe side](stresses.md); `utilisation` is `mises` over `strength`",
-        *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES),
-    ),
-    *place_quantities("sections.SECTION", "kinetic energy of the piece", cut_scalar("energy", "J")),
-    *place_quantities(
-        "sections.SECTION",
-        "of a run of cuts: from its first point to each cut",
-        scalar("s", "m", (CUT,), is_timed=False),
-    ),
-    *place_quantities(
-        "sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", text_quantity("side")
-    ),
-    *share_quantities(
-        "sections.SECTION",
-        cut_vector("force", "N"),
-        cut_vector("moment", "N·m"),
-        *(cut_scalar(name, "N") for name in SECTION_FORCES),
-        *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS),
-    ),
-    *place_quantities(
-        "sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")
-    ),
-    *place_quantities(
-        "forces.FORCE",
-        "its value as in the spec; of a vector its size, of a distributed load that of the resultant",
-        scalar("value", "N | N·m"),
-    ),
-    *place_quantities("forces.FORCE", "distance of its two points", scalar("length", "m")),
-    *place_quantities("forces.FORCE", "of a turn_spring", scalar("angle", "rad")),
-    *place_quantities(
-        "forces.FORCE",
-        "of a bushing, in its axes: how far its `to` point has shifted, and its `to` body turned",
-        vector("shift", "m"),
-        vector("turn", "rad"),
-    ),
-    *place_quantities(
-        "forces.FORCE",
-        "of a bushing, in its axes: what it exerts ON `to`, at its `to` point",
-        vector("force", "N"),
-        vector("moment", "N·m"),
-    ),
-    *place_quantities("forces.FORCE", "at which its points part, or its joint moves", scalar("rate", "m/s | rad/s")),
-    *place_quantities("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
-    *place_quantities(
-        "energy",
-        "kinetic + potential − work is constant",
-        scalar("kinetic", "J"),
-        scalar("potential", "J"),
-        scalar("work", "J"),
-    ),
-    *place_quantities(
-        "momentum",
-        "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; their rates are "
+        *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
+    *rows("sections.SECTION", "kinetic energy of the piece", cut_scalar("energy", "J")),
+    *rows("sections.SECTION", "of a run of cuts: from its first point to each cut",
+        scalar("s", "m", (CUT,), is_timed=False)),
+    *rows("sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", words("side")),
+    *shares("sections.SECTION", cut_vector("force", "N"), cut_vector("moment", "N·m"),
+        *(cut_scalar(name, "N") for name in SECTION_FORCES), *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)),
+    *rows("sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")),
+    *rows("forces.FORCE", "its value as in the spec; of a vector its size, of a distributed load that of the resultant",
+        scalar("value", "N | N·m")),
+    *rows("forces.FORCE", "distance of its two points", scalar("length", "m")),
+    *rows("forces.FORCE", "of a turn_spring", scalar("angle", "rad")),
+    *rows("forces.FORCE", "of a bushing, in its axes: how far its `to` point has shifted, and its `to` body turned",
+        vector("shift", "m"), vector("turn", "rad")),
+    *rows("forces.FORCE", "of a bushing, in its axes: what it exerts ON `to`, at its `to` point",
+        vector("force", "N"), vector("moment", "N·m")),
+    *rows("forces.FORCE", "at which its points part, or its joint moves", scalar("rate", "m/s | rad/s")),
+    *rows("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
+    *rows("energy", "kinetic + potential − work is constant",
+        scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
+    *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; their rates are "
         "the mass effects",
-        vector("total", "N·s"),
-        vector("moment_orbital", "N·m·s"),
-        vector("moment_spin", "N·m·s"),
-    ),
-    *place_quantities("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
-    *place_quantities("system_vector.bodies", "each body's part in it", vector("BODY", "N·m/s")),
-    *place_quantities(
-        "system_vector.energy_part", "of that part 2 E σ, E the energy of its spin", vector("BODY", "N·m/s")
-    ),
-    *place_quantities(
-        "system_vector.deviation_part",
-        "and G = T (σ × σ̇); 0 where the body turns on about one axis: its vector then lies on the momentary axis",
-        vector("BODY", "N·m/s"),
-    ),
-    *place_quantities("impulses.NUMBER", "its instant", scalar("time", "s", is_timed=False)),
-    *place_quantities(
-        "impulses.NUMBER",
-        "what struck: blows, drives whose rate jumps, ropes that caught, stops",
-        text_quantity("names"),
-    ),
-    *place_quantities(
-        "impulses.NUMBER.bodies.BODY",
-        "jumps of the body's velocities",
-        vector("center_velocity_jump", "m/s"),
-        vector("angular_velocity_jump", "rad/s"),
-    ),
-    *place_quantities(
-        "impulses.NUMBER",
-        "kinetic energy before and after, and the difference",
-        scalar("energy_before", "J"),
-        scalar("energy_after", "J"),
-        scalar("energy_jump", "J"),
-    ),
-    *place_quantities("events.EVENT", "what is watched", text_quantity("condition")),
-    *place_quantities(
-        "events.EVENT", "1 where the condition is true at the start, else 0", scalar("begins", "1", is_timed=False)
-    ),
-    *place_quantities(
-        "events.EVENT",
-        "the instants at which it changes, and their errors",
-        scalar("time", "s", (INDEX,), is_timed=False),
-        scalar("error", "s", (INDEX,), is_timed=False),
-    ),
-    *place_quantities(
-        "events.EVENT", "what it becomes there: 1 true, 0 not", scalar("to", "1", (INDEX,), is_timed=False)
-    ),
-    *place_quantities("certain_sums.NUMBER", "the factor of each open component", block_quantity("terms")),
-    *place_quantities(
-        "certain_sums.NUMBER",
-        "sum of the open components in `terms`, each times its factor",
-        scalar("value", "N | N·m"),
-    ),
-    *place_quantities(
-        "accuracy",
-        "[estimates](accuracy.md#estimates); nothing is claimed after the [horizon](accuracy.md#horizon) (null: none)",
-        scalar("energy_drift", "1", is_timed=False),
-        scalar("constraint_gap", "m", is_timed=False),
-        scalar("balance_residual", "1", is_timed=False),
-        scalar("horizon", "s", is_timed=False),
-    ),
-    *place_quantities(
-        "accuracy", "instants beside singular poses: what rounding reaches is null there", block_quantity("unknown")
-    ),
-    *place_quantities(
-        "accuracy.estimate",
-        "error of any point at any instant, over the scene's size",
-        scalar("motion", "1", is_timed=False),
-    ),
-    *place_quantities(
-        "accuracy.estimate",
-        "the same of each kind of number, over its own largest; 0 where there is none",
-        scalar("reactions", "1", is_timed=False),
-        scalar("drives", "1", is_timed=False),
-        scalar("foundation", "1", is_timed=False),
-        scalar("sections", "1", is_timed=False),
-        scalar("energy", "1", is_timed=False),
-    ),
-    *place_quantities("", "kernel, steps, evaluations, seconds", block_quantity("work")),
-    *place_quantities("", "as in the spec", text_quantity("title")),
-)
+        vector("total", "N·s"), vector("moment_orbital", "N·m·s"), vector("moment_spin", "N·m·s")),
+    *rows("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
+    *rows("system_vector.bodies", "each body's part in it", vector("BODY", "N·m/s")),
+    *rows("system_vector.energy_part", "of that part 2 E σ, E the energy of its spin", vector("BODY", "N·m/s")),
+    *rows("system_vector.deviation_part", "and G = T (σ × σ̇); 0 where the body turns on about one axis: its vector "
+        "then lies on the momentary axis", vector("BODY", "N·m/s")),
+    *rows("impulses.NUMBER", "its instant", scalar("time", "s", is_timed=False)),
+    *rows("impulses.NUMBER", "what struck: blows, drives whose rate jumps, ropes that caught, stops", words("names")),
+    *rows("impulses.NUMBER.bodies.BODY", "jumps of the body's velocities",
+        vector("center_velocity_jump", "m/s"), vector("angular_velocity_jump", "rad/s")),
+    *rows("impulses.NUMBER", "kinetic energy before and after, and the difference",
+        scalar("energy_before", "J"), scalar("energy_after", "J"), scalar("energy_jump", "J")),
+    *rows("events.EVENT", "what is watched", words("condition")),
+    *rows("events.EVENT", "1 where the condition is true at the start, else 0", scalar("begins", "1", is_timed=False)),
+    *rows("events.EVENT", "the instants at which it changes, and their errors",
+        scalar("time", "s", (INDEX,), is_timed=False), scalar("error", "s", (INDEX,), is_timed=False)),
+    *rows("events.EVENT", "what it becomes there: 1 true, 0 not", scalar("to", "1", (INDEX,), is_timed=False)),
+    *rows("certain_sums.NUMBER", "the factor of each open component", block("terms")),
+    *rows("certain_sums.NUMBER", "sum of the open components in `terms`, each times its factor",
+        scalar("value", "N | N·m")),
+    *rows("accuracy", "[estimates](accuracy.md#estimates); nothing is claimed after the "
+        "[horizon](accuracy.md#horizon) (null: none)",
+        scalar("energy_drift", "1", is_timed=False), scalar("constraint_gap", "m", is_timed=False),
+        scalar("balance_residual", "1", is_timed=False), scalar("horizon", "s", is_timed=False)),
+    *rows("accuracy", "instants beside singular poses: what rounding reaches is null there", block("unknown")),
+    *rows("accuracy.estimate", "error of any point at any instant, over the scene's size",
+        scalar("motion", "1", is_timed=False)),
+    *rows("accuracy.estimate", "the same of each kind of number, over its own largest; 0 where there is none",
+        scalar("reactions", "1", is_timed=False), scalar("drives", "1", is_timed=False),
+        scalar("foundation", "1", is_timed=False), scalar("sections", "1", is_timed=False),
+        scalar("energy", "1", is_timed=False)),
+    *rows("", "kernel, steps, evaluations, seconds", block("work")),
+    *rows("", "as in the spec", words("title")),
+)  # fmt: skip
 
 # The blocks that run over the instants, in their order, and the report each belongs to; the rest always stays.
 REPORT_OF = {

@@ -272,10 +272,16 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
     """No other cuts, no foundation, no energy, no sums; the balance, which tells whether numbers are wrong, stays."""
     spec = load(str(SPECS / "jib.yaml"))
     for module, names in {
-        recovery: ("energy",),
-        blocks: ("foundation", "coordinates", "system_vector", "points", "forces"),
-        results: ("certain_sums",),
-        load_errors: ("energy", "total"),
+        recovery: ("energy_block",),
+        blocks: (
+            "foundation_block",
+            "evaluate_joint_coordinates",
+            "system_vector",
+            "point_motions",
+            "make_force_blocks",
+        ),
+        results: ("find_determinate_sums",),
+        load_errors: ("energy_block", "total_load"),
     }.items():
         for name in names:
             monkeypatch.setattr(module, name, forbidden)

@@ -186,7 +186,7 @@ def test_several_problems_at_once_fail_one_expectation(monkeypatch: pytest.Monke
     def found(*_: Any) -> Any:
         raise SolveError(Problem("outside", "one", hint="a hint"), Problem("outside", "two", hint="a hint"))
 
-    monkeypatch.setattr(expect, "_found", found)
+    monkeypatch.setattr(expect, "_find_values", found)
     assert compare(STUDY, expectation(FX, 3.0, peak="max")).failure == "one (a hint)"
 
 

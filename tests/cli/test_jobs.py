@@ -47,7 +47,7 @@ def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypa
     at_work = command.check_spec
 
     def dying(task, request, jobs):  # type: ignore[no-untyped-def]
-        if task.found.path.endswith("04.yaml"):
+        if task.spec.path.endswith("04.yaml"):
             os.kill(os.getpid(), signal.SIGKILL)
         return at_work(task, request, jobs)
 

@@ -47,7 +47,7 @@ from heuncli.output.tables.text_table import TextColumn, TextTable
 wide = TextTable("JOINTS", (TextColumn("joint", "left"), TextColumn("F [N]")), (("pivot", "1.5"),), ())
 for columns in ("0", "1", "-5", "x", "9" * 30):
     os.environ["COLUMNS"] = columns
-    print("pivot" in "".join(write([wide])), width())
+    print("pivot" in "".join(render_tables([wide])), find_width())
 """
 
 

@@ -290,7 +290,7 @@ def test_the_largest_moment_along_a_beam_passes_its_limit() -> None:
     scene = PENDULUM[: PENDULUM.index("bodies")] + bodies + PENDULUM[PENDULUM.index("joints") :]
     more = "sections: {bar: {body: bob, from: top, to: end, count: 3}}\n"
     events = "n: {of: sections.bar.N, above: 15}, j: {of: joints.pin.force, above: 15.0000001}"
-    study = run(scene, f"duration: 2, samples: 2, events: {{{events}}}", more, wanted=frozenset({"joints"}))
+    study = run(scene, f"duration: 2, samples: 2, events: {{{events}}}", more, requested_reports=frozenset({"joints"}))
     n, j = study.changes["n"], study.changes["j"]
     assert len(n.times) == len(j.times) > 2
     assert study.results.sections == {}

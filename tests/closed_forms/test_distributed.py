@@ -91,7 +91,7 @@ def test_a_bar_in_flight() -> None:
 def test_its_share() -> None:
     """By cause: on a cantilever what stands beyond the cut, directly; nothing of it through motion; the sum is all."""
     forces = f"q: {load(1, 5, 3, 3)}, push: {{type: force, on: beam.tip, vector: [0, 2, 0]}}"
-    block = solved(beam(forces), wanted=frozenset((*REPORTS, "shares"))).sections["along"]
+    block = solved(beam(forces), requested_reports=frozenset((*REPORTS, "shares"))).sections["along"]
     own, x = block["shares"]["q"], np.asarray(block["s"])
     beyond = 3 * np.clip(5 - x, 0, 4)
     near(own["force"][0, :, 1], -beyond, 12.0, 1e-14)

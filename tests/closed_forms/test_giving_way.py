@@ -58,7 +58,7 @@ analysis: {{times: [0, 0.005]}}
 """
     )
     wanted = frozenset({"joints", "sections", "impulses", "shares"})
-    found = solved(text.replace("time: 0}", "time: 0.002}"), wanted=wanted)
+    found = solved(text.replace("time: 0}", "time: 0.002}"), requested_reports=wanted)
     kick = found.impulses[0]["joints"]
     near(kick["loose"]["force"], [0, -KICK, 0], 1.0, 1e-14)
     near(kick["fixed"]["force"], 0.0, 1.0, 1e-14)

@@ -242,7 +242,9 @@ sections: {{middle: {{body: jib, at: [1, 0, 0], normal: [1, 0, 0]}}}}
 impulses: {{kick: {{on: weight.top, vector: [0, 5], time: 0.1}}}}
 analysis: {{duration: 0.2, samples: 5}}
 """
-    results = solved(text, wanted=frozenset({"motion", "foundation", "joints", "sections", "shares", "impulses"}))
+    results = solved(
+        text, requested_reports=frozenset({"motion", "foundation", "joints", "sections", "shares", "impulses"})
+    )
     (struck,) = results.impulses
     assert struck["bodies"]["weight"]["center_velocity_jump"] == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
     assert struck["couplings"]["rope"]["tension"] == 0.0
@@ -258,7 +260,8 @@ analysis: {{duration: 0.2, samples: 5}}
 def test_what_a_rope_does_to_the_ground_is_its_own_share(analysis: str) -> None:
     """Of one instant or of many, force and moment of each cause: its strand on the ground has no cause but itself."""
     results = solved(
-        winch("stiffness: 2e4, damping: 300, length: 9.8", analysis), wanted=frozenset({"foundation", "shares"})
+        winch("stiffness: 2e4, damping: 300, length: 9.8", analysis),
+        requested_reports=frozenset({"foundation", "shares"}),
     )
     element = results.foundation["elements"]["rope"]
     for name in ("force", "moment"):

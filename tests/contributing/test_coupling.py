@@ -45,11 +45,11 @@ MEANINGS: dict[str, Callable[..., c.Coupling]] = {
 """),
         ),
         "heuncli/multibody/mechanism/build_couplings.py": (
-            Edit("MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {\n", """def mirror(given, drawn):
-    return (CoupledRow(tuple(of_coordinate(drawn, x, 1.0) for x in given.terms), None, SIZE),)
+            Edit("BUILDERS: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {\n", """def mirror(given, drawn):
+    return (CoupledRow(tuple(coordinate_part(drawn, x, 1.0) for x in given.terms), None, SCENE_SIZE),)
 
 
-MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
+BUILDERS: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
     "mirror": mirror,
 """),
         ),

@@ -15,13 +15,13 @@ SLED = Addition(  # face on face: it slides on a plane and turns about the norma
         "heuncli/base/joint_kinds.py": (
             after("""            synonyms=("cylindrical",),
         ),
-""", """        Kind(
-            "sled", PLANE, ABOUT_AXIS, "forward", axis_key="normal", motions=("sliding",), looser=("plane",),
+""", """        JointKind(
+            "sled", PLANE, ABOUT_AXIS, "forward", axis_key="normal", motions=("sliding",), weaker_kinds=("plane",),
             synonyms=("face",),
         ),
 """),
         ),
-        "heuncli/scene/file_format/format.py": (
+        "heuncli/scene/file_format/format_joints.py": (
             Edit("JointEntry = (\n", """class SledJoint(AnyJoint):
     type: Literal["sled"]
     normal: Direction

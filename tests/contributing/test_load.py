@@ -55,7 +55,7 @@ Force = (
             Edit("        case m.Torque() | m.Motor():\n", """        case m.Counterweight():
             a, b = f.from_, f.to
             ends = index[a.body], np.array(a.point), index[b.body], np.array(b.point)
-            return PairLoad(name, *ends, Expression.of(-f.pull), 0.0, 0.0, 0.0)
+            return PairLoad(name, *ends, Expression.from_number(-f.pull), 0.0, 0.0, 0.0)
         case m.Torque() | m.Motor():
 """),
             after("import numpy as np\n", "\nfrom heuncli.scene.expressions.programs import Expression"),

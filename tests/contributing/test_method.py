@@ -15,7 +15,8 @@ RALSTON2 = Addition(
         "heuncli/motion/integration/methods/explicit.py": (
             after("from heuncli.motion.integration.methods.method import Method\n", """
 RALSTON2 = Method(
-    name="Ralston2", order=2, fixed=True, nodes=(0.0, 2 / 3), stages=(((0, 2 / 3),),), solution=((0, 1 / 4), (1, 3 / 4))
+    name="Ralston2", order=2, has_fixed_step=True, nodes=(0.0, 2 / 3), stages=(((0, 2 / 3),),),
+    solution=((0, 1 / 4), (1, 3 / 4)),
 )
 """),
         ),

@@ -37,7 +37,8 @@ def described(_content: bytes, file: str, root: XmlElement, _asked: ImportOption
     for bob, name, its in zip(root.children, names, wanted, strict=True):
         mass, length = (float(bob.attributes[key]) for key in ("mass", "length"))
         points = (DescribedPoint("hook", ZERO),)
-        bodies.append(DescribedBody(name, mass, (0.0, 0.0, -length), NONE, points, remark=format_original_name("bob", name, its)))
+        remark = format_original_name("bob", name, its)
+        bodies.append(DescribedBody(name, mass, (0.0, 0.0, -length), NONE, points, remark=remark))
         joints.append(DescribedEntry(name, {"type": "ball", "from": "ground.hook", "to": f"{name}.hook"}))
         if "colour" in bob.attributes:
             place = SourceLocation(file, bob.line, bob.column, f"bob {its}")

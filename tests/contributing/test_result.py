@@ -14,7 +14,7 @@ CENTER_SPEED = Addition(
     {
         "heuncli/results/results_schema.py": (
             after(""" vector("center_acceleration", "m/s²")),
-""", """    *at("bodies.BODY", "of the centre of mass, without its direction", scalar("center_speed", "m/s")),
+""", """    *rows("bodies.BODY", "of the centre of mass, without its direction", scalar("center_speed", "m/s")),
 """),
         ),
         "heuncli/study/compose/blocks.py": (

@@ -84,7 +84,7 @@ forces:
   down: {{type: force, on: left.m, vector: [0, 0, -1000]}}
   up: {{type: force, on: left.m, vector: [0, 0, 1000]}}
 """,
-        wanted=WANTED,
+        requested_reports=WANTED,
     )
 
 

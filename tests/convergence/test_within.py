@@ -165,7 +165,8 @@ def test_the_flat_poses_are_those_of_the_run_whatever_is_asked() -> None:
 @pytest.mark.heavy
 def test_a_chaotic_run_has_its_energy_at_every_instant() -> None:
     """Far beyond the horizon no number is that of the pendulum, but every one is that of one run, with its energy."""
-    s = study(DOUBLE.replace("duration: 2, samples: 201", "duration: 200, samples: 3"), wanted=frozenset({"energy"}))
+    text = DOUBLE.replace("duration: 2, samples: 201", "duration: 200, samples: 3")
+    s = study(text, requested_reports=frozenset({"energy"}))
     assert s.history.checked_run is not None
     run = s.history.checked_run.run
     found = s.compute_reports(s.search_times, frozenset({"energy"})).energy

@@ -83,7 +83,7 @@ def moved(scene: Any) -> Tree:
 def answer(tree: Any, reduce: bool) -> Study | str:
     """A scene solved, or why not."""
     try:
-        return study(to_yaml(tree), wanted=frozenset(REPORTS), reduce=reduce)
+        return study(to_yaml(tree), requested_reports=frozenset(REPORTS), reduce=reduce)
     except HeunError as error:
         return error.problems[0].code
 

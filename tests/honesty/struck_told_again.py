@@ -68,7 +68,7 @@ def passing(scene: dict[str, Any], seed: int) -> str:
 def answer(tree: Any) -> Study | str:
     """A scene solved, or why not."""
     try:
-        return study(to_yaml(tree), wanted=frozenset({*REPORTS, SHARES}))
+        return study(to_yaml(tree), requested_reports=frozenset({*REPORTS, SHARES}))
     except HeunError as error:
         return error.problems[0].code
 

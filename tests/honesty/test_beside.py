@@ -30,7 +30,7 @@ WANTED = frozenset({"joints", "points", "motion", "foundation", "energy"})
 
 @cache
 def swung(rate: float) -> Study:
-    return study(parallelogram(rate, 2.0, 5), wanted=WANTED)
+    return study(parallelogram(rate, 2.0, 5), requested_reports=WANTED)
 
 
 def accelerations(results: Results) -> Array:
@@ -102,7 +102,7 @@ def test_the_example(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_far_from_a_singular_pose_everything_is_told() -> None:
     """A coupler a little too long keeps the chain from lying flat; its loads are large there, and told."""
-    s = study(parallelogram(0.2, 2.0, 201, coupler=1.01), wanted=WANTED)
+    s = study(parallelogram(0.2, 2.0, 201, coupler=1.01), requested_reports=WANTED)
     found = s.resample(s.search_times)
     assert "unknown" not in found.accuracy
     assert not np.isnan(found.joints["C"]["radial"]).any()
@@ -151,7 +151,7 @@ LENGTHS = np.random.default_rng(12).uniform(0.8, 2.0, (12, 3)).round(2).tolist()
 def test_bars_of_any_length_through_a_flat_pose(lengths: list[float]) -> None:
     """Loads may grow there without bound: those that are told agree with a run a thousand times as fine."""
     text = folding(*lengths, 0.9, 4.0)
-    s, fine = (study(text, wanted=WANTED, tolerance=tolerance) for tolerance in (1e-9, 1e-12))
+    s, fine = (study(text, requested_reports=WANTED, tolerance=tolerance) for tolerance in (1e-9, 1e-12))
     assert s.history.checked_run is not None
     if not s.history.singular or s.history.checked_run.horizon is not None:
         pytest.skip("it does not come to a flat pose, or nothing is claimed")

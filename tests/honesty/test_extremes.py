@@ -63,7 +63,7 @@ def test_of_every_spec(path: Path) -> None:
 def test_of_random_scenes(seed: int) -> None:
     """Trees and loops, drives, loads in time; at 29 a joint slides past a cut twice within one step."""
     try:
-        run = study(told(seed).scene, time_limit=20.0, wanted=TABLE_DEFAULT)
+        run = study(told(seed).scene, time_limit=20.0, requested_reports=TABLE_DEFAULT)
     except HeunError:
         pytest.skip("cannot be solved")
     assert not short_by(run, SAMPLES)

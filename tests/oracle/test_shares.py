@@ -42,7 +42,7 @@ def scene_of(kind: str, seed: int) -> dict[str, Any]:
 def run(kind: str, seed: int) -> tuple[Results, list[dict[str, Solution]], list[State]]:
     """Its results by cause, and the oracle's at every instant, with its states."""
     scene = scene_of(kind, seed)
-    results = solved(moving(scene, TIMES, 1e-12), wanted=WANTED)
+    results = solved(moving(scene, TIMES, 1e-12), requested_reports=WANTED)
     read = model(weighed(scene))
     states = [state_at(results.bodies, k) for k in range(len(TIMES))]
     return results, [solve_by_cause(read, s, t, ABOUT) for s, t in zip(states, TIMES, strict=True)], states
@@ -115,7 +115,7 @@ def test_closed_chains(seed: int) -> None:
 def test_a_split_by_least_norm(seed: int) -> None:
     """Of redundant joints, with moments by the length that the split is told with."""
     scene = scene_of("loop", seed)
-    made = study({**scene, "analysis": {"type": "state"}}, wanted=WANTED, least_norm=True)
+    made = study({**scene, "analysis": {"type": "state"}}, requested_reports=WANTED, least_norm=True)
     decided = made.recovery.decided
     if decided is None or decided.stress is None:
         return
@@ -134,7 +134,7 @@ def test_sections(seed: int) -> None:
     scene = scene_of("cut", seed)
     rng = np.random.default_rng(seed)
     cuts = {f"cut_{name}": {"body": name, **(cut_through(body, rng) or {})} for name, body in scene["bodies"].items()}
-    found = solved({**moving(scene, TIMES, 1e-12), "sections": cuts}, wanted=WANTED)
+    found = solved({**moving(scene, TIMES, 1e-12), "sections": cuts}, requested_reports=WANTED)
     for k, t in enumerate(TIMES):
         state = state_at(found.bodies, k)
         for name, told in cuts.items():

@@ -239,7 +239,7 @@ def test_every_module_is_included_line_for_line(tmp_path: Path) -> None:
 def test_answers_fill_their_records() -> None:
     """Sizes as kernel/answers.py writes them."""
     sizes = {"BODY": 30, "FREEDOM": 4, "LOAD": 20, "CLOSURE": 14, "PART": 16, "STATE": 4}
-    assert {name: getattr(records, f"{name}_ANSWER").itemsize // 8 for name in sizes} == sizes
+    assert {name: getattr(records, f"{name}_SOLUTION").itemsize // 8 for name in sizes} == sizes
 
 
 def test_a_table_takes_rows_of_different_fields() -> None:

@@ -27,7 +27,7 @@ def dual_tangent(layout: Layout, t: float, state: Array, closed: float = 0.0) ->
     for _ in range(2):
         if scene.closure_count:
             chosen.choose_rows_again(scene, t, y)
-        kernel.settle(scene, t, y)
+        kernel.project_state(scene, t, y)
     moving: list[Any] = [Dual(x, row) for x, row in zip(y, np.eye(n), strict=True)]
     dy: list[Any] = [0.0] * n
     kernel.evaluate(scene, t, moving, dy)

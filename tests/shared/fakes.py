@@ -174,7 +174,7 @@ class FakeStudy:
 
     def compose_reports(self, recovery: Any, reports: Set[str], open_marker: Any = None) -> Results:
         """Some reports of such answers."""
-        return self.compute_reports(recovery.recovered.times, reports, recovery.setup)
+        return self.compute_reports(recovery.solutions.times, reports, recovery.setup)
 
     def make_impulse_blocks(self, setup: Any) -> list[Block]:
         """Its blows with nodes between the cuts of their runs."""
@@ -196,7 +196,11 @@ def stretch_like(name: str, section: dict[str, Any]) -> Stretch:
     """A stretch with the cuts of a run as its corners."""
     s = section["s"]
     side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[x] for x in section.get("side", [None] * len(s))])
-    bare = dict.fromkeys(Cuts.__annotations__) | {"name": name, "n": np.array([0.0, 0.0, 1.0]), "near": 1e-12}
+    bare = dict.fromkeys(Cuts.__annotations__) | {
+        "name": name,
+        "n": np.array([0.0, 0.0, 1.0]),
+        "plane_tolerance": 1e-12,
+    }
     points = s[:, None] * bare["n"]
     return Stretch(Cuts(**bare | {"points": points, "s": s, "side": side}), s, side != 0.0)
 

@@ -153,7 +153,9 @@ def test_a_certain_dimension_is_what_a_change_of_units_shows(seed: int, monkeypa
     kinds: list[set[str]] = []
     alike = dimensions.common_dimension
 
-    def kept(name: str, a: dimensions.MeasuredDimension, b: dimensions.MeasuredDimension, strict: bool) -> dimensions.MeasuredDimension:
+    def kept(
+        name: str, a: dimensions.MeasuredDimension, b: dimensions.MeasuredDimension, strict: bool
+    ) -> dimensions.MeasuredDimension:
         kinds.append({a.kind, b.kind})
         return alike(name, a, b, strict)
 

@@ -32,7 +32,7 @@ class NextCycle:
     nodes: PieceNodes
 
     @cached_property
-    def recovered(self) -> Evaluation:
+    def evaluation(self) -> Evaluation:
         """The kernel's results at the nodes."""
         return self.run.recover(self.nodes.places)
 
@@ -40,13 +40,13 @@ class NextCycle:
     def joint_coordinates(self) -> Block:
         """The coordinates of the joints at the nodes."""
         return evaluate_joint_coordinates(
-            self.run.layout, self.recovered, make_body_states(self.run.layout, self.recovered)
+            self.run.layout, self.evaluation, make_body_states(self.run.layout, self.evaluation)
         )
 
     @cached_property
     def other_coordinates(self) -> list[Moving]:
         """The other coordinates that laws may use, at the nodes."""
-        return [evaluate_coordinates(self.run.layout, self.recovered, k) for k in range(len(self.nodes.places))]
+        return [evaluate_coordinates(self.run.layout, self.evaluation, k) for k in range(len(self.nodes.places))]
 
     @cached_property
     def turn_angles(self) -> dict[str, float]:

@@ -53,7 +53,8 @@ def compute_state_space(
 ) -> StateSpace:
     """Return the linear equations about an instant.
 
-    choice: its coordinates Q: what drives exert there
+    choice: its coordinates
+    Q: what drives exert there
 
     Raises SolveError [no-state-space] if the equations are not those of coordinates.
     """
@@ -74,16 +75,10 @@ def compute_state_space(
     drift = compute_drift(linear_equations, freed_choice)
     by_place = freed_choice.rows @ (linear_equations.by_place @ freed_choice.S + linear_equations.by_rate @ drift)
     by_rate = freed_choice.rows @ linear_equations.by_rate @ freed_choice.S
-    push = (
-        np.array(
-            [eta @ compute_unit_force(scene, instant, freed_choice, linear_equations, name) for name in inputs.forces]
-        )
-        .reshape(len(inputs.forces), len(eta))
-        .T
-    )
-    driven_inputs = np.array(
-        [[float(freed_choice.names[i] == name) for name in inputs.drives] for i in driven]
-    ).reshape(len(driven), len(inputs.drives))
+    unit_forces = (compute_unit_force(scene, instant, freed_choice, linear_equations, name) for name in inputs.forces)
+    push = np.array([eta @ force for force in unit_forces]).reshape(len(inputs.forces), len(eta)).T
+    driven_inputs = np.array([[float(freed_choice.names[i] == name) for name in inputs.drives] for i in driven])
+    driven_inputs = driven_inputs.reshape(len(driven), len(inputs.drives))
     hold = eta[:, driven] @ np.linalg.inv(eta[np.ix_(driven, driven)]) if driven else np.zeros((len(eta), 0))
     # accelerations of held coordinates are cancelled, prescribed ones are added
     remaining = np.eye(len(eta))
@@ -96,12 +91,8 @@ def compute_state_space(
     names = tuple(freed_choice.names[i] for i in free)
     C, D, output_names, units = compute_outputs(scene, instant, freed_choice, linear_equations, free, (A, B), outputs)
     units_along = [get_units(freed_choice.names[i]) for i in free]
-    offset = np.concatenate(
-        [
-            (freed_choice.rows @ state[find_rate_indices(scene)])[free],
-            (freed_choice.rows @ linear_equations.accelerations)[free],
-        ]
-    )
+    motion = (state[find_rate_indices(scene)], linear_equations.accelerations)
+    offset = np.concatenate([(freed_choice.rows @ values)[free] for values in motion])
     return StateSpace(
         A=A, B=B, C=C, D=D,
         states=(*names, *(format_rate_name(name) for name in names)),

@@ -176,12 +176,12 @@ def _start_timer(seconds: float) -> Callable[[], None]:
         return lambda: None
     previous_handler, previous_hook = signal.signal(signal.SIGALRM, _handle_alarm), sys.unraisablehook
 
-    def swallowed(what: sys.UnraisableHookArgs) -> None:
+    def ignore_unraisable(what: sys.UnraisableHookArgs) -> None:
         """Ignore an alarm that came while an object was destroyed: the next one will act."""
         if not isinstance(what.exc_value, TimeUp):
             previous_hook(what)
 
-    sys.unraisablehook = swallowed
+    sys.unraisablehook = ignore_unraisable
     signal.setitimer(signal.ITIMER_REAL, seconds, ALARM_INTERVAL)
 
     def undo() -> None:

@@ -205,24 +205,11 @@ def _make_section_cuts(
         end = section.reduce_to
         moment_reference = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
     cuts = Cuts(
-        name=name,
-        body=body,
-        n=n,
-        e1=e1,
-        e2=cross_vectors(n, e1),
-        points=points,
-        s=s,
-        side=side,
-        plane_tolerance=plane_tolerance,
-        pieces=pieces,
-        centroids=centroids,
-        moment_reference=moment_reference,
-        line=section.reduce_to == "line",
-        properties=section.properties,
-        strength=section.strength,
-        warnings=warnings,
-        form=form,
-    )
+        name=name, body=body, n=n, e1=e1, e2=cross_vectors(n, e1), points=points, s=s, side=side,
+        plane_tolerance=plane_tolerance, pieces=pieces, centroids=centroids, moment_reference=moment_reference,
+        line=section.reduce_to == "line", properties=section.properties, strength=section.strength,
+        warnings=warnings, form=form,
+    )  # fmt: skip
     if section.properties is not None and section.properties.kind == "auto":
         _require_properties(location, cuts)
     return cuts

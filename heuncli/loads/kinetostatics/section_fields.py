@@ -117,8 +117,8 @@ def make_rectangle_maxima(width: float, height: float) -> Largest:
     """
     middle, half = rectangle_factors(width, height)
 
-    def rectangle_maxima(at: StressFields) -> tuple[Array, Array]:
-        loads = np.stack(np.broadcast_arrays(at.axial, *at.bend, *at.shear, at.torsion)).reshape(6, -1)
+    def rectangle_maxima(fields: StressFields) -> tuple[Array, Array]:
+        loads = np.stack(np.broadcast_arrays(fields.axial, *fields.bend, *fields.shear, fields.torsion)).reshape(6, -1)
         shear, mises = np.empty((2, loads.shape[1]))
         for first in range(0, loads.shape[1], CHUNK):
             part = loads[:, first : first + CHUNK]
@@ -126,7 +126,7 @@ def make_rectangle_maxima(width: float, height: float) -> Largest:
             square = tau1 * tau1 + tau2 * tau2
             shear[first : first + CHUNK] = np.sqrt(square.max(axis=0))
             mises[first : first + CHUNK] = np.sqrt((sigma * sigma + 3.0 * square).max(axis=0))
-        return shear.reshape(np.shape(at.axial)), mises.reshape(np.shape(at.axial))
+        return shear.reshape(np.shape(fields.axial)), mises.reshape(np.shape(fields.axial))
 
     return rectangle_maxima
 

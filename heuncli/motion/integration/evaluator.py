@@ -63,7 +63,8 @@ class Evaluation:
         values_by_name = fields(self)
         causes = values_by_name.pop("causes")
         return Evaluation(
-            **{name: values[instants] for name, values in values_by_name.items()}, causes=causes and causes.select(instants)
+            **{name: values[instants] for name, values in values_by_name.items()},
+            causes=causes and causes.select(instants),
         )
 
 
@@ -132,8 +133,7 @@ class Evaluator:
         projected_states = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
         held_branches = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
         closed = np.zeros((n_t, len(layout.open_contacts)))
-        # contacts closed by others count as closed too: the rank, and later checks, decide which of them
-        # carry
+        # contacts closed by others count as closed too: the rank, and later checks, decide which of them carry
         closed[:] = layout.closed_contacts(self.start_holding if holding is None else holding)
         inputs = {"times": instants, "branches": held_branches, "holding": closed}
         outputs = {

@@ -23,8 +23,10 @@ from heuncli.scene.shapes.rotations import orthonormalize, rotation_between
 class PlacementTree:
     """The order in which bodies are reached, roots first.
 
-    order: bodies as reached tree_joint[body]: index of the joint, -1 for a root parent[body]: the body before, -1 for
-    the ground or a root (tree_joint shows which) depth[body]: joints between it and its root
+    order: bodies as reached
+    tree_joint[body]: index of the joint, -1 for a root
+    parent[body]: the body before, -1 for the ground or a root (tree_joint shows which)
+    depth[body]: joints between it and its root
     """
 
     order: list[int]
@@ -34,19 +36,15 @@ class PlacementTree:
 
 
 def find_placement_tree(
-    mechanism: Mechanism,
-    constraints: Sequence[tuple[int, int, JointConstraint]],
-    is_held: Sequence[bool],
-    is_preferred: Sequence[bool],
-) -> PlacementTree:
-    """Search breadth first from the ground and the held bodies; strong joints (JointConstraint.is_strong) before line,
-    plane, rod.
+    mechanism: Mechanism, constraints: Sequence[tuple[int, int, JointConstraint]],
+    is_held: Sequence[bool], is_preferred: Sequence[bool],
+) -> PlacementTree:  # fmt: skip
+    """Search breadth first from the ground and the held bodies, through strong joints before line, plane and rod.
 
-    A connected part without ground or held body starts from one body: a preferred one, else one that is `to` of no
-    joint, else the heaviest. Ties are decided by name, so that the order of the file does not matter.
+    A connected part without ground or held body starts from a preferred body, else one that is `to` of no joint, else
+    the heaviest. Ties are decided by name, not by the order of the file.
     """
-    n = len(mechanism.bodies)
-    names = [j.name for j in mechanism.joints]
+    n, names = len(mechanism.bodies), [j.name for j in mechanism.joints]
     links: list[list[tuple[int, int, bool]]] = [[] for _ in range(n + 1)]
     is_to = [False] * (n + 1)
     for k in sorted(range(len(constraints)), key=names.__getitem__):
@@ -63,12 +61,12 @@ def find_placement_tree(
     strong: deque[int] = deque()
     weak: deque[tuple[int, int, int]] = deque()
 
-    def reach(body: int, k: int, before: int) -> None:
+    def reach(body: int, k: int, parent_body: int) -> None:
         reached[body] = True
         order.append(body)
         strong.append(body)
         if k >= 0:
-            via[body], parent[body], depth[body] = k, before, 1 + (depth[before] if before >= 0 else 0)
+            via[body], parent[body], depth[body] = k, parent_body, 1 + (depth[parent_body] if parent_body >= 0 else 0)
 
     def spread() -> None:
         while strong or weak:
@@ -103,7 +101,8 @@ def find_placement_tree(
 class AssemblyPoses:
     """Poses of the bodies while they are assembled; its arrays are written to. The last row is the ground.
 
-    x (n+1, 3): origins R (n+1, 3, 3): attitudes
+    x (n+1, 3): origins
+    R (n+1, 3, 3): attitudes
     pivot (n+1, 3): the point that turns are about, body axes
     shifts, turns: which bodies may shift, and turn
     """

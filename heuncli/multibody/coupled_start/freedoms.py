@@ -130,7 +130,7 @@ def find_coupled_bodies(layout: Layout, rows: Iterable[int]) -> list[int]:
             root[i] = root[parent]
     group = {r: r for r in root}
 
-    def found(i: int) -> int:
+    def find_root(i: int) -> int:
         while group[i] != i:
             i = group[i]
         return i
@@ -138,9 +138,9 @@ def find_coupled_bodies(layout: Layout, rows: Iterable[int]) -> list[int]:
     paths = [row_roots(layout, r, root) for r in range(len(layout.rows))]
     for first, *others in filter(None, paths):
         for other in others:
-            group[found(other)] = found(first)
-    wanted = {found(i) for r in rows for i in paths[r]}
-    return [i for i in range(len(parents)) if found(root[i]) in wanted]
+            group[find_root(other)] = find_root(first)
+    wanted = {find_root(i) for r in rows for i in paths[r]}
+    return [i for i in range(len(parents)) if find_root(root[i]) in wanted]
 
 
 def row_roots(layout: Layout, r: int, root: Sequence[int]) -> list[int]:

@@ -256,13 +256,15 @@ def build_load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, t
 def build_bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
     """Build a bushing: six springs and dampers."""
 
-    def arrays(of: m.Elastic[m.Vec]) -> Elastic:
-        return Elastic(np.array(of.stiffness), np.array(of.damping), np.array(of.preload), of.extra_load)
+    def elastic_arrays(elastic: m.Elastic[m.Vec]) -> Elastic:
+        return Elastic(
+            np.array(elastic.stiffness), np.array(elastic.damping), np.array(elastic.preload), elastic.extra_load
+        )
 
     a, b = f.from_, f.to
     return BushingLoad(
         name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
-        np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
+        np.array(f.to_rotation), elastic_arrays(f.shift), elastic_arrays(f.turn),
     )  # fmt: skip
 
 

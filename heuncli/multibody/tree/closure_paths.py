@@ -26,7 +26,7 @@ def index_rows(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[l
     column = 0
     coupled, filled = find_fill_in(paths)
 
-    def put(data: Sequence[int]) -> int:
+    def append_data(data: Sequence[int]) -> int:
         indices.extend(data)
         return len(indices) - len(data)
 
@@ -35,7 +35,7 @@ def index_rows(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[l
         if key not in shared:
             answers = [n for i in path for n in bodies[i].answers]
             more = [n for i in others for n in bodies[i].answers]
-            shared[key] = put(path), put(answers + more), len(answers), len(answers) + len(more)
+            shared[key] = append_data(path), append_data(answers + more), len(answers), len(answers) + len(more)
         path_at, answers_at, count, filled_count = shared[key]
         places.append(
             ClosureIndices(
@@ -45,7 +45,7 @@ def index_rows(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[l
                 answers=answers_at,
                 answer_count=count,
                 filled_count=filled_count,
-                couplings=put(rows),
+                couplings=append_data(rows),
                 coupling_count=len(rows),
                 rank=-1,
             )

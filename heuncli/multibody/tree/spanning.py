@@ -3,11 +3,10 @@
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, used in an expression or
 limited by a stop is never cut. Next come the joints of a body with negligible mass, which only transmits loads: cut off
 from the bodies beyond it, roundings would accelerate it. This does not apply where all its joints leave it free to
-spin,
-as a link on two balls: transmitted loads do not turn it. Then come rigid joints, so that bodies welded together hang on
-each other and, apart from the above, only circles of welds are cut. Joints that leave a thin body free to turn about
-its axis without inertia are cut first, for that freedom would have no inertia; among the others of one layer those with
-most constraints are kept.
+spin, as a link on two balls: transmitted loads do not turn it. Then come rigid joints, so that bodies welded together
+hang on each other and, apart from the above, only circles of welds are cut. Joints that leave a thin body free to turn
+about its axis without inertia are cut first, for that freedom would have no inertia; among the others of one layer
+those with most constraints are kept.
 
 `line`, `plane` and `curve` carry a body only from their `from` side, a rod never does; a body that no joint carries has
 six freedoms of its own. So has the body of a path that only its runner holds. A curve is cut only where a closed chain

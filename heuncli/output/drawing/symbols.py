@@ -160,13 +160,13 @@ def damped_spring(length: float) -> tuple[SymbolPart, ...]:
     """A zigzag and a dashpot side by side."""
     end, off = min(8.0, 0.15 * length), min(6.5, 0.25 * length)
 
-    def beside(parts: tuple[SymbolPart, ...], y: float) -> tuple[SymbolPart, ...]:
+    def shift_parts(parts: tuple[SymbolPart, ...], y: float) -> tuple[SymbolPart, ...]:
         return tuple(part._replace(points=tuple((a + end, 0.8 * b + y) for a, b in part.points)) for part in parts)
 
     inner = length - 2.0 * end
     plates = (line((end, off), (end, -off)), line((length - end, off), (length - end, -off)))
     ends = (line((0.0, 0.0), (end, 0.0)), line((length - end, 0.0), (length, 0.0)))
-    return (*ends, *plates, *beside(spring(inner), off), *beside(dashpot(inner), -off))
+    return (*ends, *plates, *shift_parts(spring(inner), off), *shift_parts(dashpot(inner), -off))
 
 
 def cylinder(length: float) -> tuple[SymbolPart, ...]:

@@ -275,10 +275,10 @@ class WholeBar:
         """Search the lowest and highest value of each quantity over the bar and the run, between places and samples."""
         errors = np.array([self.find_error(name) for name in RESULTANTS])
 
-        def along(results: Results) -> list[tuple[str, Array]]:
+        def bar_columns(results: Results) -> list[tuple[str, Array]]:
             return [(self.name, results.sections[self.name][name]) for name in RESULTANTS]
 
-        searched = ColumnSearch(make_no_columns, (), errors, np.zeros(len(errors), dtype=bool), along)
+        searched = ColumnSearch(make_no_columns, (), errors, np.zeros(len(errors), dtype=bool), bar_columns)
         sampled = StudyColumns(self.study, searched, SECTIONS, self.setup)
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]

@@ -92,14 +92,17 @@ def _select_instants(data: Mapping[str, Any], indices: Sequence[int]) -> dict[st
         timed = row is not None and row.is_timed and isinstance(value, list) and len(value) == n
         return [value[i] for i in indices] if timed else value
 
-    def summed(values: Any) -> Any:
+    def select_terms(values: Any) -> Any:
         return [values[i] for i in indices] if isinstance(values, list) and len(values) == n else values
 
     selected = {key: part((key,), value) for key, value in data.items()}
     selected["time"] = [read_instants(data)[i] for i in indices]
     if "certain_sums" in data:
         selected["certain_sums"] = [
-            {"terms": {path: summed(x) for path, x in block["terms"].items()}, "value": summed(block["value"])}
+            {
+                "terms": {path: select_terms(x) for path, x in block["terms"].items()},
+                "value": select_terms(block["value"]),
+            }
             for block in data["certain_sums"]
         ]
     return selected

@@ -28,9 +28,9 @@ LIST_TITLES = (
 def format_model(title: str, model: Mapping[str, Any]) -> str:
     """Format the model block as text."""
     lines = [escape(title) or "untitled", ""]
-    counted = [(key, text) for key, text in collect_facts(model) if text]
-    width = max(len(key) for key, _ in counted)
-    lines += [f"  {key.ljust(width)}  {text}" for key, text in counted]
+    counts = [(key, text) for key, text in collect_facts(model) if text]
+    width = max(len(key) for key, _ in counts)
+    lines += [f"  {key.ljust(width)}  {text}" for key, text in counts]
     for key, heading in LIST_TITLES:
         sentences: Sequence[str] = model.get(key) or ()
         if sentences:
@@ -58,16 +58,16 @@ def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _format_names(counted: Any) -> str:
+def _format_names(counts: Any) -> str:
     """Format a count, or names with their count: `2: upper, lower`; the values of a mapping are the kinds of its
     names.
     """
-    if isinstance(counted, Mapping):
-        names = [f"{name} ({kind})" if isinstance(kind, str) else str(name) for name, kind in counted.items()]
-    elif isinstance(counted, (list, tuple)):
-        names = [str(name) for name in counted]
+    if isinstance(counts, Mapping):
+        names = [f"{name} ({kind})" if isinstance(kind, str) else str(name) for name, kind in counts.items()]
+    elif isinstance(counts, (list, tuple)):
+        names = [str(name) for name in counts]
     else:
-        return "" if counted is None else str(counted)
+        return "" if counts is None else str(counts)
     hidden_text = f", ... ({len(names) - MAX_NAMES} more)" if len(names) > MAX_NAMES else ""
     return f"{len(names)}: {', '.join(names[:MAX_NAMES])}{hidden_text}" if names else "none"
 

@@ -51,6 +51,12 @@ class Topologies:
         return [[list(face) for face in faces] for faces in self._known]
 
 
+def _pack_ends(link: Any, body_numbers: Mapping[str, int]) -> dict[str, Any]:
+    """Pack the two bodies of a joint or line by number, and its points on them, (3,) each."""
+    a, b = body_numbers[link.a], body_numbers[link.b]
+    return {"a": a, "p": _to_floats(link.p), "b": b, "q": _to_floats(link.q)}
+
+
 def make_page_scene(
     machine: Machine, spec: Spec, results: Results, poses: Poses, normal: Array | None = None
 ) -> dict[str, Any]:
@@ -69,29 +75,12 @@ def make_page_scene(
         "bodies": bodies,
         "topologies": topologies.to_lists(),
         "joints": [
-            {
-                "name": j.name,
-                "kind": j.kind,
-                "a": body_numbers[j.a],
-                "p": _to_floats(j.p),
-                "b": body_numbers[j.b],
-                "q": _to_floats(j.q),
-                "axis": _to_floats(j.axis),
-                "rope": j.name in ropes,
-            }
+            {"name": j.name, "kind": j.kind}
+            | _pack_ends(j, body_numbers)
+            | {"axis": _to_floats(j.axis), "rope": j.name in ropes}
             for j in machine.joints
         ],
-        "lines": [
-            {
-                "name": x.name,
-                "kind": x.kind,
-                "a": body_numbers[x.a],
-                "p": _to_floats(x.p),
-                "b": body_numbers[x.b],
-                "q": _to_floats(x.q),
-            }
-            for x in machine.lines
-        ],
+        "lines": [{"name": x.name, "kind": x.kind} | _pack_ends(x, body_numbers) for x in machine.lines],
         "paths": [pack_points(path) for path in machine.paths],
         "belts": [
             {

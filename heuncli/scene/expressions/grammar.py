@@ -21,7 +21,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.base.spelling import find_similar, suggest
 from heuncli.base.units import RATE, UNITS, Dimension, canonical_symbol, describe, parse_unit, si_expression_hint
-from heuncli.results.results_schema import REPORT_OF, ROWS, SHARED_BLOCKS
+from heuncli.results.results_schema import REPORT_OF
 from heuncli.scene.expressions.calculations import CalculationCache
 from heuncli.scene.expressions.codegen import COMPARISONS, MAX_NODES, CodeGenerator, Part
 from heuncli.scene.expressions.dimensions import (
@@ -32,6 +32,7 @@ from heuncli.scene.expressions.dimensions import (
     literal_dimension,
     power_dimension,
 )
+from heuncli.scene.expressions.name_hints import LAW_HINT, OTHER_NAMES, REACTIONS, RESULT_BLOCKS
 from heuncli.scene.expressions.point_names import POINT_FORM_HINT, resolve_point
 from heuncli.scene.expressions.programs import OWN, POINTS, Expression, TableFunction
 from heuncli.scene.expressions.tokens import tokenize
@@ -58,21 +59,6 @@ COORDINATES_BY_TYPE = {  # by joint type, of the joints with one coordinate
     if kind.coordinates == (quantity,)
 }
 BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
-OTHER_NAMES = {  # names from other programs, and heun's
-    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
-    "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
-    "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
-}  # fmt: skip
-RESULT_BLOCKS = SHARED_BLOCKS | {"stops", "couplings"}  # blocks of the results that follow from the motion
-REACTIONS = frozenset(
-    row.path.split(".")[2]
-    for row in ROWS
-    if row.path.startswith(("joints.JOINT.", "stops.STOP.")) and set(row.units) & {"N", "N·m"}
-) - {"shares"}
-LAW_HINT = (
-    "a law takes t, parameters and coordinates, as shaft.angle, shaft.rate, guide.travel, guide.speed; "
-    "a condition takes {of: joints.NAME.force.z, below: 0}"
-)
 LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # prefixes of functions in other programs
 
 NO_NAMES: Mapping[str, Any] = MappingProxyType({})
@@ -434,9 +420,7 @@ class _Parser:
         return len(ahead) == 3 and ahead[:2] == ["1", "/"] and canonical_symbol(ahead[2]) in UNITS
 
     def parse_unit_name(self, figure: str) -> tuple[float, Dimension]:
-        """Parse the unit that stands here, and return its size and dimension: names joined by * and /, with whole
-        powers.
-        """
+        """Parse the unit that stands here, names joined by * and / with whole powers; return its size and dimension."""
         begin = self.position
         if canonical_symbol(self.token) not in UNITS and (
             self.token in self.scope.parameters or self.token in RESERVED

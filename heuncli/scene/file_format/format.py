@@ -46,7 +46,6 @@ from heuncli.scene.file_format.fields import (
     OwnSpringForce,
     OwnTurnTorque,
     PartList,
-    PathPart,
     PointOrName,
     Position,
     Pressure,
@@ -66,6 +65,66 @@ from heuncli.scene.file_format.fields import (
 from heuncli.scene.file_format.foreign_words import AMBIGUOUS_WORDS
 from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry
 from heuncli.scene.file_format.format_elastic import BushingEntry, MotorEntry
+from heuncli.scene.file_format.format_joints import (
+    JOINTS as JOINTS,
+)
+from heuncli.scene.file_format.format_joints import (
+    AnyJoint as AnyJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    BallJoint as BallJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    Bearing as Bearing,
+)
+from heuncli.scene.file_format.format_joints import (
+    BearingEntry as BearingEntry,
+)
+from heuncli.scene.file_format.format_joints import (
+    ConstantVelocityJoint as ConstantVelocityJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    CurveJoint as CurveJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    CylinderJoint as CylinderJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    JointEntry as JointEntry,
+)
+from heuncli.scene.file_format.format_joints import (
+    LineJoint as LineJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    PinJoint as PinJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    PlaneJoint as PlaneJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    RodJoint as RodJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    SlideJoint as SlideJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    Sliding as Sliding,
+)
+from heuncli.scene.file_format.format_joints import (
+    StiffnessParts as StiffnessParts,
+)
+from heuncli.scene.file_format.format_joints import (
+    Turning as Turning,
+)
+from heuncli.scene.file_format.format_joints import (
+    TurningAndSliding as TurningAndSliding,
+)
+from heuncli.scene.file_format.format_joints import (
+    UniversalJoint as UniversalJoint,
+)
+from heuncli.scene.file_format.format_joints import (
+    WeldJoint as WeldJoint,
+)
 from heuncli.scene.file_format.format_rolling import RollingEntry
 from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
 
@@ -137,147 +196,6 @@ class BodyEntry(Entry):
         Annotated[Annotated[tuple[Rate, Rate, Rate], Tag("list")] | Annotated[RateInFrame, Tag("mapping")], FORM] | None
     ) = None
     piece: PieceEntry | None = None
-
-
-class StiffnessParts(Entry):
-    force: (
-        Annotated[
-            Annotated[Stiffness, Tag("single")] | Annotated[tuple[Stiffness, Stiffness, Stiffness], Tag("list")], FORM
-        ]
-        | None
-    ) = None
-    moment: (
-        Annotated[
-            Annotated[TurningStiffness, Tag("single")]
-            | Annotated[tuple[TurningStiffness, TurningStiffness, TurningStiffness], Tag("list")],
-            FORM,
-        ]
-        | None
-    ) = None
-
-
-class AnyJoint(Entry):
-    """What all joints have."""
-
-    from_: AnEnd = key(alias="from")
-    to: AnEnd
-    stiffness: (
-        Annotated[Annotated[Stiffness, Tag("single")] | Annotated[StiffnessParts, Tag("mapping")], FORM] | None
-    ) = None
-
-
-class BearingEntry(Entry):
-    diameter: Length
-    width: Length
-
-
-class Bearing(AnyJoint):
-    """A joint that may have a bearing."""
-
-    bearing: BearingEntry | None = None
-
-
-class Turning(Entry):
-    angle: Angle | None = None
-    rate: Rate | None = None
-
-
-class Sliding(Entry):
-    travel: Length | None = None
-    speed: Velocity | None = None
-
-
-class TurningAndSliding(Turning, Sliding):
-    """Held start values of a cylinder, which turns and slides."""
-
-
-class BallJoint(Bearing):
-    type: Literal["ball"]
-
-
-class PinJoint(Bearing):
-    type: Literal["pin"]
-    axis: Direction
-    to_axis: Direction | None = None
-    initial: Turning | None = None
-
-
-class SlideJoint(AnyJoint):
-    type: Literal["slide"]
-    axis: Direction
-    to_axis: Direction | None = None
-    initial: Sliding | None = None
-
-
-class CylinderJoint(Bearing):
-    type: Literal["cylinder"]
-    axis: Direction
-    to_axis: Direction | None = None
-    initial: TurningAndSliding | None = None
-
-
-class UniversalJoint(AnyJoint):
-    type: Literal["universal"]
-    axis: Direction
-    to_axis: Direction
-
-
-class ConstantVelocityJoint(AnyJoint):
-    type: Literal["cv"]
-    axis: Direction
-    to_axis: Direction | None = None
-
-
-class WeldJoint(AnyJoint):
-    type: Literal["weld"]
-
-
-class LineJoint(Bearing):
-    type: Literal["line"]
-    axis: Direction
-
-
-class PlaneJoint(AnyJoint):
-    type: Literal["plane"]
-    normal: Direction
-
-
-class CurveJoint(Bearing):
-    type: Literal["curve"]
-    x: PathPart = 0.0
-    y: PathPart = 0.0
-    z: PathPart = 0.0
-    radius: Length | None = None
-    normal: Direction | None = None
-    one_sided: Switch = False
-    restitution: Number | None = None
-    initial: Sliding | None = None
-
-
-class RodJoint(AnyJoint):
-    type: Literal["rod"]
-    length: Length | None = None
-    tension_only: Switch = False
-    restitution: Number | None = None
-
-
-JointEntry = (
-    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | ConstantVelocityJoint | WeldJoint | LineJoint
-    | PlaneJoint | CurveJoint | RodJoint
-)  # fmt: skip
-JOINTS: dict[str, type[JointEntry]] = {
-    "ball": BallJoint,
-    "pin": PinJoint,
-    "slide": SlideJoint,
-    "cylinder": CylinderJoint,
-    "universal": UniversalJoint,
-    "cv": ConstantVelocityJoint,
-    "weld": WeldJoint,
-    "line": LineJoint,
-    "plane": PlaneJoint,
-    "curve": CurveJoint,
-    "rod": RodJoint,
-}
 
 
 class DriveEntry(Entry):

@@ -77,10 +77,12 @@ def column_moments(u: Array, v: Array, w: Array, A: Array) -> Array:
 class LocalSurface:
     """The surface in axes e, f, n about its middle, and planes in ascending order.
 
-    axes: e, f, n in columns X: (3, n) the corners
-    order: indices of the planes as they were given D: (k,) their heights
-    low, high: see `count_planes_below` A: (m,) areas of the triangles projected onto the plane, negative where they
-    face down
+    axes: e, f, n in columns
+    X: (3, n) the corners
+    order: indices of the planes as they were given
+    D: (k,) their heights
+    low, high: see `count_planes_below`
+    A: (m,) areas of the triangles projected onto the plane, negative where they face down
     """
 
     axes: Array

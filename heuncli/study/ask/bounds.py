@@ -41,23 +41,23 @@ def check_bounds(study: Study, item: Expect) -> BoundCheck:
     return next((one for one in checks if one.failure is not None), checks[0])
 
 
-def check_bound(study: Study, item: Expect, how: How, sign: float, bound: float) -> BoundCheck:
-    """Check against one bound: the number has to stay below it (sign 1), or above it (-1)."""
+def check_bound(study: Study, item: Expect, how: How, sign: float, limit: float) -> BoundCheck:
+    """Check against one limit: the number has to stay below it (sign 1), or above it (-1)."""
     numbers = find_values(study.results, item.of)
     found = find_extreme(study, item, how)
     word = "below" if sign > 0.0 else "above"
     if (missing := find_missing_reason(study, numbers, found)) is not None:
         return BoundCheck(found._replace(value=math.nan), missing)
-    if sign * found.value < sign * bound:
+    if sign * found.value < sign * limit:
         return BoundCheck(found, None)
     extreme_text = (
         f"{describe_extreme(item, how)}{found.value:.9g}{format_instant(found.time)}{format_place(found.place)}"
     )
-    return BoundCheck(found, f"{extreme_text}, is not {word} {bound:.9g}")
+    return BoundCheck(found, f"{extreme_text}, is not {word} {limit:.9g}")
 
 
 def find_missing_reason(study: Study, numbers: PathValues, extreme: Peak) -> str | None:
-    """Say why there is no number to compare with a bound: at some instant it is indeterminate, or too close to a
+    """Say why there is no number to compare with a limit: at some instant it is indeterminate, or too close to a
     singular pose. None if there is one.
     """
     if not numbers.values.size:

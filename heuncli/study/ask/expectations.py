@@ -71,7 +71,7 @@ def compare(study: Study, item: Expect) -> Case:
             return _compare_curve(case, study, item)
         if item.below is not None or item.above is not None:
             return _compare_bounds(case, study, item)
-        found = _found(study, item)
+        found = _find_values(study, item)
     except HeunError as error:
         problem = error.problems[0]  # a number that cannot be computed between the samples may have several
         return replace(case, failure=problem.message + (f" ({problem.hint})" if problem.hint else ""))
@@ -101,7 +101,7 @@ def _compare_curve(case: Case, study: Study, item: Expect) -> Case:
     )
 
 
-def _found(study: Study, item: Expect) -> Array:
+def _find_values(study: Study, item: Expect) -> Array:
     results: Results = study.results
     if item.peak:
         return np.asarray(find_peak(study, item.of, item.peak).value)

@@ -96,10 +96,10 @@ def make_cause_columns(jumps: Sequence[ImpulseEvent]) -> tuple[tuple[str, ...], 
         columns, causes = jump_causes.take(0), np.array(jump.causes)
         found.append([columns.select(np.flatnonzero(causes == name)).sum() for name in names])
 
-    def stacked(of: str) -> Any:
-        return np.stack([np.stack([getattr(column, of) for column in row]) for row in found])
+    def stack_rows(attribute: str) -> Any:
+        return np.stack([np.stack([getattr(column, attribute) for column in row]) for row in found])
 
-    return tuple(names), Columns(stacked("bodies"), stacked("freedoms"), stacked("multipliers"))
+    return tuple(names), Columns(stack_rows("bodies"), stack_rows("freedoms"), stack_rows("multipliers"))
 
 
 def concatenate_solutions(solutions: Sequence[Evaluation]) -> Evaluation:

@@ -87,14 +87,9 @@ class Setup:
 
 
 def set_up(
-    spec: Spec,
-    method: str | None = None,
-    *,
-    reduce: bool = True,
-    selection: Selection = EVERYTHING,
-    find_rest: bool = True,
-    stages: Stages = NO_CACHE,
-) -> Setup:
+    spec: Spec, method: str | None = None, *, reduce: bool = True, selection: Selection = EVERYTHING,
+    find_rest: bool = True, stages: Stages = NO_CACHE,
+) -> Setup:  # fmt: skip
     """Build, cut, assemble and lay out a scene.
 
     method: overrides that of the spec
@@ -110,7 +105,8 @@ def set_up(
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
-    prepared = prepare_coupled(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
+    start_time = spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
+    prepared = prepare_coupled(mechanism, start_time, stages)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.multibody.tree.driven_starts import require_lengths  # few scenes have them
 
@@ -119,13 +115,9 @@ def set_up(
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = make_runner(prepared, stages)
     if scene.mechanism.joint_friction and scene.layout.rows:
-        from heuncli.loads.redundancy.friction_check import (
-            require_determinate_friction_at_start,  # few scenes have such friction
-        )
+        from heuncli.loads.redundancy import friction_check  # few scenes have such friction
 
-        require_determinate_friction_at_start(
-            scene, runner, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
-        )
+        friction_check.require_determinate_friction_at_start(scene, runner, start_time)
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, selection), left_out, find_rest)
     method_name = method or spec.analysis.method
@@ -140,10 +132,8 @@ def set_up(
             follows = find_determined_motion(runner.integrated_scene)
     reductions_block = describe_reductions(left_out, scene, reduced)
     if chosen is not None and auto:
-        chosen, reductions_block = (
-            DRIVE_DETERMINED if follows.is_so else choose_first_method(runner.integrated_scene.layout, spec),
-            follows.add_to_block(reductions_block),
-        )
+        chosen = DRIVE_DETERMINED if follows.is_so else choose_first_method(runner.integrated_scene.layout, spec)
+        reductions_block = follows.add_to_block(reductions_block)
     redundancies = count_redundancy(scene, runner, stages)
     note = make_model_block(scene, runner, chosen.name if chosen else "none", redundancies) | reductions_block
     if chosen is not None:
@@ -153,18 +143,9 @@ def set_up(
     step = spec.analysis.step if chosen is not None and chosen.has_fixed_step else None
     note |= {} if step is None else {"step": step}
     return Setup(
-        spec,
-        scene,
-        cuts,
-        runner,
-        chosen,
-        note,
-        reduced,
-        selection,
-        is_auto=auto,
-        step=step,
-        self_stress=redundancies.start_stress,
-    )
+        spec, scene, cuts, runner, chosen, note, reduced, selection,
+        is_auto=auto, step=step, self_stress=redundancies.start_stress,
+    )  # fmt: skip
 
 
 def require_drives(mechanism: Mechanism, t: float) -> None:

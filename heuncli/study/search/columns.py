@@ -159,7 +159,7 @@ class StudyColumns:
         s, end, ends = locate_summit(nodes, values, side)
         if self.search.bent and math.isfinite(value):
 
-            def along(s: Array) -> Array:
+            def sample_places(s: Array) -> Array:
                 assert self.search.cut_columns is not None and self.setup is not None
                 return self.search.cut_columns(self.compute_results(np.array([at]), cut_at(self.setup, name, s, ends)))[
                     k
@@ -168,7 +168,7 @@ class StudyColumns:
             one = slice(len(self.search.groups) + k, len(self.search.groups) + k + 1)
             errors, even = self.search.errors[one], self.search.even[one]
             search_result = extremes.search_extremes(
-                along, np.linspace(*ends, 17), errors=errors, even=even, sides=(side,)
+                sample_places, np.linspace(*ends, 17), errors=errors, even=even, sides=(side,)
             )
             value, s = (
                 float(x[0])

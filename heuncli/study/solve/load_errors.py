@@ -202,17 +202,17 @@ class LoadErrors:
         """
         count = len(states.omega) // len(self.is_requested)
 
-        def apart(values: Array) -> Array:
+        def find_differences(values: Array) -> Array:
             own = values[0::count]
             return reduce(np.maximum, [norms(own - values[k::count]) for k in range(1, count)])
 
-        omega_difference, alpha_difference = apart(states.omega), apart(states.alpha)
+        omega_difference, alpha_difference = find_differences(states.omega), find_differences(states.alpha)
         centripetal = 2.0 * norms(states.omega[0::count]) * omega_difference
         for unit, difference in (
             ("rad/s", omega_difference),
             ("rad/s²", alpha_difference),
-            ("m/s", apart(states.v_centre) + omega_difference * self.reaches),
-            ("m/s²", apart(states.a_centre) + (alpha_difference + centripetal) * self.reaches),
+            ("m/s", find_differences(states.v_centre) + omega_difference * self.reaches),
+            ("m/s²", find_differences(states.a_centre) + (alpha_difference + centripetal) * self.reaches),
         ):
             self.find_extent("motion", unit).add_difference(difference.max(axis=1), self.is_claimed)
         if any(JOINTS[joint.kind].follows_path for joint in self.setup.scene.mechanism.joints):

@@ -70,7 +70,7 @@ forces:
   one: {{type: force, on: b.o, vector: [1, 0, 0]}}
   other: {{type: force, on: b.o, vector: [{x - 1.0!r}, 0, 0]}}
 """,
-        wanted=frozenset({"joints"}),
+        requested_reports=frozenset({"joints"}),
     )
     near(run.results.joints["w"]["force"], [[-x, 0.0, 0.0]], 1.0, 1e-15)
     (table,) = make_page(run.results, make_labels(run.spec), run.magnitudes).make_tables_at_instants(run.results)
@@ -87,7 +87,7 @@ bodies: {{b: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 
 joints: {{guide: {{type: slide, from: ground.O, to: b.o, axis: [1, 0, 0], initial: {{travel: 0, speed: {rate!r}}}}}}}
 forces: {{rub: {{type: friction, joint: guide, force: 3, speed: 1}}}}
 analysis: {{type: state}}
-""", wanted=frozenset({"motion", "forces"}))  # fmt: skip
+""", requested_reports=frozenset({"motion", "forces"}))  # fmt: skip
     near(run.results.forces["rub"]["value"], [-3.0 * (1.0 - x)], 1.0)
     word = make_friction_warning(run, "coordinates.guide.acceleration", 0.0)
     return "full" if word is None else "told"

@@ -136,12 +136,12 @@ def _solve_variants(
         return
     from heuncli.app.commands.sweep.cluster import scheduler  # imports an optional, large package
 
-    def told(line: str) -> None:
+    def report_line(line: str) -> None:
         if not request.quiet:
             print_stderr(f"heun: {line}")
 
     yield from scheduler.solve_variants(
-        sweep.evaluator.recipe, plan, numbers, request.dask, sweep.size, told, stop_descriptor
+        sweep.evaluator.recipe, plan, numbers, request.dask, sweep.size, report_line, stop_descriptor
     )
 
 

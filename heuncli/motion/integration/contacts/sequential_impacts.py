@@ -80,7 +80,8 @@ class ContactRates:
 
     def __init__(self, start: Array, lengths: Array, A: Array) -> None:
         """start (k,): rates
-        lengths (k,): ratio of the unit of each gap to a length [m] A (k, k): rates of opening from unit impulses
+        lengths (k,): ratio of the unit of each gap to a length [m]
+        A (k, k): rates of opening from unit impulses
         """
         self.v: list[float] = start.tolist()
         self.gap: list[float] = (1.0 / lengths).tolist()
@@ -156,11 +157,13 @@ def strike_in_sequence(
 ) -> ImpactSequence:
     """Strike contacts one after another until none closes.
 
-    contacts_touching: the contacts (k,) A (k, k): rates of opening from unit impulses
+    contacts_touching: the contacts (k,)
+    A (k, k): rates of opening from unit impulses
     start (k,): rates of opening after what is given
     noise (k,): rounding error of these rates
     moves (k,): whether an impulse moves anything
-    solve_impulses(v, own, e, noise): impulses of contacts that close together, and which of them depend on the others
+    solve_impulses(v, own, e, noise): impulses of contacts that close together, and which depend on others
+
     Raises EndlessImpacts.
     """
     contact_rates = ContactRates(np.where(np.abs(start) <= noise, 0.0, start), contacts_touching.length, A)
@@ -186,12 +189,8 @@ def strike_in_sequence(
         if any(coupled[i, k] for i in struck_contacts for k in struck_contacts if i != k):
             struck_indices, v = np.array(struck_contacts, dtype=int), np.array(contact_rates.v)
             effective_restitution = np.where(v[struck_indices] < 0.0, restitution[struck_indices], 0.0)
-            z, is_dependent = solve_impulses(
-                v,
-                struck_indices,
-                effective_restitution,
-                np.array([UNSOLVED_FRACTION * contact_rates.rate_rounding(i) for i in struck_contacts]),
-            )
+            unsolved = np.array([UNSOLVED_FRACTION * contact_rates.rate_rounding(i) for i in struck_contacts])
+            z, is_dependent = solve_impulses(v, struck_indices, effective_restitution, unsolved)
             for i, impulse in zip(struck_contacts, z.tolist(), strict=True):
                 contact_rates.add_impulse(i, impulse)
             for i, impulse, rebound in zip(

@@ -38,10 +38,7 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
         path = ("forces", name)
         if isinstance(load, f.TorqueEntry):
             if not kind.accepts_load("torque"):
-                where = " or ".join(
-                    f"{TORQUE_WORDS[allowed_kind.motions[0]]} {allowed_kind.name}"
-                    for allowed_kind in kinds_accepting_load("torque")
-                )
+                where = " or ".join(f"{TORQUE_WORDS[k.motions[0]]} {k.name}" for k in kinds_accepting_load("torque"))
                 hint = "between two points use actuator, on a body couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, fe.MotorEntry):
@@ -53,25 +50,19 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 message = f"the torque of a turn_spring by a law acts about a pin, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "its angle is told by a pin alone; else give a stiffness")
             elif not kind.accepts_load("turn_spring"):
-                message = (
-                    "a turn_spring acts about a "
-                    f"{format_kind_names(kinds_accepting_load('turn_spring'), 'or')}, not in a {kind.name}"
-                )
+                allowed = format_kind_names(kinds_accepting_load("turn_spring"), "or")
+                message = f"a turn_spring acts about a {allowed}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring")
         elif isinstance(load, f.DamperEntry):
-            two_motion_kinds = [
-                allowed_kind for allowed_kind in kinds_accepting_load("damper") if len(allowed_kind.motions) == 2
-            ]
+            two_motion_kinds = [k for k in kinds_accepting_load("damper") if len(k.motions) == 2]
             if not kind.accepts_load("damper"):
                 hint = "between two points use a spring with damping"
                 yield Violation((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
             if load.torque is not None or load.force is not None:
                 yield from check_damper_law(name, load, kind)
             elif load.coefficient is None and load.sliding is None:
-                allowed_coefficients = (
-                    "coefficient (of turning), sliding, or both" if kind in two_motion_kinds else "coefficient"
-                )
-                yield Violation(path, "a damper that resists nothing", f"give {allowed_coefficients}", key=True)
+                allowed = "coefficient (of turning), sliding, or both" if kind in two_motion_kinds else "coefficient"
+                yield Violation(path, "a damper that resists nothing", f"give {allowed}", key=True)
             if load.sliding is not None and kind not in two_motion_kinds:
                 message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
@@ -79,10 +70,8 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
             allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
             if not kind.accepts_load("friction"):
-                message = (
-                    f"friction acts in a {format_kind_names(kinds_accepting_load('friction'), 'or')}, not "
-                    f"in a {kind.name}"
-                )
+                allowed = format_kind_names(kinds_accepting_load("friction"), "or")
+                message = f"friction acts in a {allowed}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring with damping")
             elif len(given_keys) != 1:
                 description = (
