@@ -184,7 +184,7 @@ def test_a_variant_that_ends_its_workers_is_found_out(
         monkeypatch.setattr(module, "WORKERS", 1)  # of more that are lost: tests of the lots
     ending = (
         "import os\n"
-        "from ? import worker as cluster_worker\n"
+        "from heuncli.app.commands.sweep.cluster import worker as cluster_worker\n"
         "def answer_of(asker, values, plain=cluster_worker.answer_of):\n"
         "    os._exit(9) if values['m'] == '5' else None\n"
         "    return plain(asker, values)\n"

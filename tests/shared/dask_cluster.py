@@ -26,7 +26,7 @@ class NoHeun:
 sys.meta_path.insert(0, NoHeun())
 """
 OTHER_TEXT = """\
-from ? import worker as cluster_worker
+from heuncli.app.commands.sweep.cluster import worker as cluster_worker
 cluster_worker.text_digest = lambda: "another"
 """
 
