@@ -23,7 +23,7 @@ from tests.shared.processes import hand_down_signals
 # touch no kernel.
 JUDGED = {"closed_forms", "convergence", "honesty", "limits"}
 SHOWN = {"browser", "pictures", "report", "reporting", "show"}
-SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_door"}
+SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_api"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
 SHARE = 4

@@ -53,7 +53,7 @@ from tests.bench.meshes import meshes
 from tests.bench.pages import pages
 from tests.bench.pictures import pictures
 from tests.bench.pipeline import pipeline
-from tests.bench.python_door import python_door
+from tests.bench.python_api import python_api
 from tests.bench.reduced import reduced
 from tests.bench.reports import reports
 from tests.bench.sweeps import sweeps
@@ -217,7 +217,7 @@ PARTS = {
     "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
-    "pipeline": pipeline, "door": python_door, "growth": growth, "variants": variants, "sweeps": sweeps,
+    "pipeline": pipeline, "door": python_api, "growth": growth, "variants": variants, "sweeps": sweeps,
     "collectives": collective_times, "loads": load_cases, "meshes": meshes,
     "pictures": pictures, "reports": lambda: reports(median_ms),
     "imports": lambda: imports(median_ms), "pages": pages,

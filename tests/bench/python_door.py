@@ -17,7 +17,7 @@ TIMES = 60
 FREE = 1.0  # ms that Python may take beyond the command
 
 
-def python_door() -> None:
+def python_api() -> None:
     """Print them for some scenes, and what a signal and a measure take of one that is solved."""
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "out.json")
