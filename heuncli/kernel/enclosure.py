@@ -525,9 +525,8 @@ def span_of_table(op: cython.int, c: cython.p_double, table: Table, u: Span) -> 
     result = span_of_pieces(c, table, inside, find_piece(c, table, inside.low), find_piece(c, table, inside.high))
     if inside.low == a.low and inside.high == a.high:
         return chain_spans(u, result.value, result.rate, result.second)
-    return chain_spans(
-        u, result.value, hull(result.rate, point_interval(0.0)), all_numbers()
-    )  # it stands still beyond, or has no value
+    # it stands still beyond, or has no value
+    return chain_spans(u, result.value, hull(result.rate, point_interval(0.0)), all_numbers())
 
 
 def span_outside_table(c: cython.p_double, table: Table, is_before: cython.bint) -> Span:

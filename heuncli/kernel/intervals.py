@@ -306,9 +306,8 @@ def raise_to_number(a: Bounds, n: cython.double) -> Bounds:
         if a.high < 0.0 and a.low > -INFINITY:
             return empty_interval()
         low: cython.double = library_below(pow(a.low, n)) if a.low > 0.0 else 0.0
-        return Bounds(
-            low, library_power_above(a.high, n) if a.low > -INFINITY else INFINITY
-        )  # (-infinity)**n is infinity in C
+        # (-infinity)**n is infinity in C
+        return Bounds(low, library_power_above(a.high, n) if a.low > -INFINITY else INFINITY)
     m: Bounds = magnitude(a)
     if floor(0.5 * n) == 0.5 * n:
         return Bounds(library_below(pow(m.low, n)), library_power_above(m.high, n))

@@ -536,9 +536,8 @@ class Scene(Struct):
     slopes: list[float]  # of the variables of the expressions, along the direction
     sloping: int  # some of them are not 0
     rubs: list[int]  # the loads of joint friction that depend on the joint's own load
-    carried: list[
-        float
-    ]  # of each cause, of each of them: the two vectors whose lengths press (kernel/joint_friction.py)
+    # of each cause, of each of them: the two vectors whose lengths press (kernel/joint_friction.py)
+    carried: list[float]
     kept: list[float]  # moment and force applied to each body, stored while others are solved for
     bound: list[float]  # by how much what presses one can grow by a unit of another; then its elimination
     newton: list[float]  # 1 - the slope of that at the answer

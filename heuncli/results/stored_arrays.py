@@ -60,9 +60,8 @@ class StoredArray:
             return self._read(first * self.row, (end - first) * self.row).reshape(-1, *self.shape[1:])
         low, high, _ = columns.indices(self.row)
         values = np.empty((end - first, high - low))
-        row_count = max(
-            1, TOGETHER // max(self.row, 1)
-        )  # rows; one of a wide array, of which the columns alone are read
+        # rows; one of a wide array, of which the columns alone are read
+        row_count = max(1, TOGETHER // max(self.row, 1))
         for i in range(first, end, row_count):
             if row_count == 1:
                 values[i - first] = self._read(i * self.row + low, high - low)

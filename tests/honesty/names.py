@@ -29,9 +29,8 @@ from tests.shared.folders import SPECS
 from tests.shared.in_process import run_command
 from tests.shared.renamed import WORDS, NeutralSpec, neutral, tokens_for, with_words
 
-VOLATILE = frozenset(
-    {"seconds", "sha256", "path", "file", "version", "work", "integrates", "method", "reasons"}
-)  # timed
+# timed
+VOLATILE = frozenset({"seconds", "sha256", "path", "file", "version", "work", "integrates", "method", "reasons"})
 LONG = 12  # samples of a motion, and its tolerance: names do not hang on them
 COARSE = 1e-5
 STRUCK = frozenset({  # some of these share no name

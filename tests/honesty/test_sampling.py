@@ -17,9 +17,8 @@ from heuncli.analyses.variants.sampling import CONFIDENCE, PERCENTS, BoundedEsti
 from heuncli.results.results import Array
 
 SEEDS = 2000
-LEAST_SEEN = (
-    binom.ppf(1e-4, SEEDS, CONFIDENCE) / SEEDS
-)  # of so many true intervals fewer hold the truth once in 10,000 times
+# of so many true intervals fewer hold the truth once in 10,000 times
+LEAST_SEEN = binom.ppf(1e-4, SEEDS, CONFIDENCE) / SEEDS
 Law = tuple[Callable[[Generator, int], Array], float, float, Callable[[float], float]]
 # How it is drawn, its mean, its deviation, its quantiles.
 LAWS: dict[str, Law] = {

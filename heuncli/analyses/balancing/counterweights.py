@@ -68,9 +68,8 @@ def find_least_weights(
     """
     effects = compute_mass_effects(cycle, reference_point)
     weigh = np.repeat([force, moment], 3)
-    mean_factors = np.sqrt(
-        cycle.nodes.weights * len(cycle.nodes.weights)
-    )  # weighted mean of squares as a mean over rows
+    # weighted mean of squares as a mean over rows
+    mean_factors = np.sqrt(cycle.nodes.weights * len(cycle.nodes.weights))
     weigh = mean_factors[:, None] * weigh
     unbalanced = -np.concatenate([effects.force.sum(axis=1), effects.moment.sum(axis=1)], axis=1) * weigh
     largest_effect = max(force, moment * (cycle.size + float(np.abs(reference_point - cycle.states.centre).max())))

@@ -64,9 +64,8 @@ def compute_square_root_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes
     values = np.stack([*kinds.values()], axis=1)
     value_errors, largest = nodes.estimate_errors(values).value, values.max(axis=0, initial=0.0)
     roots = np.sqrt(np.maximum(largest, value_errors))
-    errors = np.divide(
-        value_errors, roots, out=np.zeros_like(value_errors), where=roots > 0.0
-    )  # error of the root from the error of the square
+    # error of the root from the error of the square
+    errors = np.divide(value_errors, roots, out=np.zeros_like(value_errors), where=roots > 0.0)
     means = np.maximum(nodes.weights @ values, 0.0).tolist()
     peaks = find_peaks(nodes.interpolate(values), nodes, errors)
     return {

@@ -35,9 +35,8 @@ TAIL_FACTOR = 4.0  # times the largest of these: error of any order by noise and
 JUMP_PLACE_ERROR = (
     1e-11  # of a cycle: error of the place of a jump: an event is located to the rounding of its coordinates
 )
-PLACE_ROUNDING = (
-    tolerances.SUM_ROUNDING
-)  # of a cycle: rounding of a place in it, and of coordinates that follow from it
+# of a cycle: rounding of a place in it, and of coordinates that follow from it
+PLACE_ROUNDING = tolerances.SUM_ROUNDING
 LENGTH_DIGITS = 13  # digits to which lengths of pieces are compared
 
 

@@ -18,24 +18,17 @@ from heuncli.results.results import Array
 
 FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box
 MIN_STEP_RATIO = 0.1  # of the step before, at least; otherwise twice the distance that the last run moved
-FINAL_STEP_FACTOR, NOISE_FACTOR = (
-    0.01,
-    3.0,
-)  # COBYLA's last step: of the root of the floor, but at least this multiple of the floor
+# COBYLA's last step: of the root of the floor, but at least this multiple of the floor
+FINAL_STEP_FACTOR, NOISE_FACTOR = (0.01, 3.0)
 SIMPLEX_TOLERANCE = 1e-3  # distance of the simplex's corners when it ends; their values differ by less than the floor
 COBYLA_TRIALS, SIMPLEX_TRIALS = 30, 40  # most evaluations of one run, per variable plus one
-FIRST_WEIGHT, WEIGHT_FACTOR = (
-    3.0,
-    4.0,
-)  # weight of violations: at first, and the factor by which it rises while they persist
+# weight of violations: at first, and the factor by which it rises while they persist
+FIRST_WEIGHT, WEIGHT_FACTOR = (3.0, 4.0)
 MAX_VIOLATION = 1e-4  # scales by which the best by merit may violate the constraints before the weight is raised
 CONSTRAINT_MARGIN = 1e-7  # scales by which COBYLA stays inside the constraints, so that rounding does not violate them
 MAX_RUNS = 40
-STALLED_RUNS_FEW, STALLED_RUNS_MANY, FEW_VARIABLES = (
-    2,
-    4,
-    2,
-)  # runs in turn that gain nothing when it ends; how many variables are few: of more
+# runs in turn that gain nothing when it ends; how many variables are few: of more
+STALLED_RUNS_FEW, STALLED_RUNS_MANY, FEW_VARIABLES = (2, 4, 2)
 # the simplex may collapse along a kink, and does so less from its other sides
 
 

@@ -22,10 +22,8 @@ MIN_SHARE = 0.8  # of the amount: a distance that reaches this is accepted
 POWER_RANGE = (1.0, 2.0)  # least and largest power of the distance with which the goal rises
 MAX_TRIALS = 7  # evaluations for one amount to one side
 MAX_RATIO, MIN_POWER = 1e20, 0.1  # limits of the extrapolation
-JUMP_POWER, STEEP_POWER = (
-    6.0,
-    0.5,
-)  # powers of the distance: a steeper rise is a jump within it, a flatter one a jump before it
+# powers of the distance: a steeper rise is a jump within it, a flatter one a jump before it
+JUMP_POWER, STEEP_POWER = (6.0, 0.5)
 
 
 def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, ...]:

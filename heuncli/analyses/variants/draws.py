@@ -141,7 +141,6 @@ def _apply_law(law: RandomVariable, u: Array) -> Array:
     from statistics import NormalDist  # some milliseconds
 
     quantile = NormalDist(law.a, law.b).inv_cdf
-    clipped = np.clip(
-        u, MIN_SHARE, 1.0 - MIN_SHARE
-    )  # a joint plan may have points at its ends, whose quantiles are infinite
+    # a joint plan may have points at its ends, whose quantiles are infinite
+    clipped = np.clip(u, MIN_SHARE, 1.0 - MIN_SHARE)
     return np.array([quantile(x) for x in clipped.ravel().tolist()]).reshape(u.shape)

@@ -33,9 +33,8 @@ from heuncli.scene.file_format.source import FLOAT, INTEGER, SourceFile, read_so
 from heuncli.study.model.options import Options
 from heuncli.version import VERSION
 
-IGNORED_BLOCKS = frozenset(
-    {"title", "expect", "cases"}
-)  # results do not depend on them; the settings of a case are separate
+# results do not depend on them; the settings of a case are separate
+IGNORED_BLOCKS = frozenset({"title", "expect", "cases"})
 VERBATIM = frozenset({"heun", "tables"})  # blocks whose texts and kinds of numbers are not normalized
 NO_NAMES = Scope()
 NOWHERE = SourceLocation("", 1, 1)

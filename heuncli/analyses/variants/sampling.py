@@ -70,9 +70,8 @@ def estimate_deviation(sorted_values: Array, s: float) -> BoundedEstimate:
     if n < MIN_BOUNDED:
         return BoundedEstimate(s, None, None)
     cut = int(n / (2.0 * math.sqrt(n - 4)))
-    middle = float(
-        sorted_values[cut : n - cut].mean()
-    )  # the mean without its tails, which draw it to the side of a skew law
+    # the mean without its tails, which draw it to the side of a skew law
+    middle = float(sorted_values[cut : n - cut].mean())
     kurtosis = n * float(np.sum(((sorted_values - middle) / s) ** 4)) / (n - 1) ** 2
     c = n / (n - NORMAL)
     log_error = 0.5 * c * NORMAL * math.sqrt(max(kurtosis - (n - 3) / n, 0.0) / (n - 1))

@@ -29,9 +29,8 @@ from heuncli.study.solve.error_extents import DIFFERENCE_ONLY, Weights
 from heuncli.study.solve.load_errors import LoadErrors, Quantity
 
 LOAD_SELECTION = Selection(frozenset({"joints", "sections"}))
-DeterminateComponents = Mapping[
-    str, tuple[Mask, Mask]
-]  # by joint: which components of its force and moment are always determinate
+# by joint: which components of its force and moment are always determinate
+DeterminateComponents = Mapping[str, tuple[Mask, Mask]]
 
 
 class DeterminateLoadErrors(LoadErrors):

@@ -23,10 +23,8 @@ from heuncli.scene.file_format.models import ResultCondition, Spec
 from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.solve.history import check_start
 
-STIFFNESS_TEST_TOLERANCE, STIFFNESS_TEST_SECONDS = (
-    1e-8,
-    10.0,
-)  # local tolerance, and time limit, of the run that detects stiffness
+# local tolerance, and time limit, of the run that detects stiffness
+STIFFNESS_TEST_TOLERANCE, STIFFNESS_TEST_SECONDS = (1e-8, 10.0)
 TIME_LIMIT_TEXT = "the time limit was reached before a reference was found"
 NO_MOTION_HINT = "a chart compares how a motion is integrated; ask for one: analysis: {duration: 2, samples: 201}"
 

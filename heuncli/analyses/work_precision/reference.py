@@ -29,11 +29,8 @@ from heuncli.study.solve.history import require_followed
 
 # Pairs of methods, the first the reference; the second pair where the first does not agree, as in stiff scenes
 PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))
-FINEST_TOLERANCES = (
-    tolerances.LEAST_TOLERANCE,
-    1e-12,
-    1e-10,
-)  # local tolerances, the first by which the motion can be run
+# local tolerances, the first by which the motion can be run
+FINEST_TOLERANCES = (tolerances.LEAST_TOLERANCE, 1e-12, 1e-10)
 MAX_SECONDS = 20.0  # time limit of one of these runs
 AGREEMENT = 1e-9  # relative: if two runs agree so well, no other pair is tried
 TOO_SHORT_TEXT = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"

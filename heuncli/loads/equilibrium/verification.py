@@ -22,9 +22,8 @@ from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
-PERTURBATIONS = 10.0 ** np.arange(
-    -7.0, -1.0
-)  # rad, or relative to the size: distances from a path at which others are tried
+# rad, or relative to the size: distances from a path at which others are tried
+PERTURBATIONS = 10.0 ** np.arange(-7.0, -1.0)
 MAX_SEARCHES = 4  # each ten times finer than the one before
 MIN_INDIFFERENT_SEARCHES = 2  # additional ones, where a direction is indifferent
 

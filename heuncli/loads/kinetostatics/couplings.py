@@ -157,9 +157,8 @@ class CouplingLoads:
         """
         loads_by_body: dict[int, tuple[Array, Array, Array]] = {}
         loading_parts = (body_force for body_force in self.parts if not body_force.part.has_no_load)
-        parts = sorted(
-            loading_parts, key=lambda body_force: not body_force.part.lies_on_sheave
-        )  # of sheaves their centres come first
+        # of sheaves their centres come first
+        parts = sorted(loading_parts, key=lambda body_force: not body_force.part.lies_on_sheave)
         friction_actions = () if self.friction is None else (self.friction,)
         part_loads = (on for part in parts for on in part.both_loads)
         action_loads = (

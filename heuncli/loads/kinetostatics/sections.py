@@ -84,9 +84,8 @@ def to_body_axes(R: Array, v: Array) -> Array:
     return components
 
 
-HUGE_PAGE_DOUBLES = (
-    1 << 19
-)  # doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
+# doubles from which NumPy asks for huge pages: first touch of fresh pages costs more than the products
+HUGE_PAGE_DOUBLES = 1 << 19
 
 
 def allocate(*shape: int) -> Array:

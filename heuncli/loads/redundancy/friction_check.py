@@ -25,9 +25,8 @@ def require_determinate_friction(layout: Layout, stress: SelfStress | None, stat
     is_open = [is_pressure_indeterminate(layout, load, stress, states) for load in friction_loads]
     instants = np.flatnonzero(np.any(is_open, axis=0))
     if len(instants):
-        from heuncli.motion.integration.diagnosis.jamming import (
-            indeterminate_friction_problem,  # only on the way to an error
-        )
+        # only on the way to an error
+        from heuncli.motion.integration.diagnosis.jamming import indeterminate_friction_problem
 
         loads = [load for load, mask in zip(friction_loads, is_open, strict=True) if mask[instants[0]]]
         raise SolveError(indeterminate_friction_problem(layout.mechanism, loads, float(times[instants[0]])))

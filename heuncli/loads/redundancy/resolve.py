@@ -223,9 +223,8 @@ def find_sums(
     is_indeterminate = [
         np.concatenate(find_indeterminate_wrench(stress, share), axis=1).any(axis=0) for share in stress.shares
     ]
-    joint_numbers, component = np.nonzero(
-        np.reshape(is_indeterminate, (-1, 6))
-    )  # joint, component: of each that is open
+    # joint, component: of each that is open
+    joint_numbers, component = np.nonzero(np.reshape(is_indeterminate, (-1, 6)))
     at_instants = relative_shares(stress, joint_numbers, component)
     in_poses = at_instants[:, selected]
     if neighbour_stress is not None:

@@ -61,9 +61,8 @@ def find_dependent_components(poses: ComponentShares) -> list[list[str]]:
             reduced_rows = remove_projection(rows[:, i : i + BLOCK_ROWS], Q[:, :before])
         residual = remove_projection(reduced_rows[:, i % BLOCK_ROWS, None], Q[:, before : len(free)])
         size = np.sqrt(np.einsum("tik,tik->t", residual, residual))
-        is_independent = (
-            size > tolerances.DEPENDENT_SHARES
-        )  # where a component vanishes, as of a crank on an axis, that is rounding
+        # where a component vanishes, as of a crank on an axis, that is rounding
+        is_independent = size > tolerances.DEPENDENT_SHARES
         if (is_usual & is_independent).any():
             is_usual &= is_independent
             Q[:, len(free)] = residual[:, 0] * (is_independent / np.where(is_independent, size, 1.0))[:, None]

@@ -77,9 +77,8 @@ def find_one_sided_limits(jumps: Sequence[float] | Array) -> tuple[Array, Array]
     """
     instants = np.asarray(jumps, dtype=float)
     before = np.nextafter(instants, -np.inf)
-    is_separate = np.append(True, instants[:-1] < before[1:])[
-        : len(instants)
-    ]  # neighbouring doubles are one discontinuity
+    # neighbouring doubles are one discontinuity
+    is_separate = np.append(True, instants[:-1] < before[1:])[: len(instants)]
     return before[is_separate], instants[np.append(is_separate[1:], True)[: len(instants)]]
 
 

@@ -146,9 +146,8 @@ def reduce_indifference(system: ReducedEquations, indifference: Indifference) ->
         orthonormalise(projection @ indifference.T @ basis)
         for basis in (indifference.elimination.right_null, indifference.elimination.left_null)
     )
-    to_pivots: Array = np.linalg.lstsq(indifference.T, system.tangent, rcond=None)[0].astype(
-        float
-    )  # x by those displacements
+    # x by those displacements
+    to_pivots: Array = np.linalg.lstsq(indifference.T, system.tangent, rcond=None)[0].astype(float)
     forces: Array = np.linalg.lstsq(to_pivots, np.eye(len(to_pivots)), rcond=None)[0].astype(float)
     compliance = projection @ indifference.T @ indifference.elimination.solve(forces.T)
     basis = (

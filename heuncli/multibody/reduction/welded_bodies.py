@@ -116,9 +116,8 @@ def merge_parts(mechanism: Mechanism, parts: BodyParts, root: int) -> Body:
         return body
     masses = np.array([mechanism.bodies[i].mass for i in members])
     centres = np.array([parts.placements[i].transform_point(mechanism.bodies[i].center) for i in members])
-    common_centre = (
-        masses @ centres / masses.sum()
-    )  # about their common centre no moment is the difference of larger ones
+    # about their common centre no moment is the difference of larger ones
+    common_centre = masses @ centres / masses.sum()
     P = sum(
         (placed_pseudo_inertia(mechanism.bodies[i], parts.placements[i], common_centre) for i in members),
         np.zeros((4, 4)),

@@ -263,9 +263,8 @@ class _LoadRowBuilder:
         """
         tree_index = next((i for i, h in enumerate(self.frame.spanning.links) if h.joint == load.joint), GROUND)
         closure_rows = [r for r, joint in enumerate(self.frame.rows) if joint == load.joint]
-        closure_rows = closure_rows[
-            : JOINTS[self.mechanism.joints[load.joint].kind].row_count
-        ]  # those of its stops come after
+        # those of its stops come after
+        closure_rows = closure_rows[: JOINTS[self.mechanism.joints[load.joint].kind].row_count]
         presses, first = PRESSES[load.presses or "whole"], closure_rows[0] if closure_rows else 0
         return replace(
             row, presses=presses, held_by=tree_index, row=first, row_count=len(closure_rows), reach=load.reach

@@ -412,9 +412,8 @@ class _LayoutBuilder:
         """Add the rows across the path of a cut joint, along which a counter counts."""
         joint, first = self.mechanism.joints[k], self._add_pieces(path)
         h = path.normal if path.normal.any() else Z if self.mechanism.planar else path.direction_off_slopes
-        side = (
-            -1.0 if joint.one_sided else 1.0
-        )  # what holds one way alone does so as a rope does: it must not be pushed
+        # what holds one way alone does so as a rope does: it must not be pushed
+        side = -1.0 if joint.one_sided else 1.0
         for faced in range(2):
             if joint.one_sided and not faced:
                 self._mark_one_sided(k, joint.name, joint.restitution)

@@ -33,9 +33,8 @@ def make_model_parts(data: ReportData) -> list[Part]:
     """Make the description of the model that was solved, in the words of `heun model`."""
     study = data.runs[0].study
     description = describe(study.spec, reduce=data.reduce)
-    model: Mapping[str, Any] = study.results.model | {
-        key: description[key] for key in DESCRIBED_KEYS
-    }  # as it was solved
+    # as it was solved
+    model: Mapping[str, Any] = study.results.model | {key: description[key] for key in DESCRIBED_KEYS}
     parts: list[Part] = [Sentence(ASSUMPTIONS), Facts([fact for fact in collect_facts(model) if fact[1]])]
     for key, title in LIST_TITLES:
         if model.get(key):

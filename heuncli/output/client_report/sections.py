@@ -154,9 +154,8 @@ def _iter_stress_table(data: ReportData, names: list[str]) -> Iterator[Part]:
     entries = [entry for name in names for entry in _iter_utilisation(data, name)]
     if not entries:
         return
-    all_known = all(
-        entry_of_section.is_known for entry_of_section in entries
-    )  # an indeterminate stress may be the largest
+    # an indeterminate stress may be the largest
+    all_known = all(entry_of_section.is_known for entry_of_section in entries)
     largest = max(map(_rank_entry, entries))
     pa, m = data.units.find("Pa")[0], data.units.find("m")[0]
     heads = [TextColumn("section", "left"), *([TextColumn("case", "left")] if data.has_cases else [])]

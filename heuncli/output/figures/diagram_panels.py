@@ -20,10 +20,8 @@ from heuncli.study.quantities.table_units import Units
 PANEL_HEIGHT, OPEN_PANEL_HEIGHT = 150.0, 56.0  # pixels; the second if all is open
 N_ORDINATES = 60  # of a hatch along a bar
 SIGN_CLEARANCE = 0.011  # share of the bar's length without ordinates beside a sign
-MIN_LOBE_WIDTH, MIN_LOBE_HEIGHT = (
-    0.05,
-    0.15,
-)  # shares of the length and of the largest value; smaller lobes have no sign
+# shares of the length and of the largest value; smaller lobes have no sign
+MIN_LOBE_WIDTH, MIN_LOBE_HEIGHT = (0.05, 0.15)
 MIN_MARKED = 0.004  # share of the largest magnitude (half a pixel); smaller extremes are not marked
 MAX_TICKS = 4  # of an inverted axis
 LABEL_MARGIN = 0.22  # share of a panel's height, for labels of extremes

@@ -46,11 +46,8 @@ MAX_CURVE_LEVELS = 3  # of the second of two variables: up to this, curves and n
 MAX_CELLS = 40_000
 MAX_SPOTS = 1_500
 MAX_PANELS = 16
-FIELD_HEIGHT, SHADES_HEIGHT, N_SHADES = (
-    300.0,
-    16.0,
-    48,
-)  # heights of a field and of its scale in pixels; shades of the scale
+# heights of a field and of its scale in pixels; shades of the scale
+FIELD_HEIGHT, SHADES_HEIGHT, N_SHADES = (300.0, 16.0, 48)
 
 
 def make_sweep_figure(table: SweepTable, units: Units, words: Sequence[str] = ()) -> Figure:

@@ -117,9 +117,8 @@ def is_periodic(study: Study, whole_run: TurningRun, turns: int, vectors: Vector
         vectors.evaluate(find_instants(last_cycles, last_cycles.angles[-1] - angles_back - k * angle)) for k in (0, 1)
     )
     size, differences = (np.nanmax(np.abs(values), axis=(0, 2), initial=0.0) for values in (last, last - before))
-    return bool(
-        (differences <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all()
-    )  # each by its own size
+    # each by its own size
+    return bool((differences <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all())
 
 
 def select_last_turns(study: Study, whole_run: TurningRun, turns: int) -> TurningRun:

@@ -121,9 +121,8 @@ def _add_belt(geometry: PitchGeometry, model: _GearingModel, name: str, belt: Be
     for k, member, r, height in zip(pulley_joints, (first, second), belt.radii, (0.0, offset), strict=True):
         geometry.discs[model.body_names[member.body]].append(make_pitch_circle(model, k, member, r, height))
     pulley_bodies = model.body_names[first.body], model.body_names[second.body]
-    strand_lines = np.array(
-        [(tight.end, tight.begin), (slack.begin, slack.end)]
-    )  # the first pulley pulls the tight strand
+    # the first pulley pulls the tight strand
+    strand_lines = np.array([(tight.end, tight.begin), (slack.begin, slack.end)])
     joints = list(model.joint_numbers)
     travel_factors = tuple((joints[x.joint], belt.radii[0] * x.ratio / first.sign) for x in first.coordinates)
     geometry.belts.append(BeltGeometry(name, model.body_names[carrier], strand_lines, pulley_bodies, travel_factors))

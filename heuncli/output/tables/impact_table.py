@@ -68,9 +68,8 @@ def _iter_rows(
         if not _repeats_magnitude(rows[0], texts, magnitudes):
             cells = [texts[row.label] for row in rows]
             before = [""] * (len(NUMBER_HEADS) - len(cells))
-            label = rows[0].vector or rows[0].label.removeprefix(
-                f"{block.key} "
-            )  # the heading holds the key: "energy after" becomes "after"
+            # the heading holds the key: "energy after" becomes "after"
+            label = rows[0].vector or rows[0].label.removeprefix(f"{block.key} ")
             yield (group.name, label, rows[0].unit, *before, *cells, group.note)
 
 

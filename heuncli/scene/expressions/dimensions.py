@@ -49,9 +49,8 @@ SUMS = {  # operations whose operands need the same dimension, in words for mess
     "hypot": "takes hypot of", "atan2": "takes atan2 of", "choose": "chooses between",
     **dict.fromkeys(("lt", "le", "gt", "ge", "eq", "ne"), "compares"),
 }  # fmt: skip
-DIMENSION_PRESERVING = frozenset(
-    {"add", "sub", "min", "max", "hypot", "choose"}
-)  # operations whose result has that dimension, too
+# operations whose result has that dimension, too
+DIMENSION_PRESERVING = frozenset({"add", "sub", "min", "max", "hypot", "choose"})
 
 
 def known_dimension(dimension: Dimension) -> MeasuredDimension:

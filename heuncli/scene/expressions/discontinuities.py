@@ -34,13 +34,11 @@ MAX_TIED_DOUBLES = (
     4096  # doubles before a change of branch at which rounding may make the operands equal, one discontinuity
 )
 SAMPLE_COUNT = 1000  # equal parts of a run, at whose ends values are sampled
-MAX_OPEN_INTERVALS = (
-    1 << 13
-)  # undecided intervals at once; a margin that is zero up to rounding has one for each double
+# undecided intervals at once; a margin that is zero up to rounding has one for each double
+MAX_OPEN_INTERVALS = 1 << 13
 TIME_PROGRAM = (VAR, 0)  # the program of the time itself
-MONOTONIC_OPERATIONS = frozenset(
-    OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge")
-)  # monotonic in the margin
+# monotonic in the margin
+MONOTONIC_OPERATIONS = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))
 Decide = Callable[[list[float]], list[float]]
 Enclose = Callable[[list[float], list[float]], Sequence[Sequence[float]]]
 
@@ -223,9 +221,8 @@ class SwitchSearch:
         if self.switch.margin is not None:
             return
         points_passed = [abs(self.branch[end] - self.branch[begin]) for begin, end in self.cells]
-        count = sum(
-            number for number in points_passed if number < math.inf
-        )  # behind a table that ends there are no points
+        # behind a table that ends there are no points
+        count = sum(number for number in points_passed if number < math.inf)
         if count > tolerances.MOST_STEPS:
             where = f"between {self.grid.t0:g} and {self.grid.t1:g} s"
             message = f"'{self.expression.source}' passes {count:,.0f} points of its table {where}, each a step's end"

@@ -121,9 +121,8 @@ class SpecLoader:
         self.warnings: list[Problem] = []
         self.unread: set[str] = set()
         if type(source.data) is not dict:
-            kind = (
-                describe_kind(source.data) if type(source.data) is not str else "a text"
-            )  # do not quote an unknown file
+            # do not quote an unknown file
+            kind = describe_kind(source.data) if type(source.data) is not str else "a text"
             message = f"a spec is a mapping, this is {kind}"
             is_xml = type(source.data) is str and source.data.startswith("<")
             hint = IMPORT_HINT if is_xml else "it starts with 'heun: 1'"

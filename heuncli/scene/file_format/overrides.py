@@ -14,9 +14,8 @@ from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.names import NAMED_BLOCKS, as_mapping
 from heuncli.scene.file_format.source import Path_, parse_plain_scalar, parse_source
 
-PLAIN_NUMBER = re.compile(
-    r"[+-]?[0-9]{1,18}(\.[0-9]{0,18})?([eE][+-]?[0-9]{1,3})?"
-)  # a number that YAML reads the same way
+# a number that YAML reads the same way
+PLAIN_NUMBER = re.compile(r"[+-]?[0-9]{1,18}(\.[0-9]{0,18})?([eE][+-]?[0-9]{1,3})?")
 HEAD_KEYS = ("title", "gravity", "space", "report")  # keys without a dot that are not parameters
 
 

@@ -24,9 +24,8 @@ from heuncli.scene.importers.description import (
 
 MAX_LINE_LENGTH = 120  # characters of an unbroken line
 MAX_REMARK_LENGTH = 240  # characters of a remark
-PLAIN_TEXT = re.compile(
-    r"(?:-?\d)?[\w.]+(?: [A-Za-z][\w^/*]*)?\Z"
-)  # names, joint ends, numbers with a unit need no quotes
+# names, joint ends, numbers with a unit need no quotes
+PLAIN_TEXT = re.compile(r"(?:-?\d)?[\w.]+(?: [A-Za-z][\w^/*]*)?\Z")
 BLOCK_REMARKS = {
     "bodies": "kg, m, kg m^2 about the centre of mass; with every joint at 0 their axes stand along the world's",
     "joints": "directions in the axes of the bodies, which are the world's with every joint at 0",

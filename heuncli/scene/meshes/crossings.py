@@ -31,10 +31,8 @@ from heuncli.scene.meshes.numbers import mesh_file_finding
 
 JOIN_HINT = "join its solids to one (a union) in the program that drew it, or give each its own file"
 EDGE_CORNERS = ((0, 1), (1, 2), (2, 0))
-EDGE_BEGINS, EDGE_ENDS = (
-    np.array([0, 1, 2, 1, 2, 0]),
-    np.array([1, 2, 0, 0, 1, 2]),
-)  # corners of the edges, in both directions
+# corners of the edges, in both directions
+EDGE_BEGINS, EDGE_ENDS = (np.array([0, 1, 2, 1, 2, 0]), np.array([1, 2, 0, 0, 1, 2]))
 NARROW_RATIO = 8.0  # times the tolerance: rounding rotates narrower triangles by 1/16 rad and more
 JOINING_RATIO = 64.0  # times the tolerance: such triangles are almost lines, so edges that end there end at neighbours
 MAX_NARROW_SHARE = 1e-4  # largest share of the area in triangles whose planes are not used

@@ -29,10 +29,8 @@ def bodies_contiguous(values: Array) -> Array:
     return np.ascontiguousarray(values.transpose(0, last, *range(1, last))).swapaxes(0, 1)
 
 
-NEXT_COMPONENT, AFTER_NEXT_COMPONENT = (
-    np.array([1, 2, 0]),
-    np.array([2, 0, 1]),
-)  # the next and the second next component, cyclic
+# the next and the second next component, cyclic
+NEXT_COMPONENT, AFTER_NEXT_COMPONENT = (np.array([1, 2, 0]), np.array([2, 0, 1]))
 
 
 def cross_components(a: Array, b: Array) -> Array:

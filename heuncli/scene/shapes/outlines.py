@@ -140,9 +140,8 @@ def count_joined_regions(outlines: Sequence[Outline], planes: Planes, n: Array, 
         for j, B in enumerate(shadows[:i]):
             if outlines[i].part is not None and outlines[i].part == outlines[j].part:
                 continue
-            is_joined = (
-                is_met[:, i] & is_met[:, j] & (labels[:, i] != labels[:, j])
-            )  # figures that are joined already need no test
+            # figures that are joined already need no test
+            is_joined = is_met[:, i] & is_met[:, j] & (labels[:, i] != labels[:, j])
             if not is_joined.any():
                 continue
             distance = np.sqrt(((A.center - B.center) ** 2).sum(axis=1))

@@ -74,9 +74,8 @@ def find_profile_figure(part: object, planes: CuttingPlanes) -> ProfileFigure | 
     local = part.localize(planes.n, planes.shifted_d, planes.e1)
     k = len(planes.shifted_d)
     low, high = part.extent(planes.n)
-    is_met = (low + 0.5 * part.tolerance < planes.shifted_d) & (
-        planes.shifted_d < high - 0.5 * part.tolerance
-    )  # corners scatter by less
+    # corners scatter by less
+    is_met = (low + 0.5 * part.tolerance < planes.shifted_d) & (planes.shifted_d < high - 0.5 * part.tolerance)
     rows = np.full((6, k), np.nan)
     missing: dict[int, str] = {}
     for edges in iter_edges(part, local):

@@ -188,9 +188,8 @@ class Recovery:
         found = collect_applied_loads(self.setup.scene.mechanism, self.states, self.solutions)
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
-        from heuncli.motion.integration.diagnosis.coincident_points import (
-            separation_velocity,  # hardly any scene needs it
-        )
+        # hardly any scene needs it
+        from heuncli.motion.integration.diagnosis.coincident_points import separation_velocity
 
         layout, recovered = self.setup.scene.layout, self.solutions
         return [

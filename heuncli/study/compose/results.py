@@ -108,9 +108,8 @@ def make_known_blocks(
     """
     if history.checked_run is None or not recovery.setup.scene.layout.rows:
         return make_requested_blocks(recovery, reports), np.zeros(0)
-    from heuncli.study.compose.near_singular import (
-        make_blocks_without_unknown,  # only closed chains have singular poses
-    )
+    # only closed chains have singular poses
+    from heuncli.study.compose.near_singular import make_blocks_without_unknown
 
     return make_blocks_without_unknown(recovery, reports, history.checked_run.run, history.jumps, open_marker)
 

@@ -72,9 +72,8 @@ def require_memory_for_steps(setup: Setup, min_steps: int, budget: MemoryBudget)
     budget.
     """
     width = 2 * setup.runner.integrated_scene.layout.n_state
-    takes = RUNS * (
-        BYTES_PER_STEP * min_steps + 2.0 * 8.0 * min(width * min_steps, MAX_RECORD_NUMBERS)
-    )  # twice, because a growing array is copied
+    # twice, because a growing array is copied
+    takes = RUNS * (BYTES_PER_STEP * min_steps + 2.0 * 8.0 * min(width * min_steps, MAX_RECORD_NUMBERS))
     if takes <= budget.memory:
         return
     message = (

@@ -142,9 +142,8 @@ def select_blocks(blocks: Mapping[str, Any], selection: Selection) -> dict[str, 
         if REPORT_OF[block] not in selection.partial:
             selected[block] = value
         elif entries := pick_entries(value, [entry[1:] for entry in selection.entries if entry[0] == block]):
-            shared_keys = (
-                WRENCH if "axis" in entries else WRENCH[:1]
-            )  # the error of an axis depends on that of its wrench
+            # the error of an axis depends on that of its wrench
+            shared_keys = WRENCH if "axis" in entries else WRENCH[:1]
             selected[block] = (
                 {key: value[key] for key in shared_keys if key in value} | entries if block == "foundation" else entries
             )

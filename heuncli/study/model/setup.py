@@ -79,9 +79,8 @@ class Setup:
         """The spin axes of bodies whose spin is constant, in body axes, by body."""
         if not self.scene.layout.bodies["ball"].any():
             return {}
-        from heuncli.multibody.reduction.spins import (
-            find_constant_spins,  # only bodies on ball joints, or free ones, have them
-        )
+        # only bodies on ball joints, or free ones, have them
+        from heuncli.multibody.reduction.spins import find_constant_spins
 
         return {i: spin.axis for i, spin in find_constant_spins(self.scene).items()}
 

@@ -86,9 +86,8 @@ def refine_to_bounds(time_laws: Sequence[Expression], times: Array, max_instants
             least, largest = (np.array(x) for x in expression.bounds(times[k].tolist(), times[k + 1].tolist()))
             near = np.stack([values[np.clip(k + i, 0, len(times) - 1)] for i in (-1, 0, 1, 2)])
             allowed = np.maximum(np.ptp(near, axis=0), BOUND_MARGIN * np.ptp(values))
-            is_unbounded = (
-                np.maximum(largest - near.max(axis=0), near.min(axis=0) - least) > allowed
-            )  # no bounds, no stretch
+            # no bounds, no stretch
+            is_unbounded = np.maximum(largest - near.max(axis=0), near.min(axis=0) - least) > allowed
             k = k[is_unbounded]
             middles = 0.5 * (times[k] + times[k + 1])
             times = np.insert(times, k + 1, middles)

@@ -114,9 +114,8 @@ def refine_until_predicted(
     """
     span, sampled_count = float(np.ptp(samples.times)), 0
     min_predictions = MIN_PREDICTIONS if probes is None else 1
-    predictions = np.zeros(
-        max(len(samples.times) - 1, 0), dtype=np.intp
-    )  # consecutive correct predictions of each interval
+    # consecutive correct predictions of each interval
+    predictions = np.zeros(max(len(samples.times) - 1, 0), dtype=np.intp)
     if is_doubtful is not None:
         predictions[~is_doubtful] = min_predictions
     extra_instants = NO_INSTANTS if probes is None else probes

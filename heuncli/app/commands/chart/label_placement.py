@@ -10,10 +10,8 @@ from itertools import pairwise
 
 from heuncli.base.named_tuples import NamedTuple
 
-WIDTH_FACTOR, HEIGHT_FACTOR = (
-    0.7,
-    1.15,
-)  # relative to the letter size: mean width in a bold sans-serif font, line height
+# relative to the letter size: mean width in a bold sans-serif font, line height
+WIDTH_FACTOR, HEIGHT_FACTOR = (0.7, 1.15)
 GAP = 8.0  # between a point and its name
 ON_MARK, ON_LINE = 10.0, 3.0  # costs of covering a marker, or a line
 FROM_END = 1.0  # cost of each point away from the end of its line

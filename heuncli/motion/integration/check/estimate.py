@@ -52,10 +52,8 @@ if TYPE_CHECKING:  # loaded where there are conditions
 
 RERUNS = 2
 MAX_NUMBERS = 2_000_000  # numbers compared at a time ...
-MAX_REDUCTION, MIN_BATCH = (
-    4,
-    1000,
-)  # ... or up to so much less where there are several parts, but at least so many instants each
+# ... or up to so much less where there are several parts, but at least so many instants each
+MAX_REDUCTION, MIN_BATCH = (4, 1000)
 ComparedStates: TypeAlias = Array | JoinedStates  # of a run at the instants compared
 
 

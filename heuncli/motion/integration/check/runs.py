@@ -84,9 +84,8 @@ class Runs:
                 with contextlib.suppress(SolveError):
                     return self.run(other)
             if isinstance(error, ClosuresLost):
-                from heuncli.motion.integration.check.contradictions import (
-                    locate_contradiction,  # only on the way to an error
-                )
+                # only on the way to an error
+                from heuncli.motion.integration.check.contradictions import locate_contradiction
 
                 lock = locate_contradiction(self.runner, error)
                 lock.reached = error.reached
@@ -98,9 +97,8 @@ class Runs:
         try:
             return self.run(step)
         except SolveError as error:
-            from heuncli.motion.integration.check.given_steps import (
-                explain_fixed_step_error,  # only on the way to an error
-            )
+            # only on the way to an error
+            from heuncli.motion.integration.check.given_steps import explain_fixed_step_error
 
             raise explain_fixed_step_error(
                 error, self.runner, self.method, step, self.run_with_automatic_steps

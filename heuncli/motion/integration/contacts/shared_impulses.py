@@ -67,9 +67,8 @@ def list_bilateral_contacts(layout: Layout) -> list[LoadedContact]:
     ]
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
         if coupling.entry.type == "wheel" and not coupling.entry.held:
-            contacts.append(
-                LoadedContact(coupling.name, layout.rows.index(owner), is_held=True)
-            )  # its first row touches
+            # its first row touches
+            contacts.append(LoadedContact(coupling.name, layout.rows.index(owner), is_held=True))
     return contacts
 
 

@@ -65,9 +65,8 @@ class StiffnessWatch:
             return
         cost_per_second, trial = try_implicit_method(progress, segment, method, overhead)
         if START_COST * evaluations_done + cost_per_second * time_left < explicit:
-            from heuncli.motion.integration.run.fastest_motion import (
-                describe_fastest_motion,  # only where a run is stopped
-            )
+            # only where a run is stopped
+            from heuncli.motion.integration.run.fastest_motion import describe_fastest_motion
 
             # at the trial's end, because coarse explicit steps may oscillate about the slow motion
             trial_state = progress.integrated_scene.embed_state(trial.loop.t, np.array(trial.loop.state()))

@@ -135,10 +135,8 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
 
 
-REQUIRED_NUMBERS = {
-    "spring": ("stiffness", "length"),
-    "turn_spring": ("stiffness",),
-}  # required keys of a load without a law
+# required keys of a load without a law
+REQUIRED_NUMBERS = {"spring": ("stiffness", "length"), "turn_spring": ("stiffness",)}
 
 
 @rule("missing-key")
