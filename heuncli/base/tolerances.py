@@ -4,8 +4,7 @@ EPS is the rounding of one operation, 2.2e-16. A sum of some dozen terms of alte
 the largest of them: anything below is rounding. A singular value, or an angle computed from a pose, keeps about nine
 digits, for poses are closed to 1e-10 of the scene's size (OPEN_GAP). Numbers typed by hand have a few digits only.
 Sizes are relative (to the scene's size, to the largest load, to the run's length) unless a unit is given. Plain
-numbers, and
-no imports: reading a spec needs some of them.
+numbers, and no imports: reading a spec needs some of them.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 A position is a distance from the run's first point, by default in metres, or one of its ends; it follows the quantity
 or its component. A number is the index of a requested cut, from 0. Where a load acts in the plane of a cut there are
-two
-rows for it: then the side must be given, unless both rows have the same value.
+two rows for it: then the side must be given, unless both rows have the same value.
 """
 
 from __future__ import annotations

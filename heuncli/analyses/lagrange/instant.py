@@ -24,8 +24,8 @@ class Instant:
 
     heading: when it is
     setup, driven_recovered: the scene as it is, with its solution
-    freed_scene: the scene without drives state, holding, freed_recovered, linear_equations: its state, closed contacts,
-    solution and linearised equations
+    freed_scene: the scene without drives
+    state, holding, freed_recovered, linear_equations: its state, closed contacts, solution and linearised equations
     """
 
     heading: str

@@ -50,8 +50,9 @@ class Cuts:
     warnings: sentences on what the planes meet
     properties, strength [Pa]: for stresses, None where not given (for kind `auto` those of the form)
     form: the shapes that are cut
-    is_impulse: the cuts are for an impulse, in which there are no stresses and no motion yet Where cuts move along a
-    body from instant to instant, points, pieces and centroids have an axis of instants first.
+    is_impulse: the cuts are for an impulse, in which there are no stresses and no motion yet
+
+    Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
 
     name: str

@@ -43,7 +43,9 @@ class Resolution:
     """The joints' loads after a split, described in `words`, with its `choices`.
 
     stress: the self-stresses it chose from
-    remaining_stress: those it left indeterminate None where there are none of them.
+    remaining_stress: those it left indeterminate
+
+    None where there are none of them.
     """
 
     joints: list[JointLoads]

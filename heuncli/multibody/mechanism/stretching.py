@@ -3,6 +3,7 @@
     T = k x + c e',   x = S - l0,  k = k0 L / l0,  c = c0 L / l0,  e' = S' - S l0' / l0
 
 S: the length along which the rope runs; l0: its unloaded length, which is L at the start where a law gives it in time.
+
 So EA = k0 L is constant while a rope is drawn in or paid out, and equal strain means equal tension. A rope that only
 pulls is slack while x < 0, and does not push where the damping force exceeds the spring force.
 """

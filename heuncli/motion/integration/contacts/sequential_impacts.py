@@ -75,6 +75,7 @@ class ContactRates:
     widest: largest gap since the last impact, the scale of its rounding
     total: impulses
     largest_rates, rate_changes: largest value of each rate, and the sum of its changes, the scales of its rounding
+
     Everything changes with every flight and impact.
     """
 

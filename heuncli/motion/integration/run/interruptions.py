@@ -31,7 +31,9 @@ class Interruptions:
     """The impulses of a run, each solved where the run reaches its instant, and its contacts. Changes the run.
 
     due: given impulses still to come
-    done: impulses that happened They are solved in the full scene, even if a reduced one is integrated in its place.
+    done: impulses that happened
+
+    They are solved in the full scene, even if a reduced one is integrated in its place.
     """
 
     def __init__(self, progress: RunProgress) -> None:
