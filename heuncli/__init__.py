@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
 HOME = {  # each name, and the module that it is in
     "solve": "app.api", "solve_cases": "app.api", "validate": "app.api",
-    "Solved": "app.python.solved", "Signal": "app.python.signals", "Number": "app.python.measured",
+    "Solved": "app.python.solved_scene", "Signal": "app.python.signals", "Number": "app.python.number",
     "Diagram": "app.python.diagrams",
     "HeunError": "base.errors", "SpecError": "base.errors", "SolveError": "base.errors", "LimitError": "base.errors",
-    "OutputError": "base.errors", "UsageError": "base.errors", "UnknownPath": "app.python.asked_run",
-    "Problem": "base.errors", "SourceLocation": "base.errors", "HeunWarning": "app.python.warned",
+    "OutputError": "base.errors", "UsageError": "base.errors", "UnknownPath": "app.python.locked_run",
+    "Problem": "base.errors", "SourceLocation": "base.errors", "HeunWarning": "app.python.python_warnings",
 }  # fmt: skip
 __all__ = [*HOME, "__version__"]
 

@@ -28,10 +28,10 @@ class SourceLocation(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One error: a sentence, its code, a hint what to do next and, where known, the location.
+    """One error: a sentence, its code, a hint on what to do next and, where known, the location.
 
-    about: the path in a spec of the entry at fault, such as `joints.elbow`, set where names are known but locations are
-    not
+    entry_path: the path in a spec of the entry at fault, such as `joints.elbow`, set where names are known but
+    locations are not
     """
 
     code: str

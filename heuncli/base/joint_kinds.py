@@ -21,8 +21,9 @@ Motion = Literal["turning", "sliding"]
 
 
 class Hold(NamedTuple):
-    """How a joint constrains the `to` point. asks: the gap that the assembly closes.
+    """The constraint that a joint sets on the `to` point.
 
+    gap_type: the gap that the assembly closes
     guides: directions along which the point cannot leave the `from` point, and so those of the forces; one closure row
     each
     shifts: directions along which it is free
@@ -36,8 +37,9 @@ class Hold(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """How a joint constrains the rotation of `to`. asks: the condition that the assembly sets on its orientation.
+    """The constraint that a joint sets on the rotation of `to`.
 
+    condition: the condition that the assembly sets on its orientation
     dots: pairs of directions d of `from` and e of `to` that stay perpendicular; one closure row each, with the moment e
     × d
     turns: the axes about which it is free, where it is not entirely free (`ball`)
@@ -65,7 +67,9 @@ PLANE_IN_PLANE = Hold("plane", ("axis", "z"), ("across",))
 FREE = Turn("free", (), ball=True)
 ABOUT_AXIS = Turn("axis", (("axis", "first"), ("axis", "second")), ("axis",))
 ABOUT_TWO = Turn("square", (("axis", "to_axis"),), ("axis", "to_axis"))
-ALIKE = Turn("alike", (), sum_of_dots=((-0.5, "first", "second"), (0.5, "second", "first")))  # by the bend alone
+CONSTANT_VELOCITY = Turn(
+    "alike", (), sum_of_dots=((-0.5, "first", "second"), (0.5, "second", "first"))
+)  # by the bend alone
 NO_ROTATION = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
 ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as drawn: in the plane nothing tilts it
 
@@ -236,7 +240,8 @@ TYPES: dict[str, JointKind] = {
             motions=("turning",), weaker_kinds=("ball",), synonyms=("cardan", "hooke", "u"),
         ),
         JointKind(
-            "cv", POINT, ALIKE, axis_key="axis", to_axis="optional", loads=("damper",), motions=("turning",),
+            "cv", POINT, CONSTANT_VELOCITY, axis_key="axis", to_axis="optional", loads=("damper",),
+            motions=("turning",),
             weaker_kinds=("ball",), synonyms=("constant_velocity", "constantvelocity", "homokinetic", "rzeppa"),
         ),
         JointKind(

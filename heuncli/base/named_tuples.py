@@ -23,14 +23,14 @@ else:
         def __new__(maker, name, bases, own):
             if not bases:
                 return super().__new__(maker, name, bases, own)
-            return named(type(name, (Fielded,), {"__slots__": (), **own}))
+            return named(type(name, (TupleMethods,), {"__slots__": (), **own}))
 
     class NamedTuple(metaclass=_Maker):
         """To derive from: annotations are the fields, what is assigned to them their defaults."""
 
 
-class Fielded(tuple["Any", ...]):
-    """What named tuples know of themselves."""
+class TupleMethods(tuple["Any", ...]):
+    """The methods that all named tuples share."""
 
     __slots__ = ()
     _fields: tuple[str, ...] = ()
@@ -60,7 +60,9 @@ class Fielded(tuple["Any", ...]):
 
 
 def named(cls: Any) -> Any:
-    """Turn a tuple class into one whose annotated names read its elements."""
+    """Make a tuple class a named tuple: its annotations become fields, in their order, and assigned values their
+    defaults.
+    """
     names = cls._fields = tuple(cls.__annotations__)
     setattr(cls, "__match_args__", names)  # noqa: B010 - type checkers know of no such assignment
     defaults = cls._field_defaults = {name: cls.__dict__[name] for name in names if name in cls.__dict__}

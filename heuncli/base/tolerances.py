@@ -13,7 +13,7 @@ EPS = 2.0**-52
 
 # -- rank: which conditions of the joints hold what others hold already
 RANK = 1e-9  # of a row scaled to 1, what is left of it by the others: nine digits, what a closed pose gives
-NOT_QUITE = 1e-12  # the same: what is less is rounding of coordinates; between this and RANK dependence is told
+NEARLY_DEPENDENT = 1e-12  # the same: what is less is rounding of coordinates; between this and RANK dependence is told
 RANK_OF_GAP = 100.0  # times the gap: a pose is known to its gap only, and singular values amplify it by some tens
 NEIGHBOUR = 1e-3  # [rad] or of the size: an accident of the start is left by 1e-3, far above RANK, the machine hardly
 MOVES = 1e-6  # of rates drawn between -1 and 1: less, after projection on the closures, is rounding
@@ -21,7 +21,7 @@ SUSPECT_PIVOT = 0.05  # a step of an ordinary loop stays above; below, a singula
 SINGULAR_MET = 4.0  # times the width left of the search over its first: the value falls to zero at most so steeply
 NEAR_PIVOT = 1e-2  # relative singular value 0.1, a tenth of it in another measure: rounding over its 4th power, 2e-8
 UNSEEN_GAP = 16.0 * EPS  # of the size: what the sums of a closure may not see, and more than settling leaves
-TOLD_BESIDE = 1e-6  # of the largest of its kind: six digits, as in a table; beyond it a value is unknown
+UNKNOWN_NEAR_SINGULAR = 1e-6  # of the largest of its kind: six digits, as in a table; beyond it a value is unknown
 UNMET = 10.0  # times what has to be left of a row: rows left out are met to less, and all others to rounding
 SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a singular pose it falls to nothing
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
@@ -29,8 +29,8 @@ NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value,
 
 # -- couplings: what of a drawing decides whether gears fit
 TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
-PARTED = 1e-9  # of the largest rate: what several drives of a coupling may leave of it, far above rounding
-STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
+DRIVES_DISAGREE = 1e-9  # of the largest rate: what several drives of a coupling may leave of it, far above rounding
+NO_PATH_DIRECTION = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
 SAME_PLACE = 1e-9  # of a path's reach: branches nearer than that are at one place, by what is typed or assembled of it
 TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
 
@@ -66,17 +66,21 @@ FREELY_PUSHED = 1e-9  # of the loads along a motion that nothing holds: a sum of
 OFF_BALANCE = 1e-9  # [rad] or of the size: so far a start may be from the pose that rests; frequencies keep nine digits
 KINK = 1e-9  # of a coordinate, or 1: so near to where a law jumps or bends a pose is on it, closed as it is to OPEN_GAP
 STEEP = 0.5  # of the largest slope within KINK: a root there doubles it at each step, what is smooth keeps it to KINK
-GOES_ON = 1e-8  # of the stiffness and loads: what of them may change as a steady motion goes on; rounding of long ways
+STEADY_CHANGE = (
+    1e-8  # of the stiffness and loads: what of them may change as a steady motion goes on; rounding of long ways
+)
 
 # -- orders
 CANCELS = 1e-9  # of the sum of the bodies' own amplitudes: drawings typed with ten digits balance that well
-COMES_BACK = 1e-2  # of the largest force or moment: two periods that differ more have no order to two digits
+SAME_PERIOD = 1e-2  # of the largest force or moment: two periods that differ more have no order to two digits
 ORDERS_SETTLED = (
     1e-12  # of the largest order: what the highest may be for all below them to be told; some FFT's roundings
 )
 
 # -- coordinates of Lagrange's equations
-TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
+COORDINATE_RATIO = (
+    1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
+)
 NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
 HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digits of its Rodrigues vector are left
 
@@ -96,7 +100,7 @@ ALONG_SQUARED = 1.0 - 1e-9  # square of the same cosine, as found from the point
 AXISYMMETRIC = 16.0 * EPS  # of the largest moment about the origin, of the size: sums of some dozen terms, and turned
 # axes; a body that is less round by more is turned by its own motion
 SPINS_LIGHTLY = 1e-3  # of the moment across: rounding of the moments about the axis accelerates 1e3 times as much
-LENT_REACH = 1e-3  # of the size: the least radius of gyration of an inertia lent to an idle spin (it cancels)
+ARTIFICIAL_RADIUS = 1e-3  # of the size: the least radius of gyration of an inertia lent to an idle spin (it cancels)
 SLENDER = 1e-6  # determinant over the cube of the trace: above, no moment is NO_INERTIA of it; a rod 200 diameters long
 NO_MOMENT = 1e-9  # of the loads at a body: a smaller moment about its thin axis is what ON_AXIS lets pass
 
@@ -112,17 +116,21 @@ SAME_VALUE = 1e-9  # rad, m, or relative beyond 1: a held value and a drive that
 NO_LENGTH = 1e-9  # of the size: a shorter rod's direction has one digit beyond OPEN_GAP
 NEAR_DRAWING = 0.5  # a joint's gap (by L) or angle, a body's shift or turn: a drawing off by less means this very pose
 FARTHER = 1.2  # times the nearest pose's way: least turns may lead so far; then no body goes twice as far as known ones
-SHUT = 1e-12  # of the size, or of what accelerations must meet: beyond some hundred roundings a drive is not followed
+DRIVE_FOLLOWED = (
+    1e-12  # of the size, or of what accelerations must meet: beyond some hundred roundings a drive is not followed
+)
 CLOSED = 1e-15  # of the size: as closed as rounding allows
 NO_SLOPE = 1e-7  # of |C| |e|: square root of some dozen roundings, below which a sum of squares has no slope
 POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish
-SUMS_BLIND = 1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
+SUM_OF_SQUARES_LIMIT = (
+    1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
+)
 SAME_SUM = 1e-13  # of a sum of squares: hundreds of roundings
 DRAWN_IN_PLACE = 0.1  # a joint's gap (by L) or angle: a slip of the drawing is less, bodies drawn apart miss by a link
 MOVED = 1e-3  # of the scene's size: a body that had to leave its place by more is mentioned above the tables; places
 # typed with three digits, a millimetre in a metre, close that well
 UNMOVED = 1e-12  # of the size, or rad: a smaller change of the start is rounding, and no choice to mention
-DUST = 1e-9  # of the size: components that a chosen value is printed without
+PRINTED_COMPONENT = 1e-9  # of the size: components that a chosen value is printed without
 
 # -- contacts
 CONTACT_TOUCHES = 1e-12  # of the size, and of places and limits: START_ROUNDING after some hundred steps, so that what
@@ -166,7 +174,7 @@ PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
 
 # -- loads that are none
-SET_GOING = 1e-10  # of the largest load on a body over its mass: ten times NO_LOAD, which a sweep leaves
+STARTS_MOVING = 1e-10  # of the largest load on a body over its mass: ten times NO_LOAD, which a sweep leaves
 NO_FORCE = 1e-12  # of the largest load it is summed from: hundreds of roundings; it has no line of action
 NO_LOAD = 1e-11  # of the largest m (a - g): what a sweep leaves at six freedoms that nothing holds
 NO_ENERGY = 1e-20  # of the weight's work over the size: squares of speeds of 1e-10, as OPEN_RATE lets pass
@@ -223,8 +231,10 @@ FASTER_THAN_TIME = 4.0  # over the second half of a run: what grows with the squ
 THROUGHOUT = 1e-9  # of its size: a value that varies by less is shown once; typed with ten digits it would be constant
 IN_ONE_PLANE = 1e-9  # of the largest vector of a run: components across a plane that turned axes and steps leave
 TOLD_ACROSS = 1e-6  # of the largest vector in the plane: what else stands across it is told: six digits, a table's
-COMES_ROUND = 2e-3  # of the largest vector: a pixel of a picture; turns that differ by less are drawn as one
-TORN = 1.57  # rad, a quarter turn: farther apart two instants do not show how a body turns from one to the other
+SAME_TURN_DRAWN = 2e-3  # of the largest vector: a pixel of a picture; turns that differ by less are drawn as one
+MAX_INTERPOLATED_TURN = (
+    1.57  # rad, a quarter turn: farther apart two instants do not show how a body turns from one to the other
+)
 NOTHING_ACTS = 100.0 * EPS  # of what forces are summed from: rounding of the sum, which has no direction to be drawn
 
 # -- rest
@@ -232,7 +242,7 @@ REST_FIRST = 0.01  # rad, or of the size: the first step, short against any leve
 REST_DOUBT = 0.05  # rad, or of the size: what is off by as much, grown, may be on the other side of a ridge
 REST_SAME = 1e-6  # rad, or of the size: Newton's steps bring two searches that near, other poses are farther apart
 REST_WAY = 1e-4  # the same along indifferent directions: if two searches agree so far, no finer one is made
-REST_BESIDE = 0.1  # the same: farther apart two searches have not gone one way
+REST_SEARCHES_DIFFER = 0.1  # the same: farther apart two searches have not gone one way
 REST_FARTHEST = 0.5  # the same: a longer step may pass over what bends within half a turn
 REST_BENT = 0.05  # of a step: what the linear law may leave out; a fifth of it is then missed at third order
 REST_MISSED = 0.01  # of that: what closing may lead aside

@@ -42,7 +42,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import bushing_axes, bushing_strain
-    from heuncli.kernel.tree import push_load
+    from heuncli.kernel.tree import add_load_to_body
 
 
 # The map between turns and rotation vectors
@@ -127,8 +127,8 @@ def apply_bushing_load(
     load.value = norm(total)
     load.power = dot(total, rate)
     if load.a != load.b:
-        push_load(scene, load.b, load.at, load.force, load.moment)
-        push_load(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+        add_load_to_body(scene, load.b, load.at, load.force, load.moment)
+        add_load_to_body(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
     return -dot(drag, rate)
 
 

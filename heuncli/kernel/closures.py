@@ -36,7 +36,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tracks import track_speed
-    from heuncli.kernel.tree import eliminate_load, push_load
+    from heuncli.kernel.tree import add_load_to_body, eliminate_load
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
@@ -282,8 +282,8 @@ def apply_condition_load(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], multiplier: cython.double
 ) -> cython.void:
     """Apply the load of a condition to its two bodies."""
-    push_load(scene, row.b, row.Q, scale_vector(multiplier, row.f), scale_vector(multiplier, row.m))
-    push_load(scene, row.a, row.Q, scale_vector(-multiplier, row.f), scale_vector(-multiplier, row.m))
+    add_load_to_body(scene, row.b, row.Q, scale_vector(multiplier, row.f), scale_vector(multiplier, row.m))
+    add_load_to_body(scene, row.a, row.Q, scale_vector(-multiplier, row.f), scale_vector(-multiplier, row.m))
 
 
 def find_counter_rates(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.void:

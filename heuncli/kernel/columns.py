@@ -25,7 +25,7 @@ if not cython.compiled:
     from heuncli.kernel.response import configure, solve_applied
     from heuncli.kernel.scene import APART, ROPE, SHIFT, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import push_load, update_kinematics
+    from heuncli.kernel.tree import add_load_to_body, update_kinematics
 
 
 def write_vector(buffer: cython.p_double, offset: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
@@ -134,8 +134,8 @@ def reapply_load(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cy
         return
     if load.a == load.b:
         return
-    push_load(scene, load.b, load.at, load.force, load.moment)
-    push_load(scene, load.a, load.from_at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
+    add_load_to_body(scene, load.a, load.from_at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
 
 
 def remove_prescribed(scene: cython.pointer[Scene]) -> cython.void:

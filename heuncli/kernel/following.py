@@ -63,7 +63,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Branch, Method, Run
+    from heuncli.kernel.stepping import FollowedStep, Method, Run
     from heuncli.kernel.tracks import find_track_place
     from heuncli.kernel.tree import update_kinematics
 
@@ -89,7 +89,7 @@ def is_determined(scene: cython.pointer[Scene]) -> cython.bint:
 def prepare_step(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
     """Store what the next step needs of the state reached, which was evaluated last."""
     i: cython.Py_ssize_t
-    branch: cython.pointer[Branch] = cython.address(run.branch)
+    branch: cython.pointer[FollowedStep] = cython.address(run.branch)
     if scene.closure_count == 0:
         update_kinematics(scene, clip_time(run, run.t), run.y)
     branch.energy = mechanical_energy(scene)
@@ -108,7 +108,7 @@ def prepare_step(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
         measure_reach(scene, branch)
 
 
-def measure_reach(scene: cython.pointer[Scene], branch: cython.pointer[Branch]) -> cython.void:
+def measure_reach(scene: cython.pointer[Scene], branch: cython.pointer[FollowedStep]) -> cython.void:
     """Find how far a unit of each drive in a loop moves the coordinates, at least itself; the kinematics are lost."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -143,7 +143,7 @@ def is_linear(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cyt
 
 
 def find_largest_change(
-    scene: cython.pointer[Scene], branch: cython.pointer[Branch], largest: cython.double, bending: cython.bint
+    scene: cython.pointer[Scene], branch: cython.pointer[FollowedStep], largest: cython.double, bending: cython.bint
 ) -> cython.double:
     """Return the largest change of the coordinates in the response, or `largest`; bending: of those that change J."""
     i: cython.Py_ssize_t
@@ -171,7 +171,7 @@ def bound_drive_motion(scene: cython.pointer[Scene], run: cython.pointer[Run]) -
     program: Program
     bounds: Bounds
     motion: cython.double = 0.0
-    branch: cython.pointer[Branch] = cython.address(run.branch)
+    branch: cython.pointer[FollowedStep] = cython.address(run.branch)
     if scene.closure_count == 0:
         return 0.0
     set_time_range(scene.programs, run.t, clip_time(run, run.stop))

@@ -23,7 +23,7 @@ if not cython.compiled:
     from heuncli.kernel.row_choice import choice_width
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Branch, Collocation, Course, Method, Newton, Orbits, Run
+    from heuncli.kernel.stepping import Collocation, Course, FollowedStep, Method, Newton, Orbits, Run
     from heuncli.kernel.steps import restore_record, run_steps
     from heuncli.kernel.workspace import Workspace
 
@@ -200,7 +200,7 @@ class Integration:
         n: cython.Py_ssize_t
         largest_measure: cython.double = 0.0
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
-        branch: cython.pointer[Branch] = cython.address(self.run.branch)
+        branch: cython.pointer[FollowedStep] = cython.address(self.run.branch)
         branch.travel = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
         branch.reach = self.memory.zeros(scene.freedom_count + scene.closure_count)
         branch.bends = self.memory.ints(bytes(4 * (scene.freedom_count + scene.body_count)))

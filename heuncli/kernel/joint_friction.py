@@ -44,7 +44,7 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import push_load
+    from heuncli.kernel.tree import add_load_to_body
 
     MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
 
@@ -97,8 +97,8 @@ def apply_friction(scene: cython.pointer[Scene], load: cython.pointer[Load], N: 
     else:
         load.force = scale_vector(load.factor, friction) if load.kind == THREAD_FRICTION else zero
         load.moment = friction
-    push_load(scene, load.b, load.at, load.force, load.moment)
-    push_load(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
+    add_load_to_body(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
 
 
 def joint_force(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:

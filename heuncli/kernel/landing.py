@@ -168,7 +168,7 @@ def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], 
         run.landing.turns = 1
         return EVENT_CHATTER if count_flurry_event(scene, run, run.stop) else NO_EVENT
     if event_time >= run.end:
-        return NO_EVENT  # beyond the piece
+        return NO_EVENT  # the event is after the end of the piece
     run.landing.attempts += 1
     run.landing.cut = event_time
     return REPEAT_TO

@@ -40,7 +40,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import find_span_vector
-    from heuncli.kernel.tree import locate_point, push_load
+    from heuncli.kernel.tree import add_load_to_body, locate_point
     from heuncli.kernel.values import PointMotion, RopeMotion
 
 
@@ -90,7 +90,7 @@ def apply_outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     else:
         load.moment = world_vector
         load.power = dot(world_vector, body_omega(scene, load.b))
-    push_load(scene, load.b, load.at, load.force, load.moment)
+    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
 
 
 def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3, v: Vec3) -> cython.double:
@@ -125,8 +125,8 @@ def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
     elif load.kind == SPRING and load.length == 0.0:
         load.force = Vec3(0.0 - load.stiffness * span.x, 0.0 - load.stiffness * span.y, 0.0 - load.stiffness * span.z)
     if not inside:
-        push_load(scene, load.b, load.at, load.force, load.moment)
-        push_load(scene, load.a, load.from_at, scale_vector(-1.0, load.force), load.moment)
+        add_load_to_body(scene, load.b, load.at, load.force, load.moment)
+        add_load_to_body(scene, load.a, load.from_at, scale_vector(-1.0, load.force), load.moment)
     return lost
 
 
@@ -175,8 +175,8 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     if load.presses:  # for a normal force of 1 N; the normal force is found with the accelerations
         load.unit = load_on_b
         return 0.0
-    push_load(scene, load.b, load.at, load.force, load.moment)
-    push_load(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
+    add_load_to_body(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
     return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power
 
 

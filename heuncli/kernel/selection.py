@@ -56,7 +56,9 @@ def select_independent_rows(
 
 
 def order_all(scene: cython.pointer[Scene], threshold: cython.double) -> cython.double:
-    """Order the rows by their pivots, those with a rank and more than `threshold` left. Returns the smallest pivot."""
+    """Order the closure rows of all islands by their pivots: rows with a rank, and more than `threshold` left. Returns
+    the smallest pivot.
+    """
     i: cython.Py_ssize_t
     least_pivot: cython.double = 1.0
     for i in range(scene.island_count):

@@ -126,8 +126,8 @@ class Course(Struct):
     rests_to: float
 
 
-class Branch(Struct):
-    """The start of a step of a motion that its drives determine."""
+class FollowedStep(Struct):
+    """What a step of a motion that its drives determine needs of its start."""
 
     length: float  # by which shifts are measured
     pivot: float  # least of what is left of an independent row
@@ -140,7 +140,7 @@ class Branch(Struct):
 
 
 class Controller(Struct):
-    """The lengths of the steps, and what decides them (judging.py)."""
+    """The lengths of the steps, and what determines them (step_acceptance.py)."""
 
     tolerance: float
     step: float  # of a method of fixed step; 0: adaptive
@@ -255,7 +255,7 @@ class Run(Struct):
     samples: Samples
     track: Track
     course: Course
-    branch: Branch
+    branch: FollowedStep
     newton: Newton
 
     groups: list[Group]

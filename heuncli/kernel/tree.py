@@ -244,8 +244,10 @@ def locate_point(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> Poi
     return PointMotion(add(arm, carrier.r), add(cross(carrier.omega, arm), carrier.v))
 
 
-def push_load(scene: cython.pointer[Scene], body: cython.int, place: Vec3, force: Vec3, moment: Vec3) -> cython.void:
-    """Apply a force at a place, and a moment, to a body; the ground ignores them."""
+def add_load_to_body(
+    scene: cython.pointer[Scene], body: cython.int, place: Vec3, force: Vec3, moment: Vec3
+) -> cython.void:
+    """Add a force at a place, and a moment, to the applied loads of a body; the ground ignores them."""
     if body >= 0:
         target: cython.pointer[Body] = cython.address(scene.bodies[body])
         target.M_applied = add(target.M_applied, add_cross(moment, sub(place, target.r), force))

@@ -74,7 +74,9 @@ class RowTangent(Value):
 
 
 class Strand(Value):
-    """How a strand of a rope lies (sheaves.py): the axis, its direction across it, t x n, lengths across and in all."""
+    """The position of a strand of a rope (sheaves.py): n, the axis; t, the strand's direction across it; w = t x n; l
+    and S, the lengths across the axis and in all.
+    """
 
     n: Vec3
     t: Vec3
@@ -86,7 +88,9 @@ class Strand(Value):
 
 
 class StrandRate(Value):
-    """How a strand moves: rates of its angle and of its lengths across and in all; bend: of its second derivative."""
+    """The motion of a strand: rates of its angle and of its lengths across the axis and in all; bend: the part of the
+    second derivative of its length that the rates cause.
+    """
 
     chi: float
     l: float

@@ -62,7 +62,7 @@ def kernel_numbers(layout: Layout) -> dict[str, Any]:
         "driven": int(layout.has_laws),
         "flat": int(layout.flat),
         "work_at": layout.work_at,
-        "answer_count": layout.answer_count,
+        "answer_count": layout.velocity_count,
         "column_count": layout.column_count,
         "measure": layout.measure,
         "island_room": max((len(i.rows) * len(i.freedoms) for i in layout.islands), default=0),
@@ -191,7 +191,7 @@ class ImpulseColumns:
     """The solution for impulses at a settled state: columns of velocity jumps, and of the joints' impulses.
 
     unmet (n_c,): residual of J dV = -jumps, relative to its terms
-    idle: number of freedoms without inertia
+    massless_count: number of freedoms without inertia
     """
 
     columns: Columns
@@ -246,16 +246,15 @@ def jacobian(kernel: workspace.Workspace, layout: Layout, times: Array, states: 
     paths = [indices[row["answers"] : row["answers"] + row["answer_count"]] for row in closures]
     freedom = np.concatenate([np.zeros(0, dtype=int), *paths])
     row: Array = np.repeat(np.arange(len(closures)), closures["answer_count"])
-    shape = (len(closures), layout.answer_count)
+    shape = (len(closures), layout.velocity_count)
     return Jacobian(out.reshape(len(times), width), row, freedom, shape)
 
 
 def tangent(kernel: workspace.Workspace, t: float, state: Array) -> Array:
-    """d(ydot)/dy at a state, (n, n): the derivative of the motion by the state, with closure rows and branches
-    unchanged.
+    """Return d(ydot)/dy at a state, (n, n), with closure rows and branches unchanged.
 
-    Off the closures it is that of the equations as they are integrated: their accelerations leave the gaps growing as
-    they do.
+    For a state off the closures it is the derivative of the equations as they are integrated, which do not close the
+    gaps.
     """
     n = len(state)
     out = np.zeros(n * n)
@@ -293,7 +292,7 @@ def compute_motions(kernel: workspace.Workspace, layout: Layout, t: float, state
 
 
 def slope(kernel: workspace.Workspace, t: float, state: Array) -> tuple[Array, float]:
-    """dy/dt (n,) at a state projected onto the closures, and the gap left there [m]; the state itself is not
+    """Return dy/dt (n,) at a state projected onto the closures, and the gap left there [m]; the state itself is not
     changed.
     """
     out = np.zeros(len(state))

@@ -154,7 +154,7 @@ def _make_proxy_class(kind: Any) -> Any:
         return parts[name]
 
     def copy(self: Any) -> Any:
-        """What `replace` puts its changes into: what it leaves has not been looked at."""
+        """Make the copy that `replace` then changes; fields that it leaves alone do not count as read."""
         own = object.__getattribute__(self, "__dict__")
         made = _make_proxy(type(self), own["_looked_at"], own["_parts"])
         made.__dict__.update({name: value for name, value in own.items() if name in names})

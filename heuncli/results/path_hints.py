@@ -12,7 +12,7 @@ from itertools import islice, product
 
 from heuncli.base.spelling import find_similar, spend_effort
 from heuncli.results.path_words import join_path, split_path
-from heuncli.results.results_schema import AFTER_THE_RUN, IMPULSES, NAMES, ROWS, XYZ
+from heuncli.results.results_schema import BLOCKS_KNOWN_AFTER_RUN, IMPULSES, NAMES, ROWS, XYZ
 
 COMMON = ("joints", "coordinates", "sections", "bodies", "points", "forces")  # tried first
 ALIASES = {  # what other programs and textbooks call quantities, by what they are here, the likeliest first
@@ -105,7 +105,7 @@ def _find_blocks() -> tuple[tuple[str, ...], ...]:
     for row in ROWS:
         words = row.path.split(".")
         name_index = next((i for i, word in enumerate(words) if word in NAMES), len(words) - 1)
-        if row.units and name_index and words[0] not in (IMPULSES, BALANCE, *AFTER_THE_RUN):
+        if row.units and name_index and words[0] not in (IMPULSES, BALANCE, *BLOCKS_KNOWN_AFTER_RUN):
             blocks[tuple(words[:name_index])] = None
     return tuple(blocks)
 

@@ -53,9 +53,11 @@ class ErrorEstimate(TypedDict, total=False):
 
 
 class Accuracy(TypedDict, total=False):
-    """How accurately the equations are solved; horizon: None where there is none.
+    """How accurately the equations are solved.
 
-    unknown: instants near singular poses at which rounding makes some numbers unknown, which are nan there
+    horizon: the instant from which on results are not reliable [s], None if there is none
+    estimate: the estimated errors, by kind
+    unknown: instants near singular poses; numbers that rounding decides are nan there
     """
 
     energy_drift: float

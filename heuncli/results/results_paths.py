@@ -28,7 +28,7 @@ from heuncli.results.results_schema import (
     Shape,
     find_quantity,
     find_unknown_key,
-    is_no_number,
+    is_block_or_words,
     split_leading_key,
 )  # fmt: skip
 
@@ -66,7 +66,7 @@ def find_values(results: Results, path: str) -> PathValues:
     fails.
     """
     try:
-        return _resolve(results, path)
+        return _find_path_values(results, path)
     except SpecError as error:
         from heuncli.results.path_hints import find_similar_path  # only on the way to an error
 
@@ -85,15 +85,19 @@ def find_values(results: Results, path: str) -> PathValues:
 def _has_values(results: Results, words: Sequence[str]) -> bool:
     """Whether a path leads to values."""
     try:
-        _resolve(results, join_path(words))
+        _find_path_values(results, join_path(words))
     except SpecError:
         return False
     return True
 
 
-def _resolve(results: Results, path: str) -> PathValues:
+def _find_path_values(results: Results, path: str) -> PathValues:
+    """Return the values at a path. The words after the quantity select a component, a cut or an instant.
+
+    Raises SpecError [unknown-path].
+    """
     keys, node, rest = _follow_keys(results, path)
-    if is_no_number(keys):
+    if is_block_or_words(keys):
         raise _unknown_path_error(path, keys, "", [])
     values = _to_array(path, keys, node)
     row = find_quantity(keys)

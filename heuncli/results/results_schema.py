@@ -83,7 +83,7 @@ class Quantity(NamedTuple):
 
 
 def rows(prefix: str, meaning: str, *quantities: Quantity) -> tuple[Quantity, ...]:
-    """Return quantities, in their order, with a path prefix and a common meaning."""
+    """Return quantities with a prefix before their paths and one meaning for all, in their order."""
     return tuple(q._replace(path=f"{prefix}.{q.path}" if prefix else q.path, meaning=meaning) for q in quantities)
 
 
@@ -118,7 +118,7 @@ def block(name: str) -> Quantity:
 
 
 def shares(prefix: str, *quantities: Quantity) -> tuple[Quantity, ...]:
-    """Make the shares of the causes in the wrench at a path; they sum to the wrench."""
+    """Make the rows of the shares that each cause has in the force and moment (or other quantities) at a path."""
     wrench = vector("force", "N"), vector("moment", "N·m")
     meaning = "the part that CAUSE has in it: `gravity`, a force by its name, `drives` or `motion`"
     return rows(f"{prefix}.shares.CAUSE", meaning, *(quantities or wrench))
@@ -311,13 +311,13 @@ SHARED_BLOCKS = frozenset({"foundation", "joints", "sections"})
 MAGNITUDES = frozenset(
     {"radial", "tilting", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation", "pressure"}
 )
-AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # blocks of numbers that do not follow from the spec
-ESTIMATES = {
+BLOCKS_KNOWN_AFTER_RUN = frozenset({"certain_sums", "accuracy"})  # blocks of numbers that do not follow from the spec
+ESTIMATE_OF_BLOCK = {
     "foundation": "foundation", "joints": "reactions", "stops": "reactions",
     "couplings": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
 # of which estimate those errors are that have none of their own
-KIND_OF = {
+ESTIMATE_OF_ERROR_KIND = {
     "forces": "reactions",
     "axis": "foundation",
     "attitudes": "motion",
@@ -391,8 +391,8 @@ def _find_quantity(keys: tuple[str, ...]) -> Quantity | None:
     return node if isinstance(node, Quantity) else None
 
 
-def is_no_number(keys: Sequence[str]) -> bool:
-    """Whether these keys lead to a block or to words, even if it is empty."""
+def is_block_or_words(keys: Sequence[str]) -> bool:
+    """Whether these keys lead to a block or to words, not to numbers; also if the block is empty."""
     return _is_no_number(tuple(keys))
 
 
@@ -468,7 +468,7 @@ def error_kind_of_path(kind: str, name: str, number: str) -> str:
         return ATTITUDES[number]
     if kind == "coordinates" and number in TRAVELS:
         return "travels"
-    return ESTIMATES.get(kind, "motion")
+    return ESTIMATE_OF_BLOCK.get(kind, "motion")
 
 
 def find_report(block: str) -> str | None:

@@ -24,8 +24,10 @@ G = 9.81
 def in_table(run: Study, heading: str, label: str) -> list[str]:
     """The cells of a row of the tables with this heading."""
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
-    along = page.run_columns if page.has_runs else None
-    searched = ColumnSearch(page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), along)
+    along = page.make_run_columns if page.has_runs else None
+    searched = ColumnSearch(
+        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), along
+    )
     found = run.search_extremes(searched, frozenset(REPORTS), whole=True)
     one = len(run.results.time) == 1
     tables = (

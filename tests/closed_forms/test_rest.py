@@ -471,8 +471,8 @@ def test_matrices_whose_directions_fall_together(seed: int) -> None:
 
 def test_what_is_told_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that ends too early is refused, whatever it was told."""
-    monkeypatch.setattr(RestLaw, "left", property(lambda own: np.zeros(len(own.c))))
-    monkeypatch.setattr(RestLaw, "newton", lambda own, a: 0.0 * a)
+    monkeypatch.setattr(RestLaw, "significant_c", property(lambda own: np.zeros(len(own.c))))
+    monkeypatch.setattr(RestLaw, "newton_step", lambda own, a: 0.0 * a)
     assert "the search ended where joints.p still accelerates by 14.9 rad" in refused(carriage("90 deg"))
 
 

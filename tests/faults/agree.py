@@ -10,7 +10,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.results.results import Array, Block
-from heuncli.results.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, find_child
+from heuncli.results.results_schema import (
+    ESTIMATE_OF_BLOCK,
+    ESTIMATE_OF_ERROR_KIND,
+    SPACE,
+    TREE,
+    Node,
+    Quantity,
+    find_child,
+)
 from heuncli.study.ask.measure import find_peak
 from heuncli.study.ask.study import Study
 
@@ -170,7 +178,7 @@ def stated(study: Study, path: str) -> float:
     """The error that a run states of what stands at a path."""
     estimate = study.results.accuracy.get("estimate", {})
     first, *_, last = path.split(".")
-    kind = "drives" if last == "drive" else ESTIMATES.get(first, KIND_OF.get(first, "motion"))
+    kind = "drives" if last == "drive" else ESTIMATE_OF_BLOCK.get(first, ESTIMATE_OF_ERROR_KIND.get(first, "motion"))
     return max(float(estimate.get(kind, 0.0)), float(estimate.get("motion", 0.0)))
 
 

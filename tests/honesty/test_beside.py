@@ -57,10 +57,10 @@ def test_what_is_told_is_right(rate: float) -> None:
     for part, wanted in (("force", load), ("radial", np.linalg.norm(load, axis=1))):
         shown = found.joints["C"][part][:, :2] if part == "force" else found.joints["C"][part]
         known = ~np.isnan(shown + wanted)
-        near(shown[known], wanted[known], scale, 2.0 * tolerances.TOLD_BESIDE)
+        near(shown[known], wanted[known], scale, 2.0 * tolerances.UNKNOWN_NEAR_SINGULAR)
     moving = found.bodies["left"]["center_acceleration"][:, :2]
     known = ~np.isnan(moving + a)
-    near(moving[known], 0.5 * a[known], scale, 2.0 * tolerances.TOLD_BESIDE)
+    near(moving[known], 0.5 * a[known], scale, 2.0 * tolerances.UNKNOWN_NEAR_SINGULAR)
     off = np.abs(times[:, None] - np.array(s.history.singular)).min(axis=1)
     speed = np.sqrt(rate**2 + 2.4 * G)  # at the first flat pose
     assert told[off * speed > 1e-2].all()
@@ -171,4 +171,4 @@ def test_bars_of_any_length_through_a_flat_pose(lengths: list[float]) -> None:
             x, y = x[key], y[key]
         known = ~np.isnan(x + y)
         size = np.maximum(np.abs(x), 100.0)  # what accelerations and loads come to without a flat pose
-        assert (np.abs(x - y)[known] <= 2.0 * tolerances.TOLD_BESIDE * size[known]).all(), path
+        assert (np.abs(x - y)[known] <= 2.0 * tolerances.UNKNOWN_NEAR_SINGULAR * size[known]).all(), path

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from heuncli.analyses.find.results import IntervalFindings
 from heuncli.analyses.find.search import is_steep
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.conditions import Sign
+from heuncli.analyses.variants.conditions import Relation
 from heuncli.analyses.variants.course import MeasureCourse, Sample
 
 Function = Callable[[float], float]
@@ -80,7 +80,7 @@ def noisy(f: Function, error: float, seed: int, asked: list[float]) -> Callable[
     return ask
 
 
-def looked(f: Function, error: float, seed: int = 0, relation: Sign = "=", count: int = 7) -> IntervalFindings:
+def looked(f: Function, error: float, seed: int = 0, relation: Relation = "=", count: int = 7) -> IntervalFindings:
     asked: list[float] = []
     found = find_meetings(noisy(f, error, seed, asked), 0.0, 1.0, relation, scan_count=count, max_evaluations=400)
     assert found.is_complete and len(set(asked)) == len(asked) == len(found.samples)  # nothing is asked twice
@@ -129,7 +129,7 @@ def test_one_crossing_of_a_smooth_rise_takes_few_runs() -> None:
 
 @pytest.mark.parametrize("relation", ["<", ">="])
 @pytest.mark.parametrize("seed", range(40))
-def test_where_an_inequality_is_met(relation: Sign, seed: int) -> None:
+def test_where_an_inequality_is_met(relation: Relation, seed: int) -> None:
     """Everywhere in the stretches told, nowhere between them, but within the errors of their ends."""
     rng = np.random.default_rng([11, seed])
     f = two_waves(rng)

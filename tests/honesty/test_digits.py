@@ -26,8 +26,10 @@ def tables(run: Study) -> str:
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
     if len(run.results.time) == 1:
         return "\n".join(map(format_plain, page.make_tables_at_instants(run.results)))
-    along = page.run_columns if page.has_runs else None
-    searched = ColumnSearch(page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), along)
+    along = page.make_run_columns if page.has_runs else None
+    searched = ColumnSearch(
+        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), along
+    )
     extremes = run.search_extremes(searched, None, whole=True)
     return "\n".join(map(format_plain, page.make_tables_of_extremes(extremes)))
 

@@ -28,14 +28,14 @@ BESIDE = {"flat_four_bar.yaml": 1e-4}
 def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, float]]:
     """Which rows of the tables pass their extremes at some of so many instants, by how many times the stated error."""
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
-    errors, even = page.find_errors(), page.magnitude_columns()
-    along = page.run_columns if page.has_runs else None
+    errors, even = page.find_errors(), page.find_magnitude_mask()
+    along = page.make_run_columns if page.has_runs else None
     found = run.search_extremes(ColumnSearch(page.make_columns, page.make_groups(), errors, even, along), TABLE_DEFAULT)
     last, horizon = run.results.time[-1], run.results.accuracy.get("horizon")
     times = np.linspace(run.results.time[0], last, samples)
     results = run.compute_reports(times if horizon is None else times[times < horizon], TABLE_DEFAULT)
     rows = [values[:, None] for values in page.make_columns(results).T] + [
-        values for _, values in page.run_columns(results)
+        values for _, values in page.make_run_columns(results)
     ]
     missed = []
     for k, values in enumerate(rows):

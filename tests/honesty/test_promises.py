@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.study.search.intervals import FOURTH, bound_heights, bound_heights_cheaply
+from heuncli.study.search.intervals import FOURTH_DERIVATIVE_SHARE, bound_heights, bound_heights_cheaply
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -17,7 +17,7 @@ def test_no_promise_is_passed_over(seed: int) -> None:
     right, c = np.where(same, left, right), np.where(rng.random(100_000) < 0.2, b, c)
     up, down = (np.where(rng.random(100_000) < 0.1, np.nan, x) for x in (up, down))
     most = np.maximum(np.abs(left), np.abs(right))
-    promise = bound_heights(b, c, left, right, FOURTH * most, up, down)
+    promise = bound_heights(b, c, left, right, FOURTH_DERIVATIVE_SHARE * most, up, down)
     known = np.isfinite(promise)
     assert known.mean() > 0.9
     assert (bound_heights_cheaply(b, c, most, up, down)[known] >= promise[known]).all()

@@ -99,7 +99,7 @@ def test_the_jacobian_is_the_rate_of_the_gaps(of: tuple[Callable[[int], Case], i
     found = jacobian(setup.runner.workspace, layout, recovered.times, recovered.states)
     rows, freedoms = np.arange(found.shape[0]), np.arange(found.shape[1])
     J = found.block(rows, freedoms)
-    assert len(rows) and J.shape == (len(TIMES), len(layout.rows), layout.answer_count)
+    assert len(rows) and J.shape == (len(TIMES), len(layout.rows), layout.velocity_count)
     for k in range(len(TIMES)):
         at = Poses(recovered.bodies["R"][k], recovered.bodies["r"][k])
         motions = free_motions(layout, at)

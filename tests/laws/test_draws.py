@@ -10,7 +10,7 @@ from scipy import stats
 from scipy.stats import qmc
 
 from heuncli.analyses.variants.axes import AxisError, ParameterAxis, RandomVariable
-from heuncli.analyses.variants.draws import make_draws, warn_unbalanced
+from heuncli.analyses.variants.draws import make_draws, make_imbalance_warning
 from heuncli.analyses.variants.plans import make_axes_plan
 
 SEEDS = [0, 1, 2024]
@@ -130,6 +130,6 @@ def test_what_cannot_be_drawn_is_refused() -> None:
 
 def test_a_sobol_sequence_that_is_cut_off_is_told() -> None:
     sobol = [law("x", "sobol", 0.0, 1.0)]
-    assert warn_unbalanced(sobol, 1024) == "" and warn_unbalanced([law("x", "lhs", 0.0, 1.0)], 1000) == ""
-    assert "512 and 1024" in warn_unbalanced(sobol, 1000)
+    assert make_imbalance_warning(sobol, 1024) == "" and make_imbalance_warning([law("x", "lhs", 0.0, 1.0)], 1000) == ""
+    assert "512 and 1024" in make_imbalance_warning(sobol, 1000)
     assert len(make_draws(sobol, 1000).values) == 1000  # with no warning of SciPy's

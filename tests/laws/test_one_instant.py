@@ -34,7 +34,7 @@ def test_states_that_were_compared_are_those_found_afresh(path: Path) -> None:
     afresh = recover(study.setup, study.history.solutions, study.options.least_norm)
     for name in BODIES:
         assert is_same(getattr(study.recovery.states, name), getattr(afresh.states, name)), name
-    for own, other in zip(study.recovery.unsplit, afresh.unsplit, strict=True):
+    for own, other in zip(study.recovery.kernel_joint_loads, afresh.kernel_joint_loads, strict=True):
         assert own.joint is other.joint
         for name in JOINTS:
             assert is_same(getattr(own, name), getattr(other, name)), (own.joint.name, name)

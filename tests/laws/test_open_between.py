@@ -43,7 +43,7 @@ def columns_of(found: Study) -> StudyColumns:
     """All that the tables tell of a run, as the columns of a search that has seen its grid."""
     page = make_page(found.results, make_labels(found.spec), found.magnitudes)
     searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors()[: len(page.make_groups())], page.magnitude_columns()
+        page.make_columns, page.make_groups(), page.find_errors()[: len(page.make_groups())], page.find_magnitude_mask()
     )
     columns = StudyColumns(found, searched, WANTED, None)
     columns.sample(found.search_times)
@@ -119,7 +119,7 @@ def test_cuts_of_a_body_held_twice(count: int) -> None:
     named = [
         x.sections["run"]["open"]
         for x in (
-            found.compose_reports(recovery.without_open_search(), WANTED, tells),
+            found.compose_reports(recovery.without_indeterminacy_search(), WANTED, tells),
             found.compose_reports(recovery, WANTED),
         )
     ]

@@ -33,7 +33,7 @@ def test_velocities_are_twists_times_rates(name: str) -> None:
     found, at = moving(name)
     layout, bodies = found.scene.layout, at.bodies[0]
     own = compute_twists(layout, at)
-    rates = np.zeros(layout.answer_count)
+    rates = np.zeros(layout.velocity_count)
     for k in np.flatnonzero(layout.bodies["ball"]):
         first = int(layout.bodies["answer_at"][k])
         rates[first : first + 3] = bodies["omega"][k]
@@ -57,7 +57,7 @@ def test_closure_rows_are_the_kernels(name: str) -> None:
     freedoms = layout.tables["freedoms"]
     J[:, :, freedoms["answer_at"][freedoms["driven"] == 1]] = 0.0
     kernel = jacobian(found.runner.workspace, layout, at.times, at.states)
-    whole = kernel.block(np.arange(len(layout.rows)), np.arange(layout.answer_count))
+    whole = kernel.block(np.arange(len(layout.rows)), np.arange(layout.velocity_count))
     assert np.abs(J - whole).max() <= ROUNDED * max(1.0, float(np.abs(whole).max()))
 
 

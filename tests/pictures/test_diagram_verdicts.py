@@ -13,7 +13,7 @@ from heuncli.output.figures.bars import WholeBar
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.scene.shapes.rotations import cross_vectors
-from heuncli.study.quantities.digits import Certainty
+from heuncli.study.quantities.digits import StatedErrors
 from tests.shared.drawn_bars import HELD_TWICE, SI, drawn, panels_of
 from tests.shared.scenes import study
 
@@ -98,7 +98,7 @@ def with_errors(errors: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> li
         "p: {type: force, on: bar.end, vector: [0.01, -7, 0], frame: body}, "
         "c: {type: couple, on: bar.end, vector: [0.02, 0, 0], frame: body}"
     )
-    own = Certainty({("sections", unit): error for unit, error in errors.items()}, {"N": 1e-12, "N·m": 1e-12})
+    own = StatedErrors({("sections", unit): error for unit, error in errors.items()}, {"N": 1e-12, "N·m": 1e-12})
     monkeypatch.setattr(WholeBar, "certain", own)
     figure = make_diagrams([FigureSource("", study(CANTILEVER.format(forces=forces)))], ["along"], SI)
     words = [item.text for panel in figure.panels for item in panel.items if isinstance(item, Blank)]

@@ -45,7 +45,7 @@ def test_extremes_say_who_is_responsible() -> None:
     """The shares at the instant of each extreme add up to it, in every row but for the last digit of each."""
     made, page = study_of("crane_load")
     searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), page.run_columns
+        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), page.make_run_columns
     )
     extremes = made.search_extremes(searched, WANTED - {"shares"}, whole=True)
     tables = page.make_tables_of_extremes(extremes, made)

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.study.quantities.digits import (
     choose_style,
-    find_certainty,
+    find_stated_errors,
     format_error,
     trim_zeros,
     write_numbers,
@@ -81,7 +81,7 @@ def test_instants_are_told_to_a_hundred_thousandth_of_the_run() -> None:
 
 def test_the_error_of_loads_is_relative_to_the_largest_of_their_kind() -> None:
     results = pendulum(T)
-    errors = find_certainty(results, LABELS, MAGNITUDES)
+    errors = find_stated_errors(results, LABELS, MAGNITUDES)
     largest = results.joints["pivot"]["force"].max()
     assert errors.error_of("reactions", "N") == pytest.approx(ACCURATE["estimate"]["reactions"] * largest, rel=0.01)
     assert errors.error_of("motion", "rad") == pytest.approx(ACCURATE["estimate"]["motion"], rel=0.01)
@@ -90,19 +90,19 @@ def test_the_error_of_loads_is_relative_to_the_largest_of_their_kind() -> None:
 
 def test_each_kind_of_loads_has_its_own_error() -> None:
     kinds = {"reactions": 1e-3, "foundation": 1e-4, "sections": 1e-5, "drives": 1e-6}
-    errors = find_certainty(pendulum(T, accuracy={**ACCURATE, "estimate": kinds}), LABELS, MAGNITUDES)
+    errors = find_stated_errors(pendulum(T, accuracy={**ACCURATE, "estimate": kinds}), LABELS, MAGNITUDES)
     certain = [errors.error_of(kind, "N") for kind in ("reactions", "foundation", "sections")]
     assert certain[0] > 5.0 * certain[1] > 25.0 * certain[2] > 0.0
 
 
 def test_a_moment_is_no_more_certain_than_a_force_on_its_arm() -> None:
-    errors = find_certainty(pendulum(T), LABELS, MAGNITUDES)
+    errors = find_stated_errors(pendulum(T), LABELS, MAGNITUDES)
     assert errors.error_of("reactions", "N·m") >= MAGNITUDES.size * errors.error_of("reactions", "N")
 
 
 def test_errors_that_a_check_run_found_go_first() -> None:
     found = {("reactions", "N"): 0.25, ("motion", "m/s²"): 0.5}
-    errors = find_certainty(pendulum(T), LABELS, MAGNITUDES._replace(errors=found))
+    errors = find_stated_errors(pendulum(T), LABELS, MAGNITUDES._replace(errors=found))
     assert errors.error_of("reactions", "N") == 0.25
     assert errors.error_of("motion", "m/s²") == 0.5
     assert errors.error_of("motion", "m") == pytest.approx(ACCURATE["estimate"]["motion"] * MAGNITUDES.size)
@@ -111,20 +111,20 @@ def test_errors_that_a_check_run_found_go_first() -> None:
 def test_a_stress_is_as_uncertain_as_the_loads_that_make_it() -> None:
     cut = {"N": 100.0 + T, "M2": 3.0 * T, "stress": {"normal_max": 5e6 + T}, "open": []}
     found = {("sections", "N"): 0.0, ("sections", "N·m"): 0.25}
-    errors = find_certainty(pendulum(T, sections={"a": cut}), LABELS, MAGNITUDES._replace(errors=found))
+    errors = find_stated_errors(pendulum(T, sections={"a": cut}), LABELS, MAGNITUDES._replace(errors=found))
     assert errors.error_of("sections", "Pa") == pytest.approx(5e6 / 102.0 * 0.25 / MAGNITUDES.size, rel=1e-3)
     assert errors.error_of("sections", "MPa") == pytest.approx(1e-6 * errors.error_of("sections", "Pa"))
 
 
 def test_before_the_horizon_the_error_is_that_at_the_horizon() -> None:
     lost = {**ACCURATE, "horizon": 1.0, "estimate": {"motion": 0.3, "reactions": 5.0}}
-    errors = find_certainty(pendulum(T, accuracy=lost), LABELS, MAGNITUDES)
+    errors = find_stated_errors(pendulum(T, accuracy=lost), LABELS, MAGNITUDES)
     assert errors.error_of("motion", "rad") == pytest.approx(1e-3, rel=0.1)
 
 
 def test_beyond_the_horizon_nothing_is_certain() -> None:
     lost = {**ACCURATE, "horizon": 1.0, "estimate": {"motion": 0.3, "reactions": 5.0}}
-    errors = find_certainty(pendulum(T + 1.0, accuracy=lost), LABELS, MAGNITUDES)
+    errors = find_stated_errors(pendulum(T + 1.0, accuracy=lost), LABELS, MAGNITUDES)
     assert errors.choose_style("reactions", "N", 49.0).write(49.0) == "?"
 
 

@@ -141,7 +141,7 @@ def test_kinks_and_jumps_are_met() -> None:
 
 def test_squares_are_met_to_the_digits_of_their_roots() -> None:
     found = search_extremes(
-        lambda t: np.stack([np.sin(t - 0.9) ** 2], axis=1), GRID, errors=np.array([1e-11]), even=np.array([True])
+        lambda t: np.stack([np.sin(t - 0.9) ** 2], axis=1), GRID, errors=np.array([1e-11]), is_squared=np.array([True])
     )
     assert np.sqrt(found.low[0]) <= 1e-11
     assert found.high[0] == pytest.approx(np.sin(1.1) ** 2, rel=1e-12)

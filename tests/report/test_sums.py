@@ -8,14 +8,14 @@ import numpy as np
 
 from heuncli.loads.redundancy.turning_sums import find_factors
 from heuncli.output.tables.certain_sums import make_sums_table
-from heuncli.study.quantities.digits import Certainty
+from heuncli.study.quantities.digits import StatedErrors
 from tests.shared.fakes import pendulum
 
 T = np.linspace(0.0, 2.0, 5)
 
 
 def told(*sums: dict[str, Any]) -> tuple[str, ...]:
-    table = make_sums_table(pendulum(T, certain_sums=list(sums)), Certainty({("reactions", "N"): 1e-9}, {}))
+    table = make_sums_table(pendulum(T, certain_sums=list(sums)), StatedErrors({("reactions", "N"): 1e-9}, {}))
     assert table is not None
     return table.notes
 
@@ -57,7 +57,7 @@ def test_moments_and_long_sums_are_left_to_json() -> None:
 
 
 def test_none() -> None:
-    assert make_sums_table(pendulum(T), Certainty({}, {})) is None
+    assert make_sums_table(pendulum(T), StatedErrors({}, {})) is None
 
 
 def test_a_factor_that_rounding_made_is_zero() -> None:

@@ -230,8 +230,10 @@ def blow_at_nodes(section: Block) -> Block:
 
 def found_extremes(study: FakeStudy, page: Page, wanted: Set[str]) -> Extremes:
     """Those of a page, as the command searches them."""
-    along = page.run_columns if page.has_runs else None
-    searched = ColumnSearch(page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), along)
+    along = page.make_run_columns if page.has_runs else None
+    searched = ColumnSearch(
+        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), along
+    )
     return study.search_extremes(searched, frozenset(wanted), whole=True)
 
 

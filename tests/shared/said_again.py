@@ -11,7 +11,15 @@ import numpy as np
 
 from heuncli.motion.integration.check.changes import impulse_time_differences
 from heuncli.results.results import Array
-from heuncli.results.results_schema import KIND_OF, SPACE, TREE, Node, Quantity, error_kind_of_path, find_child
+from heuncli.results.results_schema import (
+    ESTIMATE_OF_ERROR_KIND,
+    SPACE,
+    TREE,
+    Node,
+    Quantity,
+    error_kind_of_path,
+    find_child,
+)
 from heuncli.study.ask.study import Study
 
 Powers = tuple[int, int, int]
@@ -180,7 +188,7 @@ def error_of(study: Study, path: tuple[str, ...], unit: str) -> float:
         return float(known.errors[kind, unit])
     if unit == "J":
         return moved * known.by_unit["N"] if "kinetic" not in path else 0.0
-    kind = KIND_OF.get(kind, kind)
+    kind = ESTIMATE_OF_ERROR_KIND.get(kind, kind)
     return float(estimate.get(kind, 0.0)) * largest_of(study, kind, unit)  # type: ignore[arg-type]
 
 

@@ -36,9 +36,12 @@ class WeightPlace:
 class Candidate:
     """A place with two directions across its body's axis, and the responses to the moments of a weight there.
 
-    plane_directions (3, 2): the two directions by_mass (n,), by_product (n, 2), by_square (n, 2, 2): weighted forces
-    and moments ON the foundation over the cycle at unit rate, caused by a mass at the place, by a product along each
-    direction, and by moments of second order.
+    The responses are weighted forces and moments ON the foundation over the cycle at unit rate.
+
+    plane_directions (3, 2): the two directions
+    by_mass (n,): response to a mass at the place
+    by_product (n, 2): response to a product m ρ along each direction
+    by_square (n, 2, 2): response to moments of second order
     """
 
     weight_place: WeightPlace

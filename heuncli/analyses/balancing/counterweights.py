@@ -50,8 +50,10 @@ class Counterweight:
 
 @record
 class CounterweightSolution:
-    """The counterweights, whether others would serve as well (`several`), and whether one linear system determined them
-    (`linear`).
+    """The counterweights of a solution.
+
+    is_ambiguous: whether other weights would serve as well; these are the smallest
+    is_linear: whether one linear system determined them
     """
 
     weights: tuple[Counterweight, ...]
@@ -67,13 +69,13 @@ def find_least_weights(
     force, moment [1/m]: the factors of force and moment in that sum
     """
     effects = compute_mass_effects(cycle, reference_point)
-    weigh = np.repeat([force, moment], 3)
+    row_factors = np.repeat([force, moment], 3)
     # weighted mean of squares as a mean over rows
     mean_factors = np.sqrt(cycle.nodes.weights * len(cycle.nodes.weights))
-    weigh = mean_factors[:, None] * weigh
-    unbalanced = -np.concatenate([effects.force.sum(axis=1), effects.moment.sum(axis=1)], axis=1) * weigh
+    row_factors = mean_factors[:, None] * row_factors
+    unbalanced = -np.concatenate([effects.force.sum(axis=1), effects.moment.sum(axis=1)], axis=1) * row_factors
     largest_effect = max(force, moment * (cycle.size + float(np.abs(reference_point - cycle.states.centre).max())))
-    candidates = [make_candidate(cycle, place, reference_point, weigh) for place in places]
+    candidates = [make_candidate(cycle, place, reference_point, row_factors) for place in places]
     linear = [one.is_linear(largest_effect) for one in candidates]
     require_radii([one for one, is_linear in zip(candidates, linear, strict=True) if not is_linear])
     U, several = solve_products(unbalanced, candidates, linear, largest_effect)
@@ -100,7 +102,11 @@ def make_candidate(cycle: Cycle, weight_place: WeightPlace, reference_point: Arr
     axis = find_rotation_axis(cycle, weight_place)
     first_direction, second_direction = make_plane_directions(axis)
     plane_directions = np.stack([first_direction, second_direction], axis=1)
-    radius = weight_place.radius if weight_place.radius is not None else find_reach(cycle.mechanism, weight_place, axis)
+    radius = (
+        weight_place.radius
+        if weight_place.radius is not None
+        else find_default_radius(cycle.mechanism, weight_place, axis)
+    )
     R, w, al = (getattr(states, name)[:, weight_place.body] for name in ("R", "omega", "alpha"))
     place = project_on_axis(cycle, weight_place, axis)
     x = states.x[:, weight_place.body] + R @ place - reference_point
@@ -169,9 +175,11 @@ def find_fixed_point(cycle: Cycle, body: int) -> Array | None:
     return np.asarray(point) if residual <= tolerances.SAME_VALUE * scale else None
 
 
-def find_reach(mechanism: Mechanism, weight_place: WeightPlace, axis: Array) -> float:
-    """Return the distance of a body's farthest joint from its axis [m]. Raises SolveError [radius-needed] if all lie on
-    it.
+def find_default_radius(mechanism: Mechanism, weight_place: WeightPlace, axis: Array) -> float:
+    """Return the radius of a weight for which none was given: the distance of the body's farthest joint from its axis
+    [m].
+
+    Raises SolveError [radius-needed] if all joints lie on the axis.
     """
     body = mechanism.bodies[weight_place.body]
     ends = [joint.p for joint in mechanism.joints if joint.a == weight_place.body]

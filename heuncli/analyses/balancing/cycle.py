@@ -30,7 +30,7 @@ from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.file_format.models import Drive
 from heuncli.study.model.setup import reduce_scene
 
-MOST_SAMPLES = 1024  # equally spaced angles per turn, at most, for a smooth cycle
+MAX_SAMPLES = 1024  # equally spaced angles per turn, at most, for a smooth cycle
 DRIVE = "cycle"
 EXPLAINED_CODES = ("path-ends", "no-value")  # codes of errors whose message explains why the scene cannot be followed
 
@@ -155,7 +155,7 @@ def drop_rates(scene: PreparedScene) -> Assembly:
 def require_determined(runner: Runner, plan: CyclePlan) -> None:
     """Raise SolveError [several-freedoms, no-cycle] if the cycle's angle does not determine the pose."""
     layout = runner.integrated_scene.layout
-    if find_determined_motion(runner.integrated_scene).is_so:
+    if find_determined_motion(runner.integrated_scene).is_determined:
         return
     dependent_count = runner.integrated_scene.workspace.count_independent_rows(0.0, layout.y0) if layout.rows else 0
     free_count = layout.tree_freedoms - dependent_count

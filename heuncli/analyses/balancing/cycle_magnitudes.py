@@ -84,7 +84,9 @@ def find_peaks(squares: Interpolant, nodes: CycleNodes, errors: Array) -> list[t
     def sample(x: Array) -> Array:
         return grid_squares if x is grid else squares(x)  # the search begins with the grid
 
-    extremes = search_extremes(sample, grid, errors=errors, even=np.ones(len(errors), dtype=bool), sides=MAXIMUM_ONLY)
+    extremes = search_extremes(
+        sample, grid, errors=errors, is_squared=np.ones(len(errors), dtype=bool), sides=MAXIMUM_ONLY
+    )
     peaks = []
     for k, error in enumerate(errors.tolist()):
         peak = math.sqrt(max(float(extremes.high[k]), 0.0))

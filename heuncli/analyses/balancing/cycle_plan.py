@@ -16,7 +16,7 @@ from heuncli.loads.equilibrium.steady_states import has_constant_rate
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.multibody.tree.starts import joint_start
+from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.scene.expressions.programs import Expression
 
 SAMPLE_ANGLES = (0.1, 0.9, 1.7, 2.6, 3.3, 4.4, 5.2, 6.1)  # rad: angles within a turn at which laws are compared
@@ -53,7 +53,7 @@ def plan_cycle(scene: PreparedScene, joint_name: str | None, turns: int | None, 
     if in_time:
         require_steady(joint)
         assert scene_rate is not None
-    begin = joint_start(mechanism, scene.start, joint).angle
+    begin = compute_joint_start(mechanism, scene.start, joint).angle
     turn_count = turns if turns is not None else count_turns(mechanism, joint)
     return CyclePlan(joint.name, begin, turn_count, scene_rate if rate is None or in_time else rate, in_time)
 
@@ -149,7 +149,7 @@ def find_scene_rate(mechanism: Mechanism, scene: PreparedScene, joint: Joint) ->
     if joint.drive is not None and joint.drive.quantity == "angle":
         rate = joint.drive.value.derivatives(0.0)[1]
     else:
-        rate = joint_start(mechanism, scene.start, joint).rate
+        rate = compute_joint_start(mechanism, scene.start, joint).rate
     return rate if math.isfinite(rate) and abs(rate) > tolerances.AT_REST else None
 
 

@@ -108,7 +108,7 @@ def balance_over_period(spec: Spec, seconds: float, options: BalanceOptions, ref
         name: compute_difference(nodes, previous_sums[name], last_sums[name], last.terms[name]) for name in KINDS
     }
     largest_difference = max(residual.relative for residual in differences.values())
-    if largest_difference > tolerances.COMES_BACK:
+    if largest_difference > tolerances.SAME_PERIOD:
         message = (
             f"--period {seconds:g} s: the last period and the one before differ by {largest_difference:.1g} of the mean"
         )

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from heuncli.analyses.balancing.cycle import MOST_SAMPLES, Cycle, FollowedScene
+from heuncli.analyses.balancing.cycle import MAX_SAMPLES, Cycle, FollowedScene
 from heuncli.analyses.balancing.cycle_nodes import TAIL_FRACTION
 from heuncli.analyses.balancing.effects import MassEffects, compute_mass_effects
 from heuncli.analyses.balancing.followed_run import SAMPLES_PER_TURN
@@ -44,7 +44,7 @@ def sample_evenly(followed_scene: FollowedScene, reference_point: Array) -> Cycl
         is_rounding = largest_tail < tolerances.CANCELS and largest_tail * MIN_REDUCTION > previous_tail
         if largest_tail <= tolerances.ORDERS_SETTLED or is_rounding:
             return cycle if is_resolved(followed_scene, cycle, reference_point) else None
-        if count >= MOST_SAMPLES * followed_scene.turns:
+        if count >= MAX_SAMPLES * followed_scene.turns:
             return None
         count, previous_tail = 2 * count, largest_tail
 

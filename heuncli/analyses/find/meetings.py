@@ -35,10 +35,12 @@ FLAT_FACTOR = 4.0  # times E / chord: an enclosure that is not flat
 
 
 class SlopeEstimate(NamedTuple):
-    """What is known of the slope at a sample: the least |g'| possible, and |g''|/2.
+    """Bounds of the slope at a sample.
 
-    chord: the least slope of the chords to the neighbours
-    is_reliable: whether the neighbours' slopes hold up to the sample
+    min_slope: the smallest possible |g'|
+    half_curvature: |g''|/2
+    chord: the smallest slope of the chords to the neighbours
+    is_reliable: whether the slopes between the neighbours also hold at the sample
     """
 
     least: float
@@ -223,7 +225,7 @@ def iter_unsolved(course: MeasureCourse) -> Iterator[UnsolvedStretch]:
         yield UnsolvedStretch(low, high, code, reason, len(indices), *ends, withheld)
 
 
-def iter_met(course: MeasureCourse, side: int, *, includes_value: bool) -> Iterator[MetStretch]:
+def iter_met_stretches(course: MeasureCourse, side: int, *, includes_value: bool) -> Iterator[MetStretch]:
     """Yield the stretches where the measure lies on a given side.
 
     includes_value: whether the value itself meets the condition

@@ -78,9 +78,9 @@ def is_rising_exponentially(course: MeasureCourse, end: int, inner: int, outer: 
     return math.log(m[0] / m[1]) > math.log(m[1] / m[2]) * power + math.log(MIN_RISE)
 
 
-def is_far_off(course: MeasureCourse, left: Sample, right: Sample) -> bool:
-    """Return whether two neighbours near a pole are so far off that the measure does not return to its value between
-    them.
+def is_far_from_value(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether two neighbours on one side are so far from the value, as near a pole, that g does not return to it
+    between them.
     """
     if not left.side or left.side != right.side:
         return False

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.analyses.variants.conditions import Sign
+from heuncli.analyses.variants.conditions import Relation
 from heuncli.analyses.variants.course import Sample
 from heuncli.base.named_tuples import NamedTuple
 
@@ -21,7 +21,7 @@ class FindCondition(NamedTuple):
     """
 
     text: str
-    relation: Sign
+    relation: Relation
     value: float
     unit: str
     given_unit: str
@@ -32,8 +32,8 @@ class Crossing(NamedTuple):
 
     sample: the variant there
     direction: 1 if it rises through the value, -1 if it falls; 0 at an end of the known range
-    flat: the slope there is within its own error; the error of the place then spans to the neighbours certainly off the
-    value
+    is_flat: the slope there is smaller than its own error; the error of the place then reaches to the neighbours that
+    are certainly on one side of the value
     """
 
     sample: Sample

@@ -14,9 +14,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.analyses.find.poles import find_hidden_pole, is_far_off
+from heuncli.analyses.find.poles import find_hidden_pole, is_far_from_value
 from heuncli.analyses.variants.course import (
-    DISTRUST,
+    FIRST_DISTRUST,
     GOLDEN,
     MAX_DISTRUST,
     NOISE,
@@ -46,7 +46,7 @@ def search(course: MeasureCourse) -> None:
         if i is None:
             break
         left, right = course.samples[i], course.samples[i + 1]
-        course.given_up.add((left.x, right.x))
+        course.searched_pairs.add((left.x, right.x))
         if left.gap is None or right.gap is None:
             course.sample_at(0.5 * (left.x + right.x))
         elif (x := find_possible_peak(course, i)) is not None:
@@ -73,7 +73,9 @@ def find_widest_uncertain(course: MeasureCourse) -> int | None:
     """Return the widest pair of neighbours with uncertain behaviour between them; None if there is none."""
     ends = find_range_ends(course)
     pairs = [
-        (right.x - left.x, -i) for i, left, right in course.iter_pairs() if (left.x, right.x) not in course.given_up
+        (right.x - left.x, -i)
+        for i, left, right in course.iter_pairs()
+        if (left.x, right.x) not in course.searched_pairs
     ]
     for _, i in sorted(pairs, reverse=True):
         surroundings = (*(sample.x for sample in course.samples[max(-i - 2, 0) : 4 - i]), course.distrust, len(ends))
@@ -98,7 +100,7 @@ def is_uncertain(course: MeasureCourse, i: int, ends: list[tuple[float, float]])
         return False
     if find_possible_peak(course, i) is not None:
         return True
-    if is_near_jump(course, left, right, ends) or is_far_off(course, left, right):
+    if is_near_jump(course, left, right, ends) or is_far_from_value(course, left, right):
         return False
     prediction = course.predict(i)
     side, error = left.side or right.side, max(left.error, right.error)
@@ -125,7 +127,7 @@ def check_scan(course: MeasureCourse) -> None:
         prediction = course.predict(i, np.array([x]))
         evaluated = course.sample_and_learn(x)
         places.append(x)
-        prediction_error = float(prediction.uncertainty[0]) * DISTRUST / course.distrust
+        prediction_error = float(prediction.uncertainty[0]) * FIRST_DISTRUST / course.distrust
         if (
             evaluated.gap is not None
             and abs(evaluated.gap - float(prediction.gaps[0])) > prediction_error + prediction.noise + evaluated.error
@@ -134,8 +136,8 @@ def check_scan(course: MeasureCourse) -> None:
 
 
 def may_hide_wave(course: MeasureCourse, i: int) -> bool:
-    """Return whether two neighbours may hide a wave that meets the value, if the prediction's error were MOST_DISTRUST
-    times as large.
+    """Return whether two neighbours may hide a wave that meets the value, with a prediction error MAX_DISTRUST times as
+    large.
     """
     left, right = course.samples[i], course.samples[i + 1]
     if course.is_interrupted(i) or not left.side or left.side != right.side:
@@ -188,7 +190,7 @@ def may_meet_value(course: MeasureCourse, i: int, ends: list[tuple[float, float]
     ends: result of `find_range_ends`
     """
     left, right = course.samples[i], course.samples[i + 1]
-    if is_far_off(course, left, right) or is_near_jump(course, left, right, ends) or leads_to_meeting(course, i):
+    if is_far_from_value(course, left, right) or is_near_jump(course, left, right, ends) or leads_to_meeting(course, i):
         return False
     prediction = course.predict(i)
     nearest = (left.side or 0) * prediction.gaps - prediction.total_uncertainty

@@ -10,7 +10,7 @@ from heuncli.analyses.find.meetings import (
     group_by_side,
     iter_enclosing_places,
     iter_meetings,
-    iter_met,
+    iter_met_stretches,
     iter_unsolved,
 )
 from heuncli.analyses.find.results import (
@@ -23,22 +23,22 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.search import check_scan, iter_possible_meetings, narrow_all, search
 from heuncli.analyses.find.touches import compute_distance, find_touches
-from heuncli.analyses.variants.conditions import Sign
-from heuncli.analyses.variants.course import MeasureCourse, Sample, SpentError
+from heuncli.analyses.variants.conditions import Relation
+from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError
 from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 
 CROSSING_HALVINGS = 8  # towards a crossing with an uncertain slope: down to a 250th of the neighbour's distance
 TOUCH_HALVINGS = 12  # towards each end of a touch: flat ones end at a 4,000th of the neighbour's distance
 CLOSE_TO_VALUE = 4.0  # times the error: |g| at the ends that enclose a touch
 
-SIDES: dict[Sign, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
+SIDES: dict[Relation, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
 
 
 def find_meetings(
     evaluate: Callable[[float], Sample],
     low: float,
     high: float,
-    relation: Sign,
+    relation: Relation,
     *,
     scan_count: int,
     max_evaluations: int,
@@ -76,13 +76,15 @@ def find_meetings(
                         refined_at[sign] = find_extreme(course, sign)
             if len(course.samples) == sample_count:
                 close_edges(course)
-    except SpentError:
+    except SampleLimitError:
         is_complete = False
     course.withhold_isolated()
     return collect_findings(course, relation, is_refined=is_refined, is_complete=is_complete)
 
 
-def collect_findings(course: MeasureCourse, relation: Sign, *, is_refined: bool, is_complete: bool) -> IntervalFindings:
+def collect_findings(
+    course: MeasureCourse, relation: Relation, *, is_refined: bool, is_complete: bool
+) -> IntervalFindings:
     """Collect the findings from the samples.
 
     is_complete: whether the search ended before its limit of evaluations
@@ -102,7 +104,7 @@ def collect_findings(course: MeasureCourse, relation: Sign, *, is_refined: bool,
             )
         ),
         unsolved_stretches=tuple(iter_unsolved(course)),
-        met_stretches=tuple(iter_met(course, SIDES[relation], includes_value="=" in relation))
+        met_stretches=tuple(iter_met_stretches(course, SIDES[relation], includes_value="=" in relation))
         if SIDES[relation]
         else (),
         least=find_extreme(course, -1),

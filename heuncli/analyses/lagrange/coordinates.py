@@ -205,7 +205,7 @@ def require_independent(names: Sequence[str], rates: Array, count: int, scaled_r
         message = f"{count} {phrase} free, and {len(names)} coordinate{'s are' if len(names) != 1 else ' is'} named"
         raise SolveError(Problem(PROBLEM_CODE, message, hint=f"name {count} of {', '.join(list(scaled_rows)[:8])}"))
     U, s, V = np.linalg.svd(rates)
-    if s[-1] * tolerances.TELLING < max(s[0], find_largest_rate(scaled_rows)):
+    if s[-1] * tolerances.COORDINATE_RATIO < max(s[0], find_largest_rate(scaled_rows)):
         along = {name: abs(float(row @ V[-1])) for name, row in scaled_rows.items()}
         moving = max(along, key=lambda name: along[name])
         stationary = names[int(np.argmax(np.abs(U[:, -1])))]

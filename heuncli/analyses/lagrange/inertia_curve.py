@@ -160,7 +160,7 @@ def follow_branch(
     if layout.contacts:
         message = f"{layout.contacts[0].name} may open and close on the way"
         raise make_refusal(coordinate_range, message, "leave stops and ropes out")
-    if not find_determined_motion(setup.runner.integrated_scene).is_so:
+    if not find_determined_motion(setup.runner.integrated_scene).is_determined:
         message = f"with {coordinate_range.name} held something is free: the inertia of one motion is told over it"
         raise make_refusal(
             coordinate_range, message, "heun lagrange SPEC tells all of one instant; --at T of a later one"

@@ -15,7 +15,7 @@ from heuncli.analyses.load_cases.model import AccelerationField, PointAction
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import Action
-from heuncli.loads.kinetostatics.sections import Attachment, find_attachments, to_body_axes
+from heuncli.loads.kinetostatics.sections import AttachedLoad, find_attachments, to_body_axes
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
@@ -39,7 +39,7 @@ class BodyAction(NamedTuple):
     kind: str
     name: str
     source: str
-    attachment: Attachment
+    attachment: AttachedLoad
     is_line: bool
 
 

@@ -17,7 +17,7 @@ MAX_INSTANTS = 400  # at most, at which the conditions are computed
 def find_largest_conditions(motion: MotionSearch) -> tuple[LargestCondition | None, LargestCondition | None, str]:
     """Return the largest conditions of the mass matrix and of the closures, or the reason why they are missing."""
     layout = motion.layout
-    layout_coordinates, n = make_coordinates(layout), layout.answer_count
+    layout_coordinates, n = make_coordinates(layout), layout.velocity_count
     if not layout_coordinates.count:
         return None, None, "nothing is free to move"
     if n > MAX_FREEDOMS:

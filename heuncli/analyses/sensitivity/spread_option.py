@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread
-from heuncli.analyses.variants.axes import AxisError, parse_figure, split_at_commas, split_name
+from heuncli.analyses.variants.axes import AxisError, parse_number_with_unit, split_at_commas, split_name
 from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumbers
 from heuncli.base.errors import Finding
 from heuncli.base.units import describe, parse_unit
@@ -26,7 +26,7 @@ def parse_spreads(text: str, spec_numbers: WrittenNumbers) -> list[NumberSpread]
 
 def _parse_size(word: str, value: str, number: WrittenNumber) -> float:
     """Return the tolerance of a number, in its unit. Raises AxisError."""
-    quantity = parse_figure(value)
+    quantity = parse_number_with_unit(value)
     if quantity is None or quantity.value <= 0.0:
         raise AxisError(word, "a spread is a positive number, with its unit", HINT)
     if not quantity.unit:

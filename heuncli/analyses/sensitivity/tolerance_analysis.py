@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
-from heuncli.analyses.variants.course import MeasureCourse, Sample, SpentError
+from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError
 from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 from heuncli.analyses.variants.written_numbers import WrittenNumber
 from heuncli.base.named_tuples import NamedTuple
@@ -112,7 +112,9 @@ def find_tolerance_extremes(
 
 
 def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -> tuple[Sample, Sample, float, int]:
-    """Search the smallest and the largest change within a tolerance; return them, what may be missing of them, and the
+    """Search the smallest and the largest change within a tolerance.
+
+    Returns both samples, by how much the search may have missed the true extremes (inf if it was cut short), and the
     number of variants.
     """
 
@@ -122,21 +124,20 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
             return Sample(x, None, why=found.why)
         return Sample(x, found.value - base.value, found.error)
 
-    measure_curve = MeasureCourse(evaluate_sample, -t, t, SCAN_COUNT, MAX_VARIANTS, base.value or 0.0)
+    course = MeasureCourse(evaluate_sample, -t, t, SCAN_COUNT, MAX_VARIANTS, base.value or 0.0)
     missing = math.inf
     try:
-        measure_curve.scan()
+        course.scan()
         for x in (0.0, -INNER_FRACTION * t, INNER_FRACTION * t):
-            measure_curve.sample_at(x)
+            course.sample_at(x)
         missing = max(
-            max(refine_extreme(measure_curve, way, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0)
-            for way in (-1, 1)
+            max(refine_extreme(course, way, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for way in (-1, 1)
         )
-    except SpentError:
+    except SampleLimitError:
         pass
-    low, high = find_extreme(measure_curve, -1), find_extreme(measure_curve, 1)
+    low, high = find_extreme(course, -1), find_extreme(course, 1)
     assert low is not None and high is not None  # the value itself is solved
-    return low, high, missing, len(measure_curve.samples)
+    return low, high, missing, len(course.samples)
 
 
 def climb_from_corner(

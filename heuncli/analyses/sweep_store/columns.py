@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.axes import parse_figure
+from heuncli.analyses.variants.axes import parse_number_with_unit
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.study.quantities.digits import OPEN, UNKNOWN
@@ -39,7 +39,7 @@ class ParameterColumn(NamedTuple):
 
     def parse_value(self, text: str) -> float | str:
         """Return a value in the column's unit, from the form of `--set`."""
-        figure = parse_figure(text) if self.unit is not None else None
+        figure = parse_number_with_unit(text) if self.unit is not None else None
         return text if figure is None else figure.value
 
 
@@ -54,7 +54,7 @@ def find_common_unit(texts: Sequence[str]) -> str | None:
     """Return the unit of all texts, empty if they are plain numbers; None if they have no common unit."""
     unit: str | None = None
     for text in texts:
-        figure = parse_figure(text)
+        figure = parse_number_with_unit(text)
         if figure is None or (unit is not None and figure.unit != unit):
             return None
         unit = figure.unit

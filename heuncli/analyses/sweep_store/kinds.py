@@ -11,8 +11,8 @@ from heuncli.analyses.sweep_store.errors import NOT_A_STORE, OTHER_FILE_HINT
 from heuncli.base.errors import Problem, UsageError
 from heuncli.version import VERSION
 
-APPLICATION = 0x6865756E  # "heun": the application id in SQLite's header
-FORMAT = 1  # of the tables
+APPLICATION_ID = 0x6865756E  # "heun": the application id in SQLite's header
+FORMAT_VERSION = 1  # of the tables
 TABLES = (
     "CREATE TABLE heun (version TEXT NOT NULL)",
     "CREATE TABLE sweeps (number INTEGER PRIMARY KEY, identity BLOB NOT NULL UNIQUE, head TEXT NOT NULL, draws BLOB,"
@@ -22,9 +22,11 @@ TABLES = (
     "CREATE TABLE answers (key BLOB PRIMARY KEY, measures TEXT NOT NULL, code TEXT NOT NULL, reason TEXT NOT NULL,"
     " warnings TEXT NOT NULL) WITHOUT ROWID",
 )
-JOURNAL = 8000  # pages of the journal, 32 MB, after which it is written into the tables: each time waits for the disk
-ATTEMPTS = 200  # to change the journal mode while another process does so: SQLite does not wait for that
-PAUSE = 0.05  # seconds
+MAX_JOURNAL_PAGES = (
+    8000  # pages of the journal, 32 MB, after which it is written into the tables: each time waits for the disk
+)
+MAX_ATTEMPTS = 200  # to change the journal mode while another process does so: SQLite does not wait for that
+RETRY_PAUSE = 0.05  # seconds
 
 
 def initialize_store(connection: sqlite3.Connection, name: str, is_persistent: bool) -> None:
@@ -39,15 +41,15 @@ def initialize_store(connection: sqlite3.Connection, name: str, is_persistent: b
         # a killed process loses nothing; after a system crash the last rows may be missing, but no file is
         # damaged
         connection.execute("PRAGMA synchronous = NORMAL")
-        connection.execute(f"PRAGMA wal_autocheckpoint = {JOURNAL}")
+        connection.execute(f"PRAGMA wal_autocheckpoint = {MAX_JOURNAL_PAGES}")
     else:
         connection.execute("PRAGMA journal_mode = MEMORY")
         connection.execute("PRAGMA synchronous = OFF")
     connection.execute("BEGIN IMMEDIATE")  # of two processes that start together, one waits and finds the tables
     try:
         if _is_empty(connection):
-            connection.execute(f"PRAGMA application_id = {APPLICATION}")
-            connection.execute(f"PRAGMA user_version = {FORMAT}")
+            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            connection.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
             for table in TABLES:
                 connection.execute(table)
             connection.execute("INSERT INTO heun VALUES (?)", (VERSION,))
@@ -72,9 +74,9 @@ def require_store(connection: sqlite3.Connection, name: str, may_be_empty: bool 
     finally:
         if connection.in_transaction:
             connection.execute("COMMIT")
-    if application == APPLICATION:
-        if form != FORMAT:
-            message = f"{name}: a store in form {form}, of another version of heun; this one has form {FORMAT}"
+    if application == APPLICATION_ID:
+        if form != FORMAT_VERSION:
+            message = f"{name}: a store in form {form}, of another version of heun; this one has form {FORMAT_VERSION}"
             raise UsageError(Problem(NOT_A_STORE, message, hint=OTHER_FILE_HINT))
         return
     if not may_be_empty or not is_empty:
@@ -89,11 +91,11 @@ def _is_empty(connection: sqlite3.Connection) -> bool:
 
 def _enable_journal(connection: sqlite3.Connection) -> None:
     """Enable write-ahead logging, so that readers do not wait for writers."""
-    for attempt in range(ATTEMPTS):
+    for attempt in range(MAX_ATTEMPTS):
         try:
             connection.execute("PRAGMA journal_mode = WAL")
             return
         except sqlite3.OperationalError as error:
-            if getattr(error, "sqlite_errorname", "") != "SQLITE_BUSY" or attempt == ATTEMPTS - 1:
+            if getattr(error, "sqlite_errorname", "") != "SQLITE_BUSY" or attempt == MAX_ATTEMPTS - 1:
                 raise
-            time.sleep(PAUSE)
+            time.sleep(RETRY_PAUSE)

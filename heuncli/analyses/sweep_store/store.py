@@ -1,18 +1,18 @@
-"""Store the rows of sweeps in an SQLite file: written as they come, continued where a sweep ended, read when it is
-done.
+"""Store the rows of sweeps in an SQLite file: each row is written when it is solved, an interrupted sweep is continued,
+a finished one is read.
 
-    heun      1 row:   heun's version, by which all of it was made
-    sweeps    a row a sweep:    number, identity, head (JSON: what it is of, and its plan), draws (what is drawn)
-    variants  a row a variant:  sweep, number, key, given (JSON: its values); code, reason: of what may be tried again
+    heun      1 row:            the version of heun that wrote the file
+    sweeps    a row a sweep:    number, identity, head (JSON: its description and plan), draws (random numbers), begun
+    variants  a row a variant:  sweep, number, key, given (JSON: its values); code, reason: only of failures to retry
     answers   a row a key:      key, measures (JSON: value, error, instant, word), code, reason, warnings (JSON)
 
 A result is stored under its key (analyses/variants/keys.py), and serves every sweep that has a variant with that key. A
 failure that another attempt may avoid (a time limit, memory, a process that died) is no result: it is stored with its
 variant.
 
-The journal is a write-ahead log. Every row is a transaction of its own, so that a killed process loses only the variant
-under way, and two sweeps write in turns; a row that both have is written once. Without a file of the user's, the same
-tables are in one of SQLite's own in the folder of temporary files, which disappears with the process.
+The journal is a write-ahead log. Every row is a transaction of its own, so a killed process loses only the variant that
+it is solving. Two sweeps write in turns; a row that both have is written once. If the user names no file, SQLite keeps
+the same tables in a temporary file of its own, which disappears with the process.
 
 Impure: reads and writes files.
 """
@@ -93,24 +93,24 @@ class Store:
         with convert_errors(self.name):
             return self.connection.execute("SELECT 1 FROM answers WHERE key = ?", (key,)).fetchone() is not None
 
-    def link_variant(self, sweep: int, number: int, key: bytes, value_texts: tuple[str, ...]) -> None:
-        """Add a variant to a sweep whose result is stored already."""
+    def link_variant(self, sweep: int, variant_number: int, key: bytes, value_texts: tuple[str, ...]) -> None:
+        """Add a variant to a sweep; its result is stored already, from this sweep or another."""
         with convert_errors(self.name):
             self.connection.execute(
-                f"{VARIANT} WHERE code <> ''", (sweep, number, key, json.dumps(value_texts), "", "")
+                f"{VARIANT} WHERE code <> ''", (sweep, variant_number, key, json.dumps(value_texts), "", "")
             )
 
     def add_result(
-        self, sweep: int, number: int, key: bytes, value_texts: tuple[str, ...], answer: VariantResult
+        self, sweep: int, number: int, key: bytes, value_texts: tuple[str, ...], result: VariantResult
     ) -> None:
         """Store the result of a variant."""
-        is_final = answer.code not in RETRY_CODES
-        retry_reason = ("", "") if is_final else (answer.code, answer.reason)
+        is_final = result.code not in RETRY_CODES
+        retry_reason = ("", "") if is_final else (result.code, result.reason)
         with convert_errors(self.name):
             self.connection.execute("BEGIN IMMEDIATE")
             try:
                 if is_final:
-                    self.connection.execute(ANSWER, (key, *_to_row(answer)))
+                    self.connection.execute(ANSWER, (key, *_to_row(result)))
                 self.connection.execute(VARIANT, (sweep, number, key, json.dumps(value_texts), *retry_reason))
                 self.connection.execute("COMMIT")
             except sqlite3.Error:
@@ -192,7 +192,7 @@ def _connect_for_reading(name: str) -> sqlite3.Connection:
     raise AssertionError
 
 
-def _to_row(answer: VariantResult) -> tuple[Any, ...]:
+def _to_row(result: VariantResult) -> tuple[Any, ...]:
     """Return a result as its row in the table."""
-    measures = json.dumps([tuple(one) for one in answer.measures]) if answer.measures else ""
-    return measures, answer.code, answer.reason, json.dumps(answer.warnings) if answer.warnings else ""
+    measures = json.dumps([tuple(one) for one in result.measures]) if result.measures else ""
+    return measures, result.code, result.reason, json.dumps(result.warnings) if result.warnings else ""

@@ -1,4 +1,4 @@
-"""Find the sweep of a store that is meant: FILE for its last one, or FILE:NUMBER. Impure: checks whether the file
+"""Find the sweep that `FILE` (the last one of a store) or `FILE:NUMBER` selects. Impure: checks whether the file
 exists.
 """
 
@@ -11,8 +11,10 @@ from heuncli.base.errors import Problem, UsageError
 from heuncli.base.text_safety import escape
 
 
-def split_number(word: str, option: str) -> tuple[str, int | None]:
-    """Split a word into the store's file and the number of the sweep, if one is named. Raises UsageError."""
+def split_store_argument(word: str, option: str) -> tuple[str, int | None]:
+    """Split `FILE` or `FILE:NUMBER` into the store's file and the number of the sweep, None without one. Raises
+    UsageError.
+    """
     name, colon, number = word.rpartition(":")
     if colon and name and number.isascii() and number.isdecimal() and not Path(word).exists():
         word, sweep_number = name, int(number)

@@ -141,8 +141,8 @@ def split_at_commas(text: str) -> list[str]:
     return [*parts, text[start:]]
 
 
-def parse_figure(text: str) -> NumberWithUnit | None:
-    """Parse the number and the unit of a text such as `20 mm`; None where it is no such text."""
+def parse_number_with_unit(text: str) -> NumberWithUnit | None:
+    """Parse a number with or without a unit, such as `20 mm`; None for any other text."""
     found = QUANTITY.match(text)
     if found is None:
         return None
@@ -155,7 +155,7 @@ def _parse_list(word: str, values: str) -> tuple[str, ...]:
     texts = [text.strip() for text in split_at_commas(values)]
     if not all(texts):
         raise AxisError(word, "a value is missing between two commas" if len(texts) > 1 else "a value is missing")
-    figures = [parse_figure(text) for text in texts]
+    figures = [parse_number_with_unit(text) for text in texts]
     last = figures[-1]
     if last is None or not last.unit or any(figure is None or figure.unit for figure in figures[:-1]):
         return tuple(texts)
@@ -198,18 +198,21 @@ def _parse_ends(word: str, values: str, message: str, hint: str) -> tuple[float,
 
 
 def _parse_two_numbers(word: str, texts: tuple[str, str], message: str, hint: str) -> tuple[float, float, str]:
-    """Parse two numbers in the unit of the second; a first one without a unit is in it, too."""
-    first, second = (_require_figure(word, text, hint) for text in texts)
+    """Parse two numbers and convert both to the unit of the second; a first number without a unit is already in it."""
+    first, second = (_require_number_with_unit(word, text, hint) for text in texts)
     if first.unit in ("", second.unit):
         return first.value, second.value, second.unit
-    (size, dimension), (own, other) = _require_unit(word, first.unit), _require_unit(word, second.unit)
-    if not second.unit or dimension != other:
+    (size, dimension), (second_size, second_dimension) = (
+        _require_unit(word, first.unit),
+        _require_unit(word, second.unit),
+    )
+    if not second.unit or dimension != second_dimension:
         raise AxisError(word, f"'{first.unit}' and '{second.unit or 'no unit'}' are not of one kind", hint)
-    return first.value * size / own, second.value, second.unit
+    return first.value * size / second_size, second.value, second.unit
 
 
-def _require_figure(word: str, text: str, hint: str) -> NumberWithUnit:
-    found = parse_figure(text)
+def _require_number_with_unit(word: str, text: str, hint: str) -> NumberWithUnit:
+    found = parse_number_with_unit(text)
     if found is None:
         raise AxisError(word, f"'{text.strip()}' is not a number with or without a unit", hint)
     if found.unit:

@@ -10,8 +10,8 @@ from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult
 from heuncli.base.tolerances import EPS
 
 ROUNDING = 8.0 * EPS  # of a measure: rounding of sums of a run's last step, where the run states no larger error
-FIGURES = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
-SEVERAL = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
+NUMBERS = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+NUMBER_LISTS = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
 # the reason why a measure has no value, by its word
 REASONS: Mapping[str, str] = MappingProxyType(
     {
@@ -28,7 +28,7 @@ class CachedEvaluator:
 
     def __init__(self, evaluator: VariantEvaluator, report_run: Callable[[int], None] = lambda runs: None) -> None:
         """report_run: called before each variant is solved, with the number of those before it"""
-        self.evaluator, self._begun = evaluator, report_run
+        self.evaluator, self._report_run = evaluator, report_run
         self._known: dict[tuple[tuple[str, str], ...], VariantResult] = {}
 
     @property
@@ -40,7 +40,7 @@ class CachedEvaluator:
         """Return the result of a variant; values: by name, in the form of `--set`."""
         key = tuple(sorted(values.items()))
         if key not in self._known:
-            self._begun(self.runs)
+            self._report_run(self.runs)
             self._known[key] = self.evaluator.answer(values)
         return self._known[key]
 
@@ -48,12 +48,12 @@ class CachedEvaluator:
         """Return the first warning of each kind, and how many variants gave one."""
         warnings_by_kind: dict[str, tuple[str, int]] = {}
         for result in self._known.values():
-            for kind, text in {strip_figures(text): text for text in result.warnings}.items():
+            for kind, text in {strip_numbers(text): text for text in result.warnings}.items():
                 first, so_far = warnings_by_kind.get(kind, (text, 0))
                 warnings_by_kind[kind] = first, so_far + 1
         return dict(warnings_by_kind.values())
 
 
-def strip_figures(text: str) -> str:
-    """Return a warning without its figures, which differ from variant to variant."""
-    return SEVERAL.sub("#", FIGURES.sub("#", text))
+def strip_numbers(text: str) -> str:
+    """Return a warning with its numbers replaced by `#`: they differ from variant to variant."""
+    return NUMBER_LISTS.sub("#", NUMBERS.sub("#", text))

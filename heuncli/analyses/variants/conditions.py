@@ -9,25 +9,25 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
-from heuncli.analyses.variants.axes import AxisError, parse_figure
+from heuncli.analyses.variants.axes import AxisError, parse_number_with_unit
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import Scope, read_number
 
-Sign = Literal["=", "<", ">", "<=", ">="]
-SPELLINGS: dict[str, Sign] = {
+Relation = Literal["=", "<", ">", "<=", ">="]
+SPELLINGS: dict[str, Relation] = {
     "=": "=", "==": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", "≥": ">=", "=<": "<=", "=>": ">=",
 }  # fmt: skip
 PARTS = re.compile(r"([^<>=≤≥]*)([<>=≤≥]+)([^<>=≤≥]*)\Z", re.DOTALL)
 
 
 class MeasureCondition(NamedTuple):
-    """The words of a measure, the sign, and the value as it is written."""
+    """The words of a measure, the relation (=, <, >, <=, >=), and the value as it is written."""
 
     measure: str
-    sign: Sign
+    sign: Relation
     value: str
 
     @property
@@ -38,7 +38,7 @@ class MeasureCondition(NamedTuple):
     @property
     def unit(self) -> str:
         """The unit of the value; empty where it has none, or is an expression."""
-        figure = parse_figure(self.value)
+        figure = parse_number_with_unit(self.value)
         return figure.unit if figure is not None else ""
 
 
@@ -48,15 +48,15 @@ def parse_condition(text: str, form: str, hint: str) -> MeasureCondition:
     Raises AxisError.
     """
     found = PARTS.match(text)
-    sign = SPELLINGS.get(found[2]) if found is not None else None
-    if found is None or sign is None:
+    relation = SPELLINGS.get(found[2]) if found is not None else None
+    if found is None or relation is None:
         raise AxisError(text, form, hint)
     if not found[1].strip() or not found[3].strip():
         what = "a measure before" if not found[1].strip() else "a value behind"
         raise AxisError(text, f"{form}; there is not {what} the '{found[2]}'", hint)
-    if parse_figure(found[1]) is not None:
+    if parse_number_with_unit(found[1]) is not None:
         raise AxisError(text, "the measure stands first", hint)
-    return MeasureCondition(found[1].strip(), sign, found[3].strip())
+    return MeasureCondition(found[1].strip(), relation, found[3].strip())
 
 
 def find_si_value(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:

@@ -29,12 +29,14 @@ NOISE = 8.0  # times the errors of four places: difference of their polynomials 
 MIN_UNCERTAINTY = 1e-3  # of the range of the four: deviation from a cubic that the scan may miss
 MAX_SHIFT = 0.25  # of the spacing: largest shift of places of the scan, so that no wave is hidden by aliasing
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-DISTRUST = 1.25
+FIRST_DISTRUST = 1.25
 MAX_DISTRUST = 16.0
 LOG_RATIO = 4.0  # ratio of neighbouring magnitudes from which on their logarithms are interpolated
 LARGEST_LOG = 690.0  # of a magnitude that does not overflow
-ISOLATED = 1e-3  # of the spacing: singular poses over a shorter range are isolated places, not a part of the course
-SINGULAR = "the run passes a singular pose there and not beside it: its number is no neighbour of the others"
+MAX_ISOLATED_WIDTH = (
+    1e-3  # of the spacing: singular poses over a shorter range are isolated places, not a part of the course
+)
+SINGULAR_REASON = "the run passes a singular pose there and not beside it: its number is no neighbour of the others"
 POLE_MARGIN = 0.5  # of an interval: distance outside of it that a predicted pole may have
 
 
@@ -86,17 +88,20 @@ class CoursePeak(NamedTuple):
     size: float
 
 
-class SpentError(Exception):
+class SampleLimitError(Exception):
     """The allowed number of samples is used up."""
 
 
 class MeasureCourse:
-    """The samples of g over an interval; takes more samples.
+    """The samples of g over an interval; it samples more places on request.
 
-    jumps: neighbours between which it jumps; these divide it like variants that cannot be solved
-    steep: neighbours between which it crosses, nearer together than places are distinguished
-    given_up: neighbours between which a place was sampled already
-    certain: groups of places where no more samples are needed, and the distrust at which that was found
+    jumps: pairs of neighbours between which g jumps; the course is interrupted there, as at variants that fail
+    steep_pairs: pairs of neighbours between which g crosses the value, closer together than min_distance
+    sampled_pairs: pairs of neighbours between which a place was sampled already
+    certain_surroundings: groups of places that need no more samples, each with the distrust for which that was decided
+    typical_magnitude: median magnitude of the measure over the scan
+    min_distance: smallest distance of places that are told apart
+    distrust: factor on the uncertainty of predictions; grows when one was wrong by more than its uncertainty
     """
 
     def __init__(
@@ -114,16 +119,16 @@ class MeasureCourse:
         value: the measure minus g
         """
         self.value = value
-        self.given_up: set[tuple[float, float]] = set()
+        self.searched_pairs: set[tuple[float, float]] = set()
         self.usual = math.inf  # magnitude of the measure over the scan
         self.certain: set[tuple[float, ...]] = set()
-        self._ask, self._most = evaluate, max_samples
+        self._evaluate, self._max_samples = evaluate, max_samples
         self.low, self.high = low, high
         self.finest = max(1e-10 * (high - low), 4.0 * EPS * max(abs(low), abs(high)))
         self.samples: list[Sample] = []
         self.jumps: set[tuple[float, float]] = set()
         self.steep: set[tuple[float, float]] = set()
-        self.distrust = DISTRUST
+        self.distrust = FIRST_DISTRUST
         self.scanned = make_uneven_places(low, high, count)
         self.spacing = max(b - a for a, b in pairwise(self.scanned))
 
@@ -140,9 +145,9 @@ class MeasureCourse:
         index = bisect_left(self.samples, x, key=lambda sample: sample.x)
         if index < len(self.samples) and self.samples[index].x == x:
             return self.samples[index]
-        if len(self.samples) >= self._most:
-            raise SpentError
-        new_sample = self._ask(x)
+        if len(self.samples) >= self._max_samples:
+            raise SampleLimitError
+        new_sample = self._evaluate(x)
         insort(self.samples, new_sample, key=lambda sample: sample.x)
         return new_sample
 
@@ -207,7 +212,9 @@ class MeasureCourse:
         return CoursePeak(place, abs(m[1]) / math.sqrt(minimum) if minimum > 0.0 else math.inf)
 
     def _find_pole(self, i: int) -> float | None:
-        """Find where 1/measure passes 0 between neighbours of different signs, if one side predicts that."""
+        """Find where 1/measure passes 0 between two neighbours of different signs; None if neither side's rise predicts
+        a pole.
+        """
         one, other = self.samples[i], self.samples[i + 1]
         width = other.x - one.x
         a, b = 1.0 / self._measure_at(i), 1.0 / self._measure_at(i + 1)
@@ -215,10 +222,10 @@ class MeasureCourse:
         for k, far in ((i, i - 1), (i + 1, i + 2)):
             if not 0 <= far < len(self.samples) or self.is_interrupted(min(k, far)):
                 continue
-            own, outer = self._measure_at(k), self._measure_at(far)
-            if own * outer > 0.0 and abs(outer) < abs(own):
-                fall = 1.0 / abs(outer) - 1.0 / abs(own)
-                distance = abs(self.samples[k].x - self.samples[far].x) / abs(own) / fall
+            magnitude, outer_magnitude = self._measure_at(k), self._measure_at(far)
+            if magnitude * outer_magnitude > 0.0 and abs(outer_magnitude) < abs(magnitude):
+                fall = 1.0 / abs(outer_magnitude) - 1.0 / abs(magnitude)
+                distance = abs(self.samples[k].x - self.samples[far].x) / abs(magnitude) / fall
                 is_predicted = is_predicted or distance <= (1.0 + POLE_MARGIN) * width
         if not is_predicted:
             return None
@@ -236,7 +243,9 @@ class MeasureCourse:
                 continue
             adjacent = [k for k in (places[0] - 1, places[-1] + 1) if 0 <= k < len(self.samples)]
             width = self.samples[places[-1]].x - self.samples[places[0]].x
-            is_isolated = width <= ISOLATED * self.spacing and any(self.samples[k].gap is not None for k in adjacent)
+            is_isolated = width <= MAX_ISOLATED_WIDTH * self.spacing and any(
+                self.samples[k].gap is not None for k in adjacent
+            )
             for k in places:
                 self.samples[k] = withhold(self.samples[k]) if is_isolated else restore(self.samples[k])
 
@@ -316,7 +325,7 @@ def withhold(sample: Sample) -> Sample:
     """Return a sample without its gap, because that belongs only to a singular pose."""
     if sample.gap is None:
         return sample
-    return sample._replace(gap=None, withheld_gap=sample.gap, why=("singular-pose", SINGULAR))
+    return sample._replace(gap=None, withheld_gap=sample.gap, why=("singular-pose", SINGULAR_REASON))
 
 
 def restore(sample: Sample) -> Sample:

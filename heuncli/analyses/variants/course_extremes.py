@@ -20,15 +20,16 @@ INWARD = 0.1  # of an interval: a sample nearer to its end would add little
 def refine_extreme(
     course: MeasureCourse, direction: int, *, share: float = EXTREME_TOLERANCE, max_steps: int = MAX_STEPS
 ) -> float:
-    """Sample where the least (direction -1) or the greatest (1) of the course may be, until no more gain is expected.
+    """Sample where the least (direction -1) or the greatest (1) value of the course may be exceeded, until little can
+    be gained.
 
-    share: of the range, the gain that is not worth a variant
+    share: of the range of the course; a smaller gain is not worth a variant
     max_steps: limit of the samples
 
     Returns the gain that remains possible. Raises SpentError.
     """
     gain = 0.0
-    for _ in range(max_steps + 1):
+    for step in range(max_steps + 1):
         best = find_extreme(course, direction)
         if best is None:
             return 0.0
@@ -37,7 +38,7 @@ def refine_extreme(
         )
         if gain <= max(best.error, share * course.gap_range):
             break
-        if _ < max_steps:
+        if step < max_steps:
             course.sample_and_learn(place)
     return gain
 

@@ -73,8 +73,10 @@ def find_joint_law(laws: Sequence[RandomVariable]) -> str:
     return joint_laws.pop() if joint_laws else ""
 
 
-def warn_unbalanced(laws: Sequence[RandomVariable], samples: int) -> str:
-    """Warn that a Sobol sequence is cut off within a power of two; else empty."""
+def make_imbalance_warning(laws: Sequence[RandomVariable], samples: int) -> str:
+    """Return a warning if the number of samples is no power of two, where a Sobol sequence is not balanced; empty
+    otherwise.
+    """
     if find_joint_law(laws) != "sobol" or samples & (samples - 1) == 0:
         return ""
     low = 1 << (samples.bit_length() - 1)

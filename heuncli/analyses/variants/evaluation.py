@@ -22,7 +22,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.measure_uncertainty import find_measure_error
 
-EXTREMES = ("max", "min", "abs")
+EXTREME_REDUCERS = ("max", "min", "abs")
 SAMPLE_PLACES = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which its values are checked
 EVENT_BLOCKS = (IMPULSES, EVENTS)  # their number differs from run to run
 CASE = "case"  # the name by which an axis varies the load case
@@ -139,7 +139,7 @@ class VariantEvaluator:
             return make_failed_result(error)
 
     def measure(self, values: Mapping[str, str]) -> VariantResult:
-        """Evaluate the measures of a variant.
+        """Evaluate the measures of a variant; unlike `answer`, which turns errors into a result, it raises them.
 
         Raises what `solve` does; for a measure that is no number of this scene NotOneNumber, SpecError [unknown-path].
         """
@@ -182,7 +182,7 @@ def measure_study(request: MeasureRequest, study: Study) -> MeasureValue:
         return MeasureValue(None, word="beyond")
     if math.isnan(peak.value):
         return MeasureValue(None, time=peak.time, word="unknown" if peak.time in study.unknown else "open")
-    if request.how in EXTREMES and is_near_left_out(peak, study):
+    if request.how in EXTREME_REDUCERS and is_near_left_out(peak, study):
         return MeasureValue(None, time=peak.time, word="unknown")
     return MeasureValue(peak.value, find_measure_error(request, peak, study), peak.time)
 

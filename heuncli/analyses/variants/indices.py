@@ -33,7 +33,7 @@ MIN_COUNT = 8  # of samples for indices
 MIN_BOUNDED = 64  # of samples whose indices have intervals
 EXTRA_CONFIDENCE = 0.03  # added to the share p at that many samples; it falls with the root of their number
 MAX_UNITS = 512
-DRAWINGS = 999
+RESAMPLES = 999
 ROUNDING = 1e-12  # of the variance: deviations below are rounding
 
 
@@ -75,7 +75,7 @@ def compute_sobol_indices(rows: Array, repetitions: Places | None = None) -> tup
 def _draw_weights(count: int) -> Array:
     """Draw how often each of `count` units is drawn, (DRAWINGS, count): the same numbers for the same count."""
     generator = np.random.Generator(np.random.PCG64(count))
-    found: Array = generator.multinomial(count, np.full(count, 1.0 / count), size=DRAWINGS).astype(np.float64)
+    found: Array = generator.multinomial(count, np.full(count, 1.0 / count), size=RESAMPLES).astype(np.float64)
     return found
 
 

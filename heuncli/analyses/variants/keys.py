@@ -37,7 +37,7 @@ from heuncli.version import VERSION
 IGNORED_BLOCKS = frozenset({"title", "expect", "cases"})
 VERBATIM = frozenset({"heun", "tables"})  # blocks whose texts and kinds of numbers are not normalized
 NO_NAMES = Scope()
-NOWHERE = SourceLocation("", 1, 1)
+NO_LOCATION = SourceLocation("", 1, 1)
 MAX_CACHED = 10_000  # texts whose canonical form is cached
 
 
@@ -100,7 +100,7 @@ class VariantKeys:
             if len(self.texts) >= MAX_CACHED:
                 self.texts.clear()
             self.texts[text] = parse_value(text)
-        return Setting(name, self.texts[text], NOWHERE, NOWHERE)
+        return Setting(name, self.texts[text], NO_LOCATION, NO_LOCATION)
 
     def digest_block(self, block: str, value: Any) -> bytes:
         """Return the digest of a block."""

@@ -8,7 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from heuncli.analyses.variants.axes import HINT, AxisError, ParameterAxis, RandomVariable, format_quantity, parse_figure
+from heuncli.analyses.variants.axes import (
+    HINT,
+    AxisError,
+    ParameterAxis,
+    RandomVariable,
+    format_quantity,
+    parse_number_with_unit,
+)
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
@@ -31,11 +38,12 @@ class Draws(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """Variants by their numbers, from 0 on: every combination of the axes, or (together) the values at equal places of
-    all axes.
+    """The variants of a sweep, by number from 0. The first axis changes slowest.
 
-    The first axis changes slowest; draws come after all axes and change fastest. columns: of a table, each row of which
-    is combined with all combinations of the axes; these change slowest of all.
+    axes: every combination of their values is a variant
+    together: whether the k-th values of all axes make the k-th variant instead
+    draws: random samples, which change fastest
+    columns: of a table; each of its rows is combined with all of the above, and they change slowest
     """
 
     axes: tuple[ParameterAxis, ...]
@@ -113,7 +121,7 @@ def make_axes_plan(
 
 def parse_numbers(texts: Sequence[str]) -> Mapping[str, float]:
     """Return the figures of values by their texts, if all are numbers of one unit; otherwise empty."""
-    figures = {text: parse_figure(text) for text in texts}
+    figures = {text: parse_number_with_unit(text) for text in texts}
     if any(figure is None for figure in figures.values()):
         return {}
     known_figures = {text: figure for text, figure in figures.items() if figure is not None}

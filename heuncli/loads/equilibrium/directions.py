@@ -30,8 +30,8 @@ SCALED_NORM = 0.25
 class SpectralDecomposition:
     """X (f, f) and its inverse, and the eigenvalues (f,), those of the block B (m, m) last.
 
-    lost: number of directions of the block that coincide, so that its eigenvalues are known only to the root of that
-    order more
+    defect: number of directions of the block that coincide with others; the error of its eigenvalues is a root of the
+    error of B, of the order defect + 1
     """
 
     eigenvalues: Array

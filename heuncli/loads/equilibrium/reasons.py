@@ -12,8 +12,8 @@ from heuncli.multibody.mechanism.model import ThreadLoad, load_path
 from heuncli.results.results import Array
 
 CODE = "no-rest-pose"
-MOST_NAMES = 3
-HOLDS = "hold it by a joint, a spring or a stop, or leave it out"
+MAX_NAMES = 3
+HOLD_HINT = "hold it by a joint, a spring or a stop, or leave it out"
 
 
 def no_rest_problem(message: str, hint: str) -> Problem:
@@ -39,10 +39,10 @@ def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Ar
         else:
             sentences[f"{name} slides on and on"] = None
     clauses = list(sentences)
-    more = f" and {len(clauses) - MOST_NAMES} more" if len(clauses) > MOST_NAMES else ""
+    more = f" and {len(clauses) - MAX_NAMES} more" if len(clauses) > MAX_NAMES else ""
     has_thread_friction = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
-    hint = f"{HOLDS}; a self-locking thread creeps, and holds nothing at rest" if has_thread_friction else HOLDS
-    return no_rest_problem(f"{', '.join(clauses[:MOST_NAMES])}{more}: nothing holds it", hint)
+    hint = f"{HOLD_HINT}; a self-locking thread creeps, and holds nothing at rest" if has_thread_friction else HOLD_HINT
+    return no_rest_problem(f"{', '.join(clauses[:MAX_NAMES])}{more}: nothing holds it", hint)
 
 
 def find_free_shifts(coordinates: Coordinates, number: int) -> Array:
@@ -99,6 +99,6 @@ def no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
     what = "value" if not np.isfinite(change).all() else "slope"
     layout = coordinates.layout
     loads = [load_path(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
-    which = f" ({', '.join(loads[:MOST_NAMES])})" if loads else ""
+    which = f" ({', '.join(loads[:MAX_NAMES])})" if loads else ""
     message = f"the search came to where a load{which} has no {what}: a root, a logarithm, points that coincide"
     return no_rest_problem(message, "start nearer to the pose, or give the load a value on both sides")

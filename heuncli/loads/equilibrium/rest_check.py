@@ -42,7 +42,7 @@ def require_at_rest(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) 
     change = coordinates.max_magnitude(
         np.abs(coordinates.accelerations(perturbed) - pose.accelerations).max(axis=0, initial=0.0)
     )
-    allowed = tolerances.SET_GOING / tolerances.SUM_ROUNDING * terms
+    allowed = tolerances.STARTS_MOVING / tolerances.SUM_ROUNDING * terms
     allowed = allowed + tolerances.PUSHED_BY_ROUNDING * change / coordinates.weights
     if not (np.isfinite(pose.accelerations).all() and np.isfinite(allowed).all()):
         raise SolveError(no_value_problem(coordinates, np.stack([pose.accelerations, allowed])))

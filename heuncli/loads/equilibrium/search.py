@@ -55,8 +55,9 @@ CONTACT_SAMPLES = (0.25, 0.5, 0.75, 1.0)  # fractions of a step at which contact
 class RestPose:
     """A rest pose, with the linear law about it, and the cost of the search.
 
+    slopes: the linear law
     doubt: how far the path may have deviated [rad, or relative to the size]
-    turn: where on the path that began to grow
+    slowest: the slowest point of the path before the deviation began to grow
     """
 
     pose: Pose

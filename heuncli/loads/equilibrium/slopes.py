@@ -33,10 +33,11 @@ PERTURBED_POSES = 4  # poses moved by rounding; it is unlikely that all of them 
 class RestLaw:
     """The linear law at a pose: T (n, f), T+ (f, n), A (f, f) and its decomposition, c and its noise (f,).
 
-    known (f,): rounding errors of the eigenvalues
-    summed (f,): rounding of the sums in c alone, a part of its noise
-    bent (f,): deviation of a pose moved by rounding from the law: rounding, except for loads that jump
-    rough (f,): effect of the rounding of a pose in the law
+    equations: the linearised equations it was made from
+    eigenvalue_errors (f,): rounding errors of the eigenvalues
+    sum_rounding (f,): rounding of the sums in c alone, a part of its noise
+    nonlinearity (f,): deviation from the law at poses moved by rounding; larger than rounding only for loads that jump
+    pose_rounding (f,): effect of the rounding of a pose in the law
     """
 
     law: LinearisedEquations
@@ -136,31 +137,33 @@ def make_rest_law(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) ->
     )
 
 
-def separate_indifferent(law: RestLaw, indifference: Indifference) -> RestLaw:
+def separate_indifferent(rest_law: RestLaw, indifference: Indifference) -> RestLaw:
     """Return the same law decomposed into the given indifferent directions and those of all that is held."""
     right_null, left_null = (
-        law.T_inverse @ indifference.free_motions,
-        law.T_inverse @ indifference.T @ indifference.elimination.left_null,
+        rest_law.T_inverse @ indifference.free_motions,
+        rest_law.T_inverse @ indifference.T @ indifference.elimination.left_null,
     )
-    decomposition = decompose_with_null_space(law.A, law.T.T @ law.law.mass @ law.T, right_null, left_null)
+    decomposition = decompose_with_null_space(
+        rest_law.A, rest_law.T.T @ rest_law.law.mass @ rest_law.T, right_null, left_null
+    )
     if decomposition is None:
-        return law
-    basis_change = np.abs(decomposition.inverse @ law.V)
-    noise, summed, bent, rough = (
-        basis_change @ x for x in (law.noise, law.sum_rounding, law.nonlinearity, law.pose_rounding)
+        return rest_law
+    basis_change = np.abs(decomposition.inverse @ rest_law.V)
+    noise, sum_rounding, nonlinearity, pose_rounding = (
+        basis_change @ x for x in (rest_law.noise, rest_law.sum_rounding, rest_law.nonlinearity, rest_law.pose_rounding)
     )
     eigenvalue_errors = np.where(decomposition.eigenvalues == 0.0, 1.0, 0.0)
-    eigenvalue_errors[is_massless(law.T @ decomposition.X, indifference.T)] = np.inf
-    c = decomposition.inverse @ (law.V @ law.c)
+    eigenvalue_errors[is_massless(rest_law.T @ decomposition.X, indifference.T)] = np.inf
+    c = decomposition.inverse @ (rest_law.V @ rest_law.c)
     return replace(
-        law,
+        rest_law,
         directions=decomposition,
         c=c,
         noise=noise,
         eigenvalue_errors=eigenvalue_errors,
-        sum_rounding=summed,
-        nonlinearity=bent,
-        pose_rounding=rough,
+        sum_rounding=sum_rounding,
+        nonlinearity=nonlinearity,
+        pose_rounding=pose_rounding,
     )
 
 
@@ -180,11 +183,11 @@ def find_eigenvalue_errors(decomposition: SpectralDecomposition, terms: Array, f
     terms (f, f): magnitudes of the terms of A
     fastest_spin: the fastest angular velocity
 
-    |y' dA x| of directions y, x; where k directions coincide with another one, dA to the power 1 / (k + 1), times |A|
-    to the rest (Elsner).
+    For a single eigenvalue with left direction y and right direction x the error is |y' dA x|. Where k directions
+    coincide with another one, it is |dA| to the power 1 / (k + 1), times |A| to the power k / (k + 1) (Elsner).
     """
     errors = tolerances.INDIFFERENT * ((np.abs(decomposition.inverse) @ terms) * np.abs(decomposition.X).T).sum(axis=1)
-    # centrifugal terms cancel before they are seen
+    # centrifugal terms cancel inside the sums, so `terms` does not contain them
     errors = (
         np.maximum(errors, tolerances.EPS * terms.max(initial=0.0))
         + tolerances.INDIFFERENT * fastest_spin * fastest_spin

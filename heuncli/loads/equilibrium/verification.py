@@ -160,5 +160,5 @@ def is_same_pose(rest_pose: RestPose, stiff_part: Array, indifferent_part: Array
     # poses that differ along indifferent directions differ in the others by their curvature at most
     return (
         size(stiff_part) <= max(tolerances.REST_SAME, soft_size, indifferent_size)
-        and indifferent_size <= tolerances.REST_BESIDE
+        and indifferent_size <= tolerances.REST_SEARCHES_DIFFER
     )

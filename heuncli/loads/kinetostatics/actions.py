@@ -26,8 +26,8 @@ from heuncli.multibody.mechanism.model import (
     PairLoad,
     PointLoad,
     RopeLoad,
-    Spread,
     ThreadLoad,
+    TriangularDistribution,
 )
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows
@@ -52,7 +52,7 @@ class ActionEnd:
 class DistributedForce:
     """A part of a distributed load: its force (n_t, 3), world, and its distribution along the body."""
 
-    spread: Spread
+    spread: TriangularDistribution
     force: Array
 
 

@@ -32,12 +32,14 @@ NO_SPINS: Mapping[int, Array] = MappingProxyType({})
 
 @record
 class BodyStates:
-    """States of all bodies in world axes, in the order of the spec.
+    """States of all bodies in world axes, in the order of the spec, SI.
 
+    R (n_t, n, 3, 3): attitudes, body to world; all other fields of bodies are (n_t, n, 3)
     x, v, a: of the origin
-    centre: of the centre of mass R (n_t, n, 3, 3); all others (n_t, n, 3), SI
-    ways (n_t, n_w, 3): r' of the paths at their joints' points; where a path crosses itself, the pose alone does not
-    tell the branch
+    omega, alpha: angular velocity and acceleration
+    centre, v_centre, a_centre: of the centre of mass
+    ways (n_t, n_w, 3): derivative r' of each joint's path by its coordinate, at the joint's point; stored because the
+    pose alone does not say which branch of a path that crosses itself it is on
     """
 
     R: Array

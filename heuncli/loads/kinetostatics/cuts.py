@@ -47,10 +47,10 @@ class Cuts:
     centroids (k, 3): of the cross-sections, None without shapes
     moment_reference: where moments are taken: "at", "centroid", or (body, point)
     line: whether the reduction line (`sections.reduction_line`) is reported, too
-    warnings: sentences on what the planes meet
     properties, strength [Pa]: for stresses, None where not given (for kind `auto` those of the form)
+    warnings: sentences on what the planes meet
     form: the shapes that are cut
-    is_impulse: the cuts are for an impulse, in which there are no stresses and no motion yet
+    is_impulse: whether the cuts are for an impulse, which has no stresses and no kinetic energy
 
     Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
@@ -90,8 +90,10 @@ class Cuts:
         side = np.broadcast_to(self.side, self.points.shape[:-1])
         return CutForm(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
 
-    def at_attachments(self, attachments: Sequence[object]) -> Cuts:
-        """Return these cuts; their positions do not depend on what acts on the body (those of a Stretch may)."""
+    def place_for_loads(self, attached_loads: Sequence[object]) -> Cuts:
+        """Return the cuts to evaluate under these loads: here the same; of a Stretch those at its nodes, which move
+        with a load.
+        """
         return self
 
     @property

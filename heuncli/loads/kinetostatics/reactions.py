@@ -151,7 +151,7 @@ class JointLoads:
             zeros = np.zeros_like(wrenches)
             return (zeros, wrenches) if self.stops else (wrenches, zeros)
         force, moment = np.moveaxis(wrenches[:, :3], 2, 0), np.moveaxis(wrenches[:, 3:], 2, 0)
-        carried = np.concatenate(constrained_part(self.joint, states, force, moment), axis=2)
+        carried = np.concatenate(remove_free_components(self.joint, states, force, moment), axis=2)
         constraint = np.moveaxis(carried, 0, 2)
         return constraint, wrenches - constraint
 
@@ -181,13 +181,17 @@ class KernelResults(Protocol):
 
 
 def find_joint_loads(
-    layout: Layout, results: KernelResults, states: BodyStates, only: Collection[str] | None = None
+    layout: Layout, results: KernelResults, states: BodyStates, names: Collection[str] | None = None
 ) -> list[JointLoads]:
-    """Find the reactions of all joints, in the order of the spec; only: those with the given names."""
+    """Find the reactions of all joints, or of those with the given names, in the order of the spec.
+
+    Of a joint in the tree it is the kernel's load on the child body; if that is the joint's `from` body, it is negated
+    and its moment moved to the `to` point; of a cut joint the sum of its closure rows, each times its multiplier.
+    """
     tree_links = {h.joint: (i, h) for i, h in enumerate(layout.spanning.links) if h.joint >= 0}
     driven_freedoms = {freedom.joint: n for n, freedom in enumerate(layout.freedoms) if freedom.q < 0}
     forces, moments = results.bodies["joint_force"], results.bodies["joint_moment"]
-    joints = [(k, joint) for k, joint in enumerate(layout.mechanism.joints) if only is None or joint.name in only]
+    joints = [(k, joint) for k, joint in enumerate(layout.mechanism.joints) if names is None or joint.name in names]
     points = JointPoints([joint for _, joint in joints], states)
     loads: list[JointLoads] = []
     for k, joint in joints:
@@ -214,7 +218,7 @@ def find_joint_loads(
             if kind.keeps_distance and own_rows:
                 push = results.rows["multiplier"][..., own_rows[0]]
                 drive, tension = (push if joint.drive is not None else None), -push
-        force, moment = constrained_part(joint, states, force, moment)
+        force, moment = remove_free_components(joint, states, force, moment)
         if layout.mechanism.planar:
             force, moment = project_to_plane(force, moment)
         stops = find_stop_loads(layout, k, results.rows)
@@ -273,13 +277,14 @@ def path_direction(joint: Joint, states: BodyStates) -> Array:
 def constraint_map(joint: Joint, states: BodyStates) -> Array:
     """Return the map of a wrench in the joint to the part that its constraint carries, (n_t, 6, 6)."""
     wrenches = np.broadcast_to(np.eye(6)[:, None, :], (6, len(states.x), 6))
-    force, moment = constrained_part(joint, states, wrenches[..., :3], wrenches[..., 3:])
+    force, moment = remove_free_components(joint, states, wrenches[..., :3], wrenches[..., 3:])
     return np.moveaxis(np.concatenate([force, moment], axis=2), 0, 2)
 
 
-def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tuple[Array, Array]:
-    """Return force and moment without their components in the joint's free directions (drives are reported
-    separately).
+def remove_free_components(joint: Joint, states: BodyStates, force: Array, moment: Array) -> tuple[Array, Array]:
+    """Return force and moment of the constraint alone: without components along the joint's free directions.
+
+    A drive acts along these; it is reported separately.
     """
     kind = JOINTS[joint.kind]
     if kind.is_ball:

@@ -27,12 +27,12 @@ from heuncli.scene.shapes.rotations import cross_rows
 
 
 @record
-class Attachment:
-    """Force and couple ON a body, body axes, (n_t, 3); by causes: (n_c, n_t, 3).
+class AttachedLoad:
+    """A force and couple ON a body at one place, body axes, (n_t, 3); by causes: (n_c, n_t, 3).
 
     point: where they act (3,), or (n_t, 3) if it moves over the body
-    line_end: end of the line from `point` along which the force is distributed, decreasing linearly to zero; None
-    otherwise
+    line_end: end of the line from `point` along which the force is distributed, decreasing linearly to zero; None for a
+    concentrated force
     """
 
     point: Array
@@ -40,21 +40,21 @@ class Attachment:
     moment: Array
     line_end: Array | None = None
 
-    def share_on_pieces(self, cuts: Cuts) -> tuple[Array, Array]:
-        """Return the share of it that acts on the pieces, (k,), and that share times its place, (k, 3).
+    def fraction_on_pieces(self, cuts: Cuts) -> tuple[Array, Array]:
+        """Return the fraction of it that acts on each piece, (k,), and that fraction times its place, (k, 3).
 
         (n_t, k) and (n_t, k, 3) where the point or the cuts move over the body.
         """
         if self.line_end is None:
-            fraction = is_on_piece(cuts, self.point)
+            fraction = mark_points_on_pieces(cuts, self.point)
             return fraction, fraction[..., None] * self.point[..., None, :]
-        return line_share_on_piece(cuts, self.point, self.line_end)
+        return line_fraction_on_pieces(cuts, self.point, self.line_end)
 
 
-def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[Attachment]:
+def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[AttachedLoad]:
     """Return the loads of the actions on a body, each at its point of application."""
     R = states.R[:, body]
-    result: list[Attachment] = []
+    result: list[AttachedLoad] = []
     for action in actions:
         for end, force, moment in action.iter_ends():
             if end.body != body:
@@ -62,17 +62,17 @@ def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -
             for distributed_force in action.spread:
                 F = to_body_axes(R, distributed_force.force)
                 result.append(
-                    Attachment(distributed_force.spread.start, F, np.zeros_like(F), distributed_force.spread.end)
+                    AttachedLoad(distributed_force.spread.start, F, np.zeros_like(F), distributed_force.spread.end)
                 )
             if action.spread:
                 continue
             F, M = to_body_axes(R, np.array([force, moment]))
             if end.point is None:
-                result.append(Attachment(to_body_axes(R, end.position - states.x[:, body]), F, M))
+                result.append(AttachedLoad(to_body_axes(R, end.position - states.x[:, body]), F, M))
                 continue
             if end.is_offset:
                 M = M + cross_rows(to_body_axes(R, end.position - states.x[:, body]) - end.point, F)
-            result.append(Attachment(end.point, F, M))
+            result.append(AttachedLoad(end.point, F, M))
     return result
 
 
@@ -94,16 +94,18 @@ def allocate(*shape: int) -> Array:
     return np.empty(max(size, HUGE_PAGE_DOUBLES) if size > HUGE_PAGE_DOUBLES // 8 else size)[:size].reshape(shape)
 
 
-def is_on_piece(cuts: Cuts, point: Array) -> Array:
-    """Return 1 where a point lies on the piece of a cut, else 0: (k,), or (n_t, k) for a point that moves over the
+def mark_points_on_pieces(cuts: Cuts, point: Array) -> Array:
+    """Return 1.0 where a point lies on the piece of a cut, else 0.0: (k,), or (n_t, k) for a point that moves over the
     body.
+
+    A point in the plane lies on the piece if the cut is just before it.
     """
     height = point[..., None, :] @ cuts.n - cuts.points @ cuts.n
     mask: Array = np.where(np.abs(height) <= cuts.plane_tolerance, (cuts.side > 0.0), height > 0.0).astype(float)
     return mask
 
 
-def line_share_on_piece(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
+def line_fraction_on_pieces(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
     """Return the share of a force distributed from start to end that acts on the pieces, and that share times its
     place.
 
@@ -166,7 +168,7 @@ def make_acceleration_matrix(w: Array, u: Array, a: Array) -> Array:
     return A
 
 
-def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment]) -> tuple[Array, Array]:
+def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[AttachedLoad]) -> tuple[Array, Array]:
     """Return s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
 
     Inertia and the loads at fixed points are one product of instants and cuts for each component, (n_t, 4 + m) (4 + m,
@@ -177,7 +179,7 @@ def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment])
         return find_moving_piece_loads(cuts, A, attached_loads)
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
     fixed_loads = [a for a in attached_loads if a.point.ndim == 1]
-    shares = [a.share_on_pieces(cuts) for a in fixed_loads]
+    shares = [a.fraction_on_pieces(cuts) for a in fixed_loads]
     mask = np.array([part for part, _ in shares]).reshape(-1, len(cuts.points))
     first = np.array([moment for _, moment in shares]).reshape(-1, len(cuts.points), 3)
     B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed_loads)], axis=-1) for i in range(3)]
@@ -195,7 +197,7 @@ def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment])
         np.matmul(left, np.concatenate(right), out=moment[i])
     for a in attached_loads:
         if a.point.ndim == 2:
-            piece_mask = is_on_piece(cuts, a.point)
+            piece_mask = mark_points_on_pieces(cuts, a.point)
             for i in range(3):
                 j, k = (i + 1) % 3, (i + 2) % 3
                 lever_j, lever_k = a.point[:, j, None] - p[j], a.point[:, k, None] - p[k]
@@ -206,7 +208,7 @@ def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment])
     return force, moment
 
 
-def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attachment]) -> tuple[Array, Array]:
+def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[AttachedLoad]) -> tuple[Array, Array]:
     """Return the piece loads of cuts that move along the body: pieces (n_t, k, 4, 4), points (n_t, k, 3)."""
     p = cuts.points.transpose(2, 0, 1)
     inertia = -np.einsum("i...tj,tkjl->il...tk", A, cuts.pieces)
@@ -214,7 +216,7 @@ def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attac
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
     moment -= cross_components(p, force)
     for a in attached_loads:
-        fraction, first = a.share_on_pieces(cuts)
+        fraction, first = a.fraction_on_pieces(cuts)
         F, M = (np.moveaxis(x, -1, 0)[..., None] for x in (a.force, a.moment))
         force += F * fraction
         moment += cross_components(np.moveaxis(first, -1, 0) - p * fraction, F)
@@ -335,7 +337,7 @@ MOMENTS = frozenset({"moment", "T", "M1", "M2", "T0", "M10", "M20"})
 ABOUT_CENTROID = ("T0", "M10", "M20")
 
 
-def static_components(cuts: Cuts, states: BodyStates, attached_loads: Sequence[Attachment]) -> Block:
+def static_components(cuts: Cuts, states: BodyStates, attached_loads: Sequence[AttachedLoad]) -> Block:
     """Return section loads of the attached loads alone, without weight and inertia: (n_t, k), (n_t, k, 3)."""
     return make_cut_places(cuts, states).components(
         *find_piece_loads(cuts, np.zeros((3, len(states.x), 4)), attached_loads)
@@ -346,20 +348,20 @@ def section_block(
     cuts: Cuts,
     states: BodyStates,
     gravity: Array,
-    attached_loads: Sequence[Attachment],
-    is_open: Mapping[str, Mask],
+    attached_loads: Sequence[AttachedLoad],
+    indeterminate_masks: Mapping[str, Mask],
     planar: bool = False,
 ) -> Block:
-    """Return the block of one section: a single cut without its axis of cuts, a run with `s` and `side`.
+    """Make the block of one section: of a single cut without an axis of cuts, of a run with `s` and `side`.
 
-    is_open: masks of the indeterminate values of `CutPlaces.components`, which become nan
+    indeterminate_masks: by names of `CutPlaces.components`; their values become nan
     """
     cut_places = make_cut_places(cuts, states)
     force, moment = find_piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), attached_loads)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
     components = {
-        name: np.where(is_open[name], np.nan, value) if name in is_open else value
+        name: np.where(indeterminate_masks[name], np.nan, value) if name in indeterminate_masks else value
         for name, value in cut_places.components(force, moment).items()
     }
     about_centroid = {name[:-1]: components.pop(name) for name in ABOUT_CENTROID if name in components}

@@ -25,7 +25,7 @@ from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
 from heuncli.results.results import Array, CutPosition, Indices, Mask
 
 if TYPE_CHECKING:
-    from heuncli.loads.kinetostatics.sections import Attachment
+    from heuncli.loads.kinetostatics.sections import AttachedLoad
 
 DEGREE = 8
 NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
@@ -100,7 +100,7 @@ class Stretch:
         """Return the height along n, from the body's origin."""
         return np.asarray(float(self.cuts.points[0] @ self.cuts.n) + s)
 
-    def at_attachments(self, attachments: Sequence[Attachment]) -> Cuts:
+    def at_attachments(self, attachments: Sequence[AttachedLoad]) -> Cuts:
         """Return the cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
         moving = [a.point @ self.cuts.n for a in attachments if a.point.ndim == 2]
         if not moving:

@@ -26,13 +26,16 @@ if TYPE_CHECKING:
 
 
 class RedundancyCount(NamedTuple):
-    """Number of redundant conditions, near the start (a singular position does not count), and exactly at it.
+    """The numbers of redundant conditions and of rows of a scene.
 
-    dependent: the same near the start, including in a planar scene those across the plane, which are not counted
-    active_rows: number of rows that take part at the start
-    remaining: number left where joints give way
+    generic: redundant conditions near the start, where a singular position does not count
+    at_start: the same exactly at the start
+    dependent: dependent rows near the start; in a planar scene also those across the plane, which `generic` leaves out
+    active_rows: rows that take part at the start
+    stress: the self-stresses near the start; None without closed chains
+    remaining: redundant conditions left once joints have given way
     giving: sentences on what these joints do
-    here: the self-stresses at the start
+    start_stress: the self-stresses at the start, to be reused
     """
 
     generic: int

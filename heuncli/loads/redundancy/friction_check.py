@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.base.errors import SolveError
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
-from heuncli.loads.kinetostatics.reactions import constrained_part
+from heuncli.loads.kinetostatics.reactions import remove_free_components
 from heuncli.loads.redundancy.self_stress import SelfStress, find_self_stress
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import JointLoad, ThreadLoad
@@ -50,7 +50,7 @@ def is_pressure_indeterminate(
         row = layout.rows.index(len(mechanism.joints) + load.coupling)
         return np.asarray(stress.has_share(stress.multipliers[:, [row]]).any(axis=1))
     shares = np.moveaxis(stress.shares[load.joint], 2, 0)
-    force, moment = constrained_part(mechanism.joints[load.joint], states, shares[..., :3], shares[..., 3:])
+    force, moment = remove_free_components(mechanism.joints[load.joint], states, shares[..., :3], shares[..., 3:])
     result = stress.has_share(np.moveaxis(force, 0, 2)).any(axis=-1)
     if load.presses == "ends":
         result = result | stress.has_share(np.moveaxis(moment, 0, 2), stress.length).any(axis=-1)

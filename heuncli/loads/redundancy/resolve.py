@@ -29,7 +29,7 @@ from heuncli.loads.redundancy.indeterminate_components import (
 )
 from heuncli.loads.redundancy.neighbours import find_neighbour_poses
 from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress, find_self_stress
-from heuncli.loads.redundancy.split import StressChoice, apply_choices, split_stress
+from heuncli.loads.redundancy.split import SelfStressChoice, apply_choices, split_self_stress
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import GROUND
@@ -40,19 +40,19 @@ SUM_INSTANTS = 9  # instants whose self-stresses give the determinate sums
 
 @record
 class Resolution:
-    """The joints' loads after a split, described in `words`, with its `choices`.
+    """The joints' loads after a split of what redundancy leaves indeterminate.
 
-    stress: the self-stresses it chose from
-    remaining_stress: those it left indeterminate
-
-    None where there are none of them.
+    words: sentences on the split
+    stress: the self-stresses that it chose from; None if there are none
+    remaining_stress: those that it left indeterminate; None if there are none
+    choices: the self-stresses that were added
     """
 
     joints: list[JointLoads]
     words: tuple[str, ...] = ()
     stress: SelfStress | None = None
     remaining_stress: SelfStress | None = None
-    choices: tuple[StressChoice, ...] = ()
+    choices: tuple[SelfStressChoice, ...] = ()
     added_multipliers: Array | None = None  # what the split adds to the multipliers of the closure rows, (n_t, rows)
     all_stress: SelfStress | None = None  # all self-stresses found, also where there are none
 
@@ -64,12 +64,16 @@ class Resolution:
 
     def describe_singular_poses(self, times: Array, redundant: Array) -> list[str]:
         """Return sentences on instants with more self-stresses than `redundant`, or nearly so."""
-        return describe_singular_poses(self.all_stress, times, redundant) if self.all_stress is not None else []
+        return (
+            describe_singular_poses(self.found_self_stress, times, redundant)
+            if self.found_self_stress is not None
+            else []
+        )
 
     @property
     def has_marks(self) -> bool:
         """Whether `mark` marks anything."""
-        return self.remaining_stress is not None or bool(self.words)
+        return self.remaining_self_stress is not None or bool(self.words)
 
     def mark(
         self, states: BodyStates, blocks: Block, couplings: Sequence[CouplingLoads], axes: str, keys: ElementKeys
@@ -80,9 +84,9 @@ class Resolution:
         keys: of loads on the ground (loads/kinetostatics/foundation.py)
         """
         reactions = blocks.get("joints")
-        if self.remaining_stress is not None:
-            mark_joints(self.remaining_stress, self.joints, states, blocks, axes, keys)
-            mark_couplings(self.remaining_stress, couplings, blocks, keys)
+        if self.remaining_self_stress is not None:
+            mark_joints(self.remaining_self_stress, self.joints, states, blocks, axes, keys)
+            mark_couplings(self.remaining_self_stress, couplings, blocks, keys)
         if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, states, reactions, axes)
 
@@ -91,8 +95,8 @@ class Resolution:
     ) -> list[DeterminateSum]:
         """Find the determinate sums of indeterminate components."""
         return (
-            find_sums(runner, evaluation, self.joints, couplings, self.remaining_stress)
-            if self.remaining_stress is not None
+            find_sums(runner, evaluation, self.joints, couplings, self.remaining_self_stress)
+            if self.remaining_self_stress is not None
             else []
         )
 
@@ -108,8 +112,8 @@ def resolve_redundancy(
     """Find the self-stresses and apply the requested split; cached_stress: those of poses that may be the same."""
     stress = find_self_stress(runner, evaluation, states, cached_stress)
     if stress is None or not stress.count.any():
-        return Resolution(joints, all_stress=stress)
-    chosen_split = split_stress(joints, states, stress, least_norm)
+        return Resolution(joints, found_self_stress=stress)
+    chosen_split = split_self_stress(joints, states, stress, least_norm)
     return Resolution(
         chosen_split.joints,
         chosen_split.words,
@@ -132,7 +136,7 @@ def describe_singular_poses(stress: SelfStress, times: Array, redundant: Array) 
         when = "this instant" if len(extra_instants) == 1 else "these instants"
         sentences.append(f"singular pose at t = {times_text} s: some components are indeterminate at {when} only")
     near_values = np.where(stress.count <= redundant, stress.largest_dropped, 0.0)
-    if near_values.max(initial=0.0) > tolerances.NOT_QUITE:
+    if near_values.max(initial=0.0) > tolerances.NEARLY_DEPENDENT:
         sentences.append(
             f"some conditions of the joints depend on others within {near_values.max():.1e} only: they are taken as "
             "redundant; exactly as drawn, they would hold one freedom more"

@@ -34,8 +34,8 @@ class SelfStress:
     largest (n_t, k): the largest share of each, in couplings too, moments divided by `length`
     count (n_t,): number of self-stresses
     length [m]: divisor of moments
-    least (n_t,): the smallest relative singular value that was kept
-    largest_dropped (n_t,): the largest one that was not, above what the gap may simulate
+    smallest_kept (n_t,): the smallest relative singular value that counts towards the rank
+    largest_dropped (n_t,): the largest one that does not, if it is more than the closure gap may simulate
     dependent (n_t,): number of rows that depend on others, in a planar scene including those across the plane
     """
 
@@ -60,7 +60,7 @@ class SelfStress:
 
 
 @record
-class StressPoses:
+class SelfStressPoses:
     """All data that the self-stresses of a scene depend on at some instants; loads and their effects are not among
     them.
 
@@ -87,14 +87,14 @@ class StressPoses:
 class CachedStress:
     """The self-stresses of some poses, computed before."""
 
-    poses: StressPoses
+    poses: SelfStressPoses
     stress: SelfStress
 
 
-def make_stress_poses(evaluation: Evaluation, states: BodyStates) -> StressPoses:
+def make_stress_poses(evaluation: Evaluation, states: BodyStates) -> SelfStressPoses:
     """Collect what self-stresses depend on at evaluated states."""
     rows = evaluation.rows
-    return StressPoses(
+    return SelfStressPoses(
         evaluation.times, evaluation.states, evaluation.gap, rows["closed"], rows["chosen"], rows["f"], rows["m"],
         states.R, states.x,
     )  # fmt: skip
@@ -115,18 +115,18 @@ def find_self_stress(
     return find_stress_of_poses(runner, poses)
 
 
-def find_stress_of_poses(runner: Evaluator, poses: StressPoses) -> SelfStress:
+def find_stress_of_poses(runner: Evaluator, poses: SelfStressPoses) -> SelfStress:
     """Find all self-stresses of poses."""
     layout, n_t = runner.layout, len(poses.times)
     J = jacobian(runner.workspace, layout, poses.times, poses.states)
     columns: list[Array] = []
     counts = np.zeros(n_t, dtype=int)
-    least, largest_dropped = np.ones(n_t), np.zeros(n_t)
+    smallest_kept, largest_dropped = np.ones(n_t), np.zeros(n_t)
     for island in layout.islands:
         is_active, is_independent = poses.is_active[:, island.rows], poses.is_independent[:, island.rows]
         null, values = _null_space(J.block(island.rows, island.freedoms), island, is_active, is_independent)
         counts += (is_active - is_independent).sum(axis=1).astype(int)
-        least = np.minimum(least, values.smallest_kept)
+        smallest_kept = np.minimum(smallest_kept, values.smallest_kept)
         simulated = tolerances.RANK_OF_GAP * poses.gap / island.length
         largest_dropped = np.maximum(
             largest_dropped, np.where(values.largest_dropped > simulated, values.largest_dropped, 0.0)
@@ -149,7 +149,7 @@ def find_stress_of_poses(runner: Evaluator, poses: StressPoses) -> SelfStress:
     largest = (np.abs(shares).max(axis=0, initial=0.0) / size).max(axis=1)
     largest = np.maximum(largest, np.abs(Z * coupling_scale[:, None]).max(axis=1, initial=0.0))
     largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
-    return SelfStress(shares, largest, counts, length, least, largest_dropped, dependent, Z, coupling_scale)
+    return SelfStress(shares, largest, counts, length, smallest_kept, largest_dropped, dependent, Z, coupling_scale)
 
 
 def find_coupling_scale(layout: Layout, length: float) -> Array:
@@ -185,7 +185,7 @@ def _null_space(J: Array, island: Island, is_active: Array, is_independent: Arra
         )
         is_independent = is_independent + is_open
     # rows that never touch a free direction (across a flat mechanism, say) are self-stresses by themselves
-    is_untouched = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.NOT_QUITE
+    is_untouched = np.abs(J).max(axis=(0, 2), initial=0.0) <= tolerances.NEARLY_DEPENDENT
     is_untouched &= ~is_independent.any(axis=0)
     Z_rest, values = _find_null_vectors(J[:, ~is_untouched], is_independent.sum(axis=1).astype(int))
     k, untouched_count = Z_rest.shape[2], int(is_untouched.sum())
@@ -215,21 +215,21 @@ def _find_null_vectors(J: Array, rank: Indices) -> tuple[Array, SingularValues]:
     return Z, values
 
 
-def _find_shares(runner: Evaluator, poses: StressPoses, Z: Array) -> Array:
+def _find_shares(runner: Evaluator, poses: SelfStressPoses, Z: Array) -> Array:
     """Return the shares of multipliers Z (n_t, rows, k) in every joint with its drive and its stops, (n_j, n_t, 6, k).
 
     A joint of the tree balances the bodies beyond it; a cut one carries its rows; stops carry theirs in addition.
     """
     layout = runner.layout
-    joints, hangs = layout.mechanism.joints, layout.spanning.links
+    joints, links = layout.mechanism.joints, layout.spanning.links
     n_t, _, k = Z.shape
     shares = np.zeros((len(joints), n_t, 6, k))
-    loads = multiplier_joint_loads(runner.workspace, poses.times, poses.states, Z.transpose(0, 2, 1), len(hangs))
-    joint_links = [i for i, h in enumerate(hangs) if h.joint >= 0]
-    tree_joints = [hangs[i].joint for i in joint_links]
+    loads = multiplier_joint_loads(runner.workspace, poses.times, poses.states, Z.transpose(0, 2, 1), len(links))
+    joint_links = [i for i, h in enumerate(links) if h.joint >= 0]
+    tree_joints = [links[i].joint for i in joint_links]
     moment_and_force = loads[:, :, joint_links].transpose(2, 0, 3, 1)
     shares[tree_joints, :, :3], shares[tree_joints, :, 3:] = moment_and_force[:, :, 3:], moment_and_force[:, :, :3]
-    for h in hangs:
+    for h in links:
         if h.reverse:  # the load is ON `from`, and about its point
             joint = joints[h.joint]
             arm = poses.point_position(joint.a, joint.p) - poses.point_position(joint.b, joint.q)

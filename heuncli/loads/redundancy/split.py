@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.reactions import JointLoads, StopLoad, constrained_part
+from heuncli.loads.kinetostatics.reactions import JointLoads, StopLoad, remove_free_components
 from heuncli.loads.redundancy.self_stress import SelfStress
 from heuncli.loads.redundancy.zero_stiffness import (
     find_vanishing,
@@ -27,7 +27,7 @@ from heuncli.results.results import Array
 
 
 @record
-class StressChoice:
+class SelfStressChoice:
     """The self-stresses added to joint loads; linear in these, so a load's shares by cause are split likewise.
 
     shares (n_j, n_t, 6, k): of the self-stresses in the joints
@@ -51,7 +51,7 @@ class StressChoice:
 
 
 def apply_choices(
-    choices: Sequence[StressChoice], joints: list[JointLoads], states: BodyStates
+    choices: Sequence[SelfStressChoice], joints: list[JointLoads], states: BodyStates
 ) -> tuple[list[JointLoads], Array | None]:
     """Return joint loads after some choices, and what these add to the multipliers of the closure rows; None:
     nothing.
@@ -64,24 +64,31 @@ def apply_choices(
 
 
 @record
-class StressSplit:
-    """Joint loads after some choices, the self-stresses left (None: none), and sentences on the choices.
+class SelfStressSplit:
+    """Joint loads after some choices.
 
-    initial_stress: the self-stresses that were there to choose from, once joints had given way
+    added_multipliers (n_t, rows): what the choices add to the multipliers of the closure rows
+    initial_stress: the self-stresses before any choice, without those that yielding joints remove
+    remaining_stress: those left; None if there are none
+    words: sentences on the choices
     """
 
     joints: list[JointLoads]
     added_multipliers: Array | None  # what they add to the multipliers of the closure rows, (n_t, rows)
     initial_stress: SelfStress | None
     remaining_stress: SelfStress | None
-    choices: tuple[StressChoice, ...]
+    choices: tuple[SelfStressChoice, ...]
     words: tuple[str, ...]
 
 
-def split_stress(joints: list[JointLoads], states: BodyStates, stress: SelfStress, least_norm: bool) -> StressSplit:
-    """Let joints give way, apply their stiffness where it is given, then the least norm if requested."""
+def split_self_stress(
+    joints: list[JointLoads], states: BodyStates, stress: SelfStress, least_norm: bool
+) -> SelfStressSplit:
+    """Split what is indeterminate: remove loads from yielding joints, then by stiffness where it is given, then by
+    least norm if requested.
+    """
     words: list[str] = []
-    choices: list[StressChoice] = []
+    choices: list[SelfStressChoice] = []
     remaining: SelfStress | None = stress
     exchanged: SelfStress | None = None  # what yielding joints exchange among each other
     if any(has_zero_stiffness(j.joint) for j in joints):
@@ -103,7 +110,7 @@ def split_stress(joints: list[JointLoads], states: BodyStates, stress: SelfStres
         choices.append(choice)
         words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
     joints, added_multipliers = apply_choices(choices, joints, states)
-    return StressSplit(joints, added_multipliers, initial, remaining, tuple(choices), tuple(words))
+    return SelfStressSplit(joints, added_multipliers, initial, remaining, tuple(choices), tuple(words))
 
 
 def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
@@ -122,7 +129,7 @@ def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
     return strains
 
 
-def minimise_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[StressChoice, SelfStress | None]:
+def minimise_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[SelfStressChoice, SelfStress | None]:
     """Find the self-stresses that minimise the sum of squares of the mapped wrenches; those without effect stay."""
     S = np.concatenate([np.einsum("tij,tjk->tik", m, s) for m, s in zip(maps, stress.shares, strict=True)], axis=1)
     size = np.where(stress.largest > 0.0, stress.largest, 1.0)
@@ -131,7 +138,7 @@ def minimise_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[StressCh
     inverse = np.where(is_strained, 1.0 / np.where(is_strained, sigma, 1.0), 0.0)
     responses = -(V.transpose(0, 2, 1) * inverse[:, None, :]) @ U.transpose(0, 2, 1) / size[:, :, None]
     responses = np.concatenate([responses[:, :, 6 * n : 6 * n + 6] @ m for n, m in enumerate(maps)], axis=2)
-    choice = StressChoice(stress.shares, responses, stress.multipliers)
+    choice = SelfStressChoice(stress.shares, responses, stress.multipliers)
     # what strains nothing: the self-stresses' part outside the rows of V that strain something
     unstrained = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, is_strained.astype(float), V)
     return choice, select_part(stress, unstrained, stress.count - is_strained.sum(axis=1))
@@ -183,7 +190,7 @@ def _wrench(load: JointLoads) -> Array:
 def _add_wrench(load: JointLoads, states: BodyStates, added_wrench: Array) -> JointLoads:
     F, M = load.total
     F, M = F + added_wrench[..., :3], M + added_wrench[..., 3:]
-    force, moment = constrained_part(load.joint, states, F, M)
+    force, moment = remove_free_components(load.joint, states, F, M)
     stops = tuple(_add_to_stop(stop_load, added_wrench) for stop_load in load.stops)
     if stops and load.axis is None:  # a rod with limits carries load only at these
         force, moment = load.force, load.moment

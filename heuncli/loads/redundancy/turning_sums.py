@@ -37,8 +37,8 @@ def find_turning_sums(poses: ComponentShares, requested_shares: ComponentShares)
 
 
 def find_dependent_components(poses: ComponentShares) -> list[list[str]]:
-    """Return each component that depends on those before it in every pose, preceded by the independent ones it depends
-    on.
+    """Find the components that depend on earlier ones in every pose; return each after the independent ones that it
+    depends on.
 
     A component that is independent in one pose counts as independent: elsewhere its dependence is a coincidence.
     """
@@ -49,12 +49,12 @@ def find_dependent_components(poses: ComponentShares) -> list[list[str]]:
     rows = rows[:, :, rows.any(axis=(0, 1))]  # the self-stresses that reach some of them
     rows = rows / np.sqrt(np.sum(rows * rows, axis=2)).max(axis=0)[None, :, None]
     Q = np.zeros_like(rows)  # orthonormal in each pose, zero where a free row depends on others there
-    is_usual = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
+    is_generic = np.ones(len(rows), dtype=bool)  # poses in which all the free ones are independent
     free: list[int] = []
-    bound: list[int] = []
+    dependent: list[int] = []
     for i in range(len(names)):
         if len(free) == rows.shape[2]:  # they span all there is
-            bound += range(i, len(names))
+            dependent += range(i, len(names))
             break
         if i % BLOCK_ROWS == 0:
             before = len(free)
@@ -63,20 +63,20 @@ def find_dependent_components(poses: ComponentShares) -> list[list[str]]:
         size = np.sqrt(np.einsum("tik,tik->t", residual, residual))
         # where a component vanishes, as of a crank on an axis, that is rounding
         is_independent = size > tolerances.DEPENDENT_SHARES
-        if (is_usual & is_independent).any():
-            is_usual &= is_independent
+        if (is_generic & is_independent).any():
+            is_generic &= is_independent
             Q[:, len(free)] = residual[:, 0] * (is_independent / np.where(is_independent, size, 1.0))[:, None]
             free.append(i)
         else:
-            bound.append(i)
-    if not bound:
+            dependent.append(i)
+    if not dependent:
         return []
-    basis = Q[is_usual][:, : len(free)]
+    basis = Q[is_generic][:, : len(free)]
     c = np.linalg.solve(
-        basis @ rows[is_usual][:, free].transpose(0, 2, 1), basis @ rows[is_usual][:, bound].transpose(0, 2, 1)
+        basis @ rows[is_generic][:, free].transpose(0, 2, 1), basis @ rows[is_generic][:, dependent].transpose(0, 2, 1)
     )
     is_used = (np.abs(c) > tolerances.ABSENT_FACTOR * np.maximum(np.abs(c).max(axis=1, keepdims=True), 1.0)).any(axis=0)
-    return [[*(names[f] for f in np.array(free)[is_used[:, k]]), names[i]] for k, i in enumerate(bound)]
+    return [[*(names[f] for f in np.array(free)[is_used[:, k]]), names[i]] for k, i in enumerate(dependent)]
 
 
 def remove_projection(rows: Array, basis: Array) -> Array:
@@ -101,18 +101,18 @@ def find_factors(rows: Array) -> Array | None:
         R = np.pad(R, ((0, 0), (0, n - R.shape[1]), (0, 0)))
     diagonal = np.abs(np.diagonal(R, axis1=1, axis2=2))
     row_scale = np.maximum(np.abs(R).max(axis=(1, 2)), 1.0)  # of rows that vanish at an instant only rounding is left
-    is_usual = (diagonal[:, :-1] > tolerances.DEPENDENT_SHARES * row_scale[:, None]).all(axis=1)
-    if not is_usual.any() or (diagonal[is_usual, -1] > tolerances.DEPENDENT_SHARES * row_scale[is_usual]).any():
+    is_generic = (diagonal[:, :-1] > tolerances.DEPENDENT_SHARES * row_scale[:, None]).all(axis=1)
+    if not is_generic.any() or (diagonal[is_generic, -1] > tolerances.DEPENDENT_SHARES * row_scale[is_generic]).any():
         return None
     c = np.ones((len(rows), n))
-    c[is_usual, :-1] = solve_triangular(R[is_usual, :-1, :-1], -R[is_usual, :-1, -1], rows.shape[2])
-    for t in np.flatnonzero(~is_usual):
+    c[is_generic, :-1] = solve_triangular(R[is_generic, :-1, :-1], -R[is_generic, :-1, -1], rows.shape[2])
+    for t in np.flatnonzero(~is_generic):
         U, sigma, _ = np.linalg.svd(R[t].T)
         N = U[:, sigma <= tolerances.DEPENDENT_SHARES * row_scale[t]]
         if not N.shape[1]:
             return None
-        usual_instants = np.flatnonzero(is_usual)
-        nearest_factors = c[usual_instants[np.argmin(np.abs(usual_instants - t))]]
+        generic_instants = np.flatnonzero(is_generic)
+        nearest_factors = c[generic_instants[np.argmin(np.abs(generic_instants - t))]]
         c[t] = N @ (N.T @ nearest_factors)
     c = c / size
     unit: Array = c / np.sqrt(np.sum(c * c, axis=1))[:, None]

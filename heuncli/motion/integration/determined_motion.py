@@ -19,9 +19,9 @@ ROLLS = "integrated, though nothing is free: what rolls has its speeds determine
 
 @record
 class DeterminedMotion:
-    """Whether every instant follows from the drives.
+    """The decision whether every instant follows from the drives.
 
-    notes: sentences that say so, or why not where a reader might expect it
+    notes: sentences that state this, or explain why not where a reader might expect it
     """
 
     is_so: bool
@@ -29,7 +29,7 @@ class DeterminedMotion:
 
     def add_to_block(self, block: Block) -> Block:
         """Add the notes to the block `model`, next to those on reductions that were made or not made."""
-        key = "reduced" if self.is_so else "not_reduced"
+        key = "reduced" if self.is_determined else "not_reduced"
         return block | ({key: [*block.get(key, ()), *self.notes]} if self.notes else {})
 
 

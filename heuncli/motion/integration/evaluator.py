@@ -48,7 +48,8 @@ class Evaluation:
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
     residual: Array  # of all rows, J Vdot + gamma at the accelerations found, relative to its terms
     allowed_residual: Array  # the residual that rows left out as dependent may have
-    holding: Array  # (n_t, contacts and latch places): 0 open, 1 closed, also if others close it (Layout.closed)
+    # (n_t, contacts and latch places): 0 open, 1 closed, also if others close it (Layout.closed_contacts)
+    holding: Array
     causes: Columns | None = None  # (n_t, n_c): one column per load row, then CAUSES; their sum is all
 
     @property
@@ -123,8 +124,8 @@ class Evaluator:
 
         branches (n_t, n): branches that the expressions hold; by default each state determines its own
         hold_rows: reuse the rows of the first state for the others as long as possible, so that pivots are comparable
-        causes: also compute one column per cause holding (n_t, contacts) or (contacts,): closed contacts are above 0;
-        by default as at the start
+        causes: whether to compute one column per cause, too holding (n_t, contacts) or (contacts,): closed contacts are
+        above 0; by default as at the start
         """
         layout, n_t = self.layout, len(times)
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0

@@ -59,9 +59,8 @@ class Elimination:
 
 @record
 class Indifference:
-    """What nothing holds.
+    """The displacements that no stiffness holds; `free_motions` is a basis of them.
 
-    free (n, g): a basis of displacements, with few of the tree's freedoms in each
     T (n, f): displacements that the closures admit, each with a coordinate of its own
     elimination: K on these displacements, eliminated
     reach: how far rounding moves the pose, along what is held softly [rad, or relative to the size]

@@ -97,10 +97,10 @@ def make_steady_equations(linear_state: LinearisedState) -> RollingEquations:
         y, turn = continue_motion(linear_state, dt)
         linear, _ = linearise_and_evaluate(linear_state.runner, linear_state.t + dt, y, linear_state.holding)
         later_directions = linear.pose_directions
-        if later_directions is None or np.abs(linear.state - y).max(initial=0.0) > tolerances.GOES_ON:
+        if later_directions is None or np.abs(linear.state - y).max(initial=0.0) > tolerances.STEADY_CHANGE:
             raise unsteady_error("its wheels do not go on as they do")
         later = make_rolling_equations(linear_state.layout, linear, later_directions, turn @ T, turn @ V, turn @ S)
-        if np.abs(later.A - rolling.A).max(initial=0.0) > tolerances.GOES_ON * spectral_norm(rolling.A):
+        if np.abs(later.A - rolling.A).max(initial=0.0) > tolerances.STEADY_CHANGE * spectral_norm(rolling.A):
             raise unsteady_error("loads change as it goes on")
     return rolling
 

@@ -140,17 +140,17 @@ def continues_unchanged(linear_state: LinearisedState) -> bool:
         dt = phase / find_fastest_rate(linear_state)
         y, turn = continue_motion(linear_state, dt)
         linear, evaluation = linearise_and_evaluate(linear_state.runner, linear_state.t + dt, y, linear_state.holding)
-        if np.abs(linear.state - y).max(initial=0.0) > tolerances.GOES_ON:
+        if np.abs(linear.state - y).max(initial=0.0) > tolerances.STEADY_CHANGE:
             return False  # it did not close
         T = turn @ system.tangent
         later = equations_on_basis(linear_state.layout, linear, evaluation, T, turn @ system.drift)
         push = later.remaining_acceleration - system.remaining_acceleration
-        is_same_push = np.abs(push).max(initial=0.0) <= tolerances.GOES_ON * system.load_scale
+        is_same_push = np.abs(push).max(initial=0.0) <= tolerances.STEADY_CHANGE * system.load_scale
         if not is_same_push and not rest_displacement(linear_state, push) <= tolerances.OFF_BALANCE:
             return False
         later_parts = (later.A11, later.A21, later.A22, T.T @ linear.mass @ T)
         for (a, scale), b in zip(parts, later_parts, strict=True):
-            if np.abs(a - b).max(initial=0.0) > tolerances.GOES_ON * scale:
+            if np.abs(a - b).max(initial=0.0) > tolerances.STEADY_CHANGE * scale:
                 return False
     return True
 

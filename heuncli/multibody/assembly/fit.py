@@ -257,13 +257,15 @@ class IslandFit:
         last, factor, length = np.zeros(0), 1.0, math.inf
         for _ in range(POLISH):
             z = least_motion(self.reduce_rows(self.rows()), self._displacements(start), shift_weight)[0]
-            if _norm(z) < tolerances.POLISHED or (_norm(z) < tolerances.SUMS_BLIND and _norm(z) > 0.5 * length):
+            if _norm(z) < tolerances.POLISHED or (
+                _norm(z) < tolerances.SUM_OF_SQUARES_LIMIT and _norm(z) > 0.5 * length
+            ):
                 return
             if last.size:  # the curvature of the closed poses makes steps too long or too short, as the last one shows
                 factor = min(max(factor / max(1.0 - float(z @ last) / float(last @ last), 0.2), 1e-3), 4.0)
             before, sums = self.save_poses(), self._sums(start, shift_weight)
             last, length = z, _norm(z)
-            blind = length < tolerances.SUMS_BLIND
+            blind = length < tolerances.SUM_OF_SQUARES_LIMIT
             for _ in range(10):
                 self.apply(_limit_step(factor * z))
                 if self.close(limit) and (blind or _is_lower(self._sums(start, shift_weight), sums)):

@@ -94,7 +94,7 @@ class PoseAssembly:
             raise self._fit_error(fit.joints)
         else:
             fit.restore_poses(before)
-            self.islands.widen(island.closures[0])  # what it hangs on may have to turn, too
+            self.islands.widen(island.closures[0])  # the bodies that carry it may have to turn, too
 
     def _fit_from_walk(self, fit: IslandFit) -> tuple[bool, int]:
         """Return whether an island closes from the poses that the walk has found, and which kick it took."""

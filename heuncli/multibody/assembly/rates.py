@@ -194,7 +194,7 @@ class RateAssembly:
         elif self.islands.moving_body(island.parent) == GROUND:
             raise self._fit_error(joints)
         else:
-            self.islands.widen(island.closures[0])  # what it hangs on may have to move, too
+            self.islands.widen(island.closures[0])  # the bodies that carry it may have to move, too
 
     def _fit_error(self, joints: Sequence[int]) -> Exception:
         return rates_do_not_fit(self.mechanism, *self._residuals(), self.size, joints)

@@ -27,9 +27,11 @@ MemberFreedoms = Sequence[tuple[bool, bool]]  # whether each member may turn, an
 
 @record
 class MemberStep:
-    """How a member follows its parent: z = own + follow z_parent + N y_here. parent: its index, -1 for none.
+    """The motion of a member by that of its parent: z = offset + transfer z_parent + N y_here.
 
-    rest, lack: rows (r, 6) on z_parent that it cannot follow because it is held, and their right side
+    parent: index of the parent, -1 for none
+    blocked_rows (r, 6): rows on z_parent that the member cannot follow because it is held
+    blocked_sides (r,): their right side
     """
 
     own: Array

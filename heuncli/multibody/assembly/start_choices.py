@@ -148,4 +148,8 @@ def _default_origin(near_value: Array | None) -> str:
 
 
 def _format_vector(a: Array, size: float) -> str:
-    return "(" + ", ".join(f"{v:.6g}" for v in np.where(np.abs(a) < tolerances.DUST * size, 0.0, a).tolist()) + ")"
+    return (
+        "("
+        + ", ".join(f"{v:.6g}" for v in np.where(np.abs(a) < tolerances.PRINTED_COMPONENT * size, 0.0, a).tolist())
+        + ")"
+    )

@@ -94,7 +94,7 @@ class Freedoms:
 
     def apply_step(self, state: Array, step: Array) -> Array:
         """Return the state with its coordinates moved by a step (n,); turns of a ball about the world's axes."""
-        full_step = np.zeros(self.layout.answer_count)
+        full_step = np.zeros(self.layout.velocity_count)
         full_step[self.answers] = step
         new = np.array(state)
         for body in self.layout.bodies[self.layout.bodies["ball"] == 1]:

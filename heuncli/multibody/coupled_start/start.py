@@ -19,7 +19,7 @@ from heuncli.multibody.coupled_start.start_sentences import format_coupling_chan
 from heuncli.multibody.mechanism.model import Assembly
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
-from heuncli.multibody.tree.starts import JointStart, joint_start
+from heuncli.multibody.tree.starts import JointStart, compute_joint_start
 from heuncli.results.results import Array, Indices
 
 MAX_FREEDOMS = 2000  # freedoms that are fitted at once: their dense matrices must fit into memory, and be fast enough
@@ -123,7 +123,7 @@ def _joint_starts(scene: PreparedScene, state: Array, start: Assembly) -> tuple[
     mechanism, layout = scene.mechanism, scene.layout
     starts = []
     for k, joint in enumerate(mechanism.joints):
-        joint_start_values = joint_start(mechanism, start, joint)
+        joint_start_values = compute_joint_start(mechanism, start, joint)
         angle = _tree_angle(layout, k, state)
         starts.append(
             joint_start_values

@@ -28,8 +28,8 @@ from heuncli.multibody.mechanism.model import (
     NamedPoint,
     PairLoad,
     PointLoad,
-    Spread,
     Stop,
+    TriangularDistribution,
 )
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Array
@@ -210,7 +210,7 @@ def build_load_parts(
     if not isinstance(f, m.Distributed):
         return (build_load(name, f, index, joints),)
     start, end = np.array(f.from_), np.array(f.to)
-    spreads = (f.vector, Spread(start, end)), (f.to_vector, Spread(end, start))
+    spreads = (f.vector, TriangularDistribution(start, end)), (f.to_vector, TriangularDistribution(end, start))
     return tuple(
         PointLoad(name, "force", index[f.body], spread.center, vector, f.frame == "body", spread)
         for vector, spread in spreads

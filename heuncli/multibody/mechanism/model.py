@@ -37,12 +37,11 @@ else:  # such an alias would slow each of its records down by 3 us
 
 
 @record
-class Spread:
-    """A triangular distribution of a force along a line of its body: largest at `start`, falling linearly to zero at
-    `end`.
+class TriangularDistribution:
+    """A force distributed along a line of its body: largest at `start`, falling linearly to zero at `end`.
 
-    Both in the axes of the body that has the load; its resultant acts at a third of the length from the start. A force
-    per length q there makes a force q l/2.
+    Both points are in the axes of the body. With a force q per length at the start, the resultant is q l/2, at a third
+    of the length from the start.
     """
 
     start: Array
@@ -74,7 +73,7 @@ class PointLoad:
     point: Array | None
     vector: tuple[Expression, Expression, Expression]
     in_body: bool
-    spread: Spread | None = None
+    spread: TriangularDistribution | None = None
 
     @property
     def factor(self) -> float:
@@ -99,10 +98,11 @@ class PointLoad:
 
 @record
 class PairLoad:
-    """A spring or actuator along the line between two points; value [N], positive pushes the points apart; None for a
-    spring.
+    """A spring or actuator along the line between two points.
 
-    p, q: the points on the bodies a and b, their axes [m] stiffness [N/m], length: relaxed [m], damping [N s/m]
+    p, q: the points on the bodies a and b, body axes [m]
+    value: [N], positive pushes the points apart; None for a spring stiffness [N/m], length: without load [m], damping
+    [N s/m]
     """
 
     name: str

@@ -24,10 +24,12 @@ Relative = Callable[[int, Vector], Vector]  # a body's point from its joint poin
 
 
 def make_part_row(
-    part: CouplingPart, first: int, in_tree: TreeIndex, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+    part: CouplingPart, first_part: int, in_tree: TreeIndex, relative: Relative, freedoms: Mapping[tuple[int, str], int]
 ) -> ClosureRow:
-    """Make the kernel's row for a condition of two bodies; first: its row's first part; freedoms: of the joints'
-    coordinates.
+    """Make the kernel's row for a condition between two bodies.
+
+    first_part: index of the first part of the row that it belongs to
+    freedoms: index of the freedom of each joint coordinate
     """
     coordinates = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*coordinates, (0, 0.0), (0, 0.0)][:2]
@@ -47,7 +49,7 @@ def make_part_row(
         ratio=ratio,
         freedom_b=freedom_b,
         ratio_b=ratio_b,
-        part=first + part.strand,
+        part=first_part + part.strand,
     )
 
 

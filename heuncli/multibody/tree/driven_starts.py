@@ -5,7 +5,7 @@ from __future__ import annotations
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
 from heuncli.multibody.mechanism.model import Assembly, Joint, Mechanism
-from heuncli.multibody.tree.starts import joint_start, point_distance
+from heuncli.multibody.tree.starts import compute_joint_start, point_distance
 from heuncli.scene.expressions.discontinuities import find_first_not_positive
 from heuncli.scene.expressions.integrals import add_start_value
 
@@ -50,9 +50,10 @@ def _start_coordinate(mechanism: Mechanism, start: Assembly, joint: Joint) -> fl
     assert joint.drive is not None
     if joint.drive.quantity == "length":
         return joint.length if joint.length is not None else point_distance(start, joint)
-    start_values = joint_start(mechanism, start, joint)
+    start_values = compute_joint_start(mechanism, start, joint)
     held, found = (
         (joint.angle, start_values.angle) if joint.drive.quantity == "angle" else (joint.travel, start_values.travel)
     )
-    is_relative = joint.to_axis_given or joint.drive.zero_assembled  # what is held is told from where it stands, too
+    # a held value is measured from the assembled start, too
+    is_relative = joint.to_axis_given or joint.drive.zero_assembled
     return held if held is not None and not is_relative else found

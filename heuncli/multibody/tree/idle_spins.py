@@ -1,9 +1,9 @@
 """Find spins that no law determines: of thin rods and point masses that are held and loaded on their own axis only.
 
-Balls do not hold a spin, other joints do not hold one about an axis of theirs; but where they measure its angle it must
-be determined. Such a spin is harmless: accelerations and reactions do not depend on it (manual/theory.md, "Thin rods").
-For the motion the body gets an artificial inertia about that axis and no spin; a moment about it would have no solution
-and is searched for afterwards.
+A ball joint leaves the spin about such an axis free, and so does any joint that turns about it. If a joint measures
+that angle, however, the spin must be determined, and is not idle. An idle spin is harmless: accelerations and reactions
+do not depend on it (manual/theory.md, "Thin rods"). For the motion the body gets an artificial inertia about the axis
+and no spin. A moment about the axis would leave no solution; that is checked afterwards.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def find_idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
             if distance > tolerances.ON_AXIS * size or np.sum(np.square(null @ n)) < tolerances.ALONG_SQUARED:
                 continue
             null = n[None, :]
-        moment = max(largest, body.mass * max(reach, tolerances.LENT_REACH * size) ** 2)
+        moment = max(largest, body.mass * max(reach, tolerances.ARTIFICIAL_RADIUS * size) ** 2)
         spins.append(IdleSpin(i, null, moment * null.T @ null))
     return spins
 

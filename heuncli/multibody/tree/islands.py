@@ -22,7 +22,7 @@ from heuncli.results.results import Array
 def add_islands(layout: Layout) -> Layout:
     """Add the islands to the layout and to the kernel's tables, where they scale rows and freedoms."""
     islands_found = find_islands(layout)
-    measure = np.zeros(layout.answer_count)
+    measure = np.zeros(layout.velocity_count)
     rows = []
     for island in islands_found:
         measure[island.freedoms] = np.where(island.turns, 1.0 / island.length, 1.0)

@@ -64,22 +64,28 @@ class Contact:
 class Layout:
     """A scene laid out for the kernel, with the data needed to read its solutions.
 
-    place: body -> its index in the tree (the order of spanning.links)
+    place: index in the tree by body (the order of spanning.links)
     reference (n, 3): each body's joint point in its own axes, tree order
+    freedoms: the scalar freedoms of the tree; a ball's three rotations are not among them
     rows: joint of each closure row
     starts: coordinates of the joints at the start
+    counters: by cut joint, the place of its counted angle in the state
+    size: of the scene [m]
     y0: state at the start
+    energy_group: index of the group of components that is the drives' work (-1: none)
+    weights (n_state,): of the components of the state: 1 for angles and rotations, 1 / size for shifts, 0 for
+    components that do not control the step size
     tables: the kernel's structs by name (kernel/scene.py)
     indices: the indices that the closure rows point into
-    energy_group: index of the group of components that is the drives' work (-1: none)
-    measure (answers,): scale of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0 outside
-    islands
-    contacts: the rows that open and close
-    size: of the scene [m]
-    weights (n_state,): weights of the components of the state: 1 for angles and rotations, 1 / size for shifts, 0 for
-    components that do not control the step size
+    answer_count: number of generalised velocities of the tree: scalar freedoms, and three rotations for each ball
     column_count: numbers in the columns of all closure rows
-    flat: the kernel moves it in the plane (kernel/plane.py), and finds no loads across it; otherwise as any scene
+    pack: the programs of all expressions
+    work_at: index of the work in the state (-1: it is not computed)
+    islands: the groups of closure rows whose loops share bodies
+    contacts: the rows that open and close
+    measure (answer_count,): scale of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
+    outside
+    flat: whether the kernel moves it in the plane (kernel/plane.py), without loads across it
     """
 
     mechanism: Mechanism
@@ -99,7 +105,7 @@ class Layout:
     answer_count: int  # freedoms of the tree, a ball's three turns among them
     column_count: int
     pack: Pack
-    work_at: int  # where the work stands in the state; -1: it is not asked for
+    work_at: int  # index of the work in the state; -1: it is not integrated
     islands: tuple[Island, ...] = ()
     contacts: tuple[Contact, ...] = ()
     measure: Array = np.zeros(0)
@@ -117,7 +123,7 @@ class Layout:
 
     @cached_property
     def order(self) -> list[int]:
-        """The tree index of each body, bodies as in the spec."""
+        """The tree index of each body, in the order of the spec."""
         return [self.place[i] for i in range(len(self.mechanism.bodies))]
 
     @cached_property
@@ -172,7 +178,7 @@ class Layout:
 
 def rate_indices(layout: Layout) -> Array:
     """Return the state index of the rate of each freedom, by answers, three for each ball; -1: driven."""
-    indices = np.full(layout.answer_count, -1)
+    indices = np.full(layout.velocity_count, -1)
     for body in layout.bodies:
         if body["ball"]:
             indices[body["answer_at"] : body["answer_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)

@@ -30,20 +30,21 @@ def stop_coordinate(layout: Layout, start: Assembly, stop: Stop) -> float:
     joint = layout.mechanism.joints[stop.joint]
     if stop.quantity == "length":
         return point_distance(start, joint)
-    joint_start = layout.starts[stop.joint]
-    return joint_start.angle if stop.quantity == "angle" else joint_start.travel
+    start_values = layout.starts[stop.joint]
+    return start_values.angle if stop.quantity == "angle" else start_values.travel
 
 
-def rest_on_stops(mechanism: Mechanism, layout: Layout, start: Assembly) -> Mechanism | None:
-    """Set chosen rates to zero that would drive a body at a stop into it; None if there are none.
+def zero_inward_rates(mechanism: Mechanism, layout: Layout, start: Assembly) -> Mechanism | None:
+    """Set the rates to zero that were chosen, not given, and would drive a body at a stop into it; None if there are
+    none.
 
-    Rates that are given, or follow from given ones, cause an impact.
+    Rates that are given, or follow from given ones, cause an impact instead.
     """
     joints, has_changed = list(mechanism.joints), False
     for stop in mechanism.stops:
-        joint, joint_start = mechanism.joints[stop.joint], layout.starts[stop.joint]
+        joint, start_values = mechanism.joints[stop.joint], layout.starts[stop.joint]
         tolerance = tolerances.AT_LIMIT * (1.0 if stop.quantity == "angle" else layout.size)
-        rate, held = (joint_start.rate, joint.rate) if stop.quantity == "angle" else (joint_start.speed, joint.speed)
+        rate, held = (start_values.rate, joint.rate) if stop.quantity == "angle" else (start_values.speed, joint.speed)
         value = stop_coordinate(layout, start, stop)
         low = stop.low is not None and value <= stop.low + tolerance and rate < 0.0
         high = stop.high is not None and value >= stop.high - tolerance and rate > 0.0

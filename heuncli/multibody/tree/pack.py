@@ -48,8 +48,8 @@ from heuncli.multibody.tree.starts import (
     Z,
     bent_direction,
     body_state,
+    compute_joint_start,
     joint_direction,
-    joint_start,
     point_distance,
     to_direction,
 )
@@ -118,7 +118,7 @@ def build_frame(
     if tree is not None and tree.starts is not None:
         starts = list(tree.starts)
     else:
-        starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
+        starts = [compute_joint_start(mechanism, start, joint) for joint in mechanism.joints]
     return _LayoutBuilder(mechanism, start, spanning, starts, inertias, size, drives).build(work)
 
 
@@ -565,7 +565,7 @@ class _LayoutBuilder:
             weights=np.array(self.weights),
             tables=tables,
             indices=indices,
-            answer_count=self.answer_count,
+            velocity_count=self.answer_count,
             column_count=column_count,
             pack=Pack(),
             work_at=work_at,

@@ -67,10 +67,10 @@ def prepare(
     if fit is not None:
         scene = fit(scene)
     if mechanism.stops:
-        from heuncli.multibody.tree.limits import require_within_limits, rest_on_stops  # where something strikes
+        from heuncli.multibody.tree.limits import require_within_limits, zero_inward_rates  # where something strikes
 
         require_within_limits(scene.layout, scene.start)
-        resting = rest_on_stops(mechanism, scene.layout, scene.start)
+        resting = zero_inward_rates(mechanism, scene.layout, scene.start)
         if resting is not None:
             with suppress(SolveError):  # what is held makes it strike
                 at_rest = lay_out_scene(mechanism, assemble(resting, t0))
@@ -95,7 +95,7 @@ def lay_out_scene(
     """
     programs, used_names = make_programs(mechanism), find_used_names(mechanism)
     tree = None if spanning is None else PresetTree(spanning, starts)
-    arrangement_found = stages.run(make_arrangement, mechanism, start, used_names, programs.drives, size, tree)
+    arrangement_found = stages.run(lay_out_without_loads, mechanism, start, used_names, programs.drives, size, tree)
     start = replace(start, angular_velocity=arrangement_found.omega)
     return PreparedScene(
         mechanism,
@@ -106,9 +106,11 @@ def lay_out_scene(
 
 
 @record
-class Arrangement:
-    """The part of a laid-out scene that does not depend on the value of any load; omega (n, 3): angular velocities at
-    the start.
+class LayoutWithoutLoads:
+    """The part of a laid-out scene that does not depend on the value of any load.
+
+    idle_spins: the undetermined spins, with their artificial inertia
+    omega (n, 3): angular velocities at the start, without these spins
     """
 
     idle_spins: tuple[IdleSpin, ...]
@@ -116,15 +118,18 @@ class Arrangement:
     frame: LayoutFrame
 
 
-def make_arrangement(
+def lay_out_without_loads(
     mechanism: Mechanism,
     start: Assembly,
     used_names: frozenset[str],
     drives: tuple[Program, ...],
     size: float | None,
     tree: PresetTree | None,
-) -> Arrangement:
-    """Make undetermined spins, and the frame; used_names, drives: as in `build_frame`."""
+) -> LayoutWithoutLoads:
+    """Find the undetermined spins, remove them from the velocities, and build the frame.
+
+    used_names, drives: as in `build_frame`
+    """
     size = scene_size(mechanism, start) if size is None else size
     idle = tuple(find_idle_spins(mechanism, size))
     inertias = np.array([b.inertia for b in mechanism.bodies])
@@ -138,7 +143,9 @@ def make_arrangement(
     has_work = has_work or bool(mechanism.laws) or bool(mechanism.impulses or mechanism.stops)
     has_work = has_work or any(j.restitution is not None for j in mechanism.joints)
     has_work = has_work or any(row.restitution is not None for coupling in mechanism.couplings for row in coupling.rows)
-    return Arrangement(idle, omega, build_frame(mechanism, start, inertias, size, has_work, used_names, drives, tree))
+    return LayoutWithoutLoads(
+        idle, omega, build_frame(mechanism, start, inertias, size, has_work, used_names, drives, tree)
+    )
 
 
 def find_missing_inertia(scene: PreparedScene, stages: Stages = NO_CACHE) -> dict[int, Array]:

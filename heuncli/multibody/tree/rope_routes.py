@@ -18,7 +18,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import NO_VECTOR, Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
-from heuncli.multibody.tree.starts import joint_start
+from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.results.results import Array
 from heuncli.scene.file_format import couplings as spec
 
@@ -371,4 +371,4 @@ def route_length(points: Sequence[RopePoint], route: RopeRoute, first: int, last
 def wound_length(mechanism: Mechanism, start: Assembly, parts: Sequence[CouplingPart]) -> float:
     """Contribution of the sheaves' rotations at the start to a condition's length."""
     coordinates = [turn for part in parts for turn in part.coordinates]
-    return sum(x.ratio * joint_start(mechanism, start, mechanism.joints[x.joint]).angle for x in coordinates)
+    return sum(x.ratio * compute_joint_start(mechanism, start, mechanism.joints[x.joint]).angle for x in coordinates)

@@ -57,7 +57,7 @@ def point_distance(start: Assembly, joint: Joint) -> float:
     return math.sqrt(float(D @ D))
 
 
-def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
+def compute_joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
     """Compute a joint's coordinates in the assembled mechanism, and its reference attitude, at which its angle is
     zero.
     """
@@ -71,7 +71,7 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
         return JointStart(R, 0.0, 0.0, 0.0, 0.0)
     n = joint.axis
     if joint.path is not None:
-        return joint_start_on_path(joint, joint.path, start, R)
+        return compute_path_start(joint, joint.path, start, R)
     D = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
     rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
     v = vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, Rb @ joint.q + xb - xa)
@@ -84,11 +84,11 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     if joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled):
         reference = reference or 0.0
         return JointStart(rotation_matrix_about(n, -reference) @ R, reference, rate, travel, speed)
-    reference = reference if reference is not None else middle_of_limits(mechanism, joint)
+    reference = reference if reference is not None else find_reference_angle(mechanism, joint)
     return JointStart(np.eye(3), unwrap_angle(axial_angle(R, n), reference), rate, travel, speed)
 
 
-def joint_start_on_path(joint: Joint, path: Path, start: Assembly, R: Array) -> JointStart:
+def compute_path_start(joint: Joint, path: Path, start: Assembly, R: Array) -> JointStart:
     """Compute the travel of a point along its path: on the branch that is held or driven to, otherwise at the nearest
     place.
 
@@ -148,8 +148,9 @@ def first_angle(joint: Joint, R: Array) -> float:
     return math.atan2(float(n @ cross_rows(before, rotated_axis)), float(before @ rotated_axis))
 
 
-def middle_of_limits(mechanism: Mechanism, joint: Joint) -> float:
-    """The angle near which turns are counted if none is given: the middle between stops on both sides, else 0.
+def find_reference_angle(mechanism: Mechanism, joint: Joint) -> float:
+    """Return the angle near which full turns are counted if none is given: the middle between stops on both sides, else
+    0.
 
     One limit alone has no middle: a turn more or less would put any start within it.
     """

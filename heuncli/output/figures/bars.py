@@ -32,12 +32,12 @@ from heuncli.results.results import Array, Block, Mask, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
 from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import Setup
-from heuncli.study.quantities.digits import Certainty, find_certainty
+from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch, make_no_columns
-from heuncli.study.search.stretches import find_stretch, find_summits
+from heuncli.study.search.stretches import find_cut_extremes, find_stretch
 
 SECTIONS = frozenset({"sections"})
 N_PLACES, MIN_PLACES = 240, 8  # places along a bar, 3 pixels apart; minimum between two corners
@@ -184,9 +184,9 @@ class WholeBar:
         return self.study.spec.analysis.type == "impulse" and bool(self.study.results.impulses)
 
     @cached_property
-    def certain(self) -> Certainty:
+    def certain(self) -> StatedErrors:
         """The accuracy of its loads."""
-        return find_certainty(self.study.results, make_labels(self.study.spec), self.study.magnitudes)
+        return find_stated_errors(self.study.results, make_labels(self.study.spec), self.study.magnitudes)
 
     def find_unit(self, quantity: str) -> str:
         """Return the SI unit of a quantity."""
@@ -251,7 +251,7 @@ class WholeBar:
         for name in RESULTANTS:
             extremes_of_line = [_find_extreme(s, side * loads[name], side, time) for side in (-1.0, 1.0)]
             if np.isfinite(nodes[name]).all():
-                summits = find_summits(self.stretch, nodes["s"], nodes[name])
+                summits = find_cut_extremes(self.stretch, nodes["s"], nodes[name])
                 extremes_of_line = [Extreme(summit.value, summit.place.s, time) for summit in summits]
             lines[name] = BarLine(time, s, loads[name], *extremes_of_line)
         return lines

@@ -24,7 +24,7 @@ from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 CASE_SUFFIX = " (case "  # at the end of a title
 MIN_CURVE_INSTANTS = 400  # instants of a curve: nearly two a pixel
 VISIBLE_JUMP = 0.01  # share of the range: larger jumps are drawn as jumps
-MAX_SEARCH_INSTANTS = 4000  # of the instants of the search, as many as a figure can show
+MAX_SEARCH_INSTANTS = 4000  # largest number of the search's instants that a figure uses
 
 
 @record

@@ -11,7 +11,7 @@ from itertools import compress
 
 import numpy as np
 
-from heuncli.analyses.variants.axes import parse_figure
+from heuncli.analyses.variants.axes import parse_number_with_unit
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
@@ -144,7 +144,7 @@ def _find_rows(variable: SweepVariable, text: str) -> Mask:
     if variable.texts:
         row_mask = np.array([variable.texts[int(k)] == text for k in variable.values], dtype=bool)
     else:
-        figure = parse_figure(text)
+        figure = parse_number_with_unit(text)
         if figure is None or figure.unit not in ("", variable.unit):
             unit = f" in {variable.unit}" if variable.unit else ""
             raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {make_example(variable)}")

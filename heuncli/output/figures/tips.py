@@ -115,7 +115,7 @@ def find_largest(curve: TipCurve) -> LargestVector | None:
     times = curve.turning.times
     times = np.union1d(times, search_times[(search_times >= times[0]) & (search_times <= times[-1])])
     error = stated_error(study, study.find_numbers(curve.path).keys)
-    found = extremes.search_extremes(sample, times, errors=np.array([error]), even=np.array([True]), sides=(1.0,))
+    found = extremes.search_extremes(sample, times, errors=np.array([error]), is_squared=np.array([True]), sides=(1.0,))
     time = float(found.high_at[0])
     if not np.isfinite(found.high[0]):
         return None

@@ -118,7 +118,7 @@ def is_periodic(study: Study, whole_run: TurningRun, turns: int, vectors: Vector
     )
     size, differences = (np.nanmax(np.abs(values), axis=(0, 2), initial=0.0) for values in (last, last - before))
     # each by its own size
-    return bool((differences <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all())
+    return bool((differences <= np.maximum(tolerances.SAME_TURN_DRAWN * size, 2.0 * vectors.errors)).all())
 
 
 def select_last_turns(study: Study, whole_run: TurningRun, turns: int) -> TurningRun:

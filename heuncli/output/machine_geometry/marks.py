@@ -16,7 +16,7 @@ from heuncli.multibody.mechanism.model import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.rope_routes import body_pose
-from heuncli.multibody.tree.starts import joint_start
+from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, order_span_ends
 from heuncli.output.machine_geometry.wheels import find_contact_points
@@ -153,7 +153,7 @@ def make_mark(scene: PreparedScene, joint: Joint, stop: Stop[str], symbol: str, 
         r, slope, *_ = joint.path.evaluate_track(limit)
         return FixedMark(symbol, description, names[joint.a], joint.p + r, sign * slope, stop.name)
     (xa, Ra), (xb, Rb) = (body_pose(scene.start, i) for i in (joint.a, joint.b))
-    start_coordinates, n = joint_start(scene.mechanism, scene.start, joint), joint.axis
+    start_coordinates, n = compute_joint_start(scene.mechanism, scene.start, joint), joint.axis
     joint_offset = Ra.T @ (xb + Rb @ joint.q - xa)
     if stop.quantity == "travel":
         return FixedMark(

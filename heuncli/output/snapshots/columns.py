@@ -21,7 +21,7 @@ from heuncli.output.tables.table_blocks import POSITIONS
 from heuncli.output.tables.table_plans import AXIS, IMPULSES, MASS_EFFECT, PLANS, TablePlan
 from heuncli.results.results import Array, CutPosition, Results
 from heuncli.results.results_schema import MAGNITUDES, REPORT_OF, XYZ
-from heuncli.study.quantities.digits import Certainty, find_error_kind
+from heuncli.study.quantities.digits import StatedErrors, find_error_kind
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.series import Series, iter_series
 
@@ -63,7 +63,7 @@ class ResultView(NamedTuple):
 
     results: Results
     labels: Labels
-    certain: Certainty
+    certain: StatedErrors
 
     @property
     def unknown(self) -> frozenset[float]:

@@ -21,7 +21,7 @@ from heuncli.study.search.extremes import find_jump_sides
 
 INSTANTS = 16  # in each tenth of a run
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)  # golden ratio: instants that avoid resonance with periodic motions
-SHARES = np.sort(np.mod((np.arange(INSTANTS) + 0.5) * GOLDEN, 1.0))  # places within a tenth, (INSTANTS,)
+PLACES_IN_TENTH = np.sort(np.mod((np.arange(INSTANTS) + 0.5) * GOLDEN, 1.0))  # places within a tenth, (INSTANTS,)
 PIECE_INTERVALS = 4  # intervals of one quadrature rule: as many as the search makes in a step
 INNER, OUTER = (np.sqrt(3.0 / 7.0 + sign * 2.0 / 7.0 * np.sqrt(1.2)) for sign in (-1.0, 1.0))
 GAUSS = np.array([-OUTER, -INNER, INNER, OUTER])
@@ -86,7 +86,7 @@ def make_tenth_instants(tenth_ends: Array) -> Array:
 
     tenth_ends (11,): the ends of the tenths
     """
-    return np.asarray(tenth_ends[:-1, None] + np.diff(tenth_ends)[:, None] * SHARES)
+    return np.asarray(tenth_ends[:-1, None] + np.diff(tenth_ends)[:, None] * PLACES_IN_TENTH)
 
 
 def sum_tenths(values: Array, near_jump: Mask) -> CourseSums:
@@ -135,12 +135,14 @@ def split_into_pieces(times: Array) -> Pieces:
     return Pieces(times, first, last)
 
 
-def integrate_columns(pieces: Pieces, grid: Array, inner: Array, uncertain: Array) -> tuple[Array, Array, Array]:
+def integrate_columns(
+    pieces: Pieces, grid: Array, node_values: Array, jump_time_errors: Array
+) -> tuple[Array, Array, Array]:
     """Return mean, first moment and error of the integrals of columns over a run, (n_columns,) each.
 
-    grid (n_t, n_columns): at the instants of the pieces
-    inner (m, 4, n_columns): at their Gauss nodes
-    uncertain: the error of each jump's instant [s]
+    grid (n_t, n_columns): values at the instants of the pieces
+    node_values (m, 4, n_columns): values at the Gauss nodes of the pieces
+    jump_time_errors: the error of each jump's instant [s]
 
     The moment is the mean of the quantity times the place in the run, -1 to 1. The error contains that of the
     quadrature, estimated by the polynomials through the instants of the search, and that of the instants of jumps.
@@ -150,11 +152,11 @@ def integrate_columns(pieces: Pieces, grid: Array, inner: Array, uncertain: Arra
     span = float(times[-1] - times[0])
     share = (end - begin) / span
     place = (pieces.nodes - 0.5 * (times[0] + times[-1])) / (0.5 * span)
-    means = 0.5 * np.einsum("k,mkc->mc", WEIGHTS, inner)
-    moments = 0.5 * np.einsum("k,mk,mkc->mc", WEIGHTS, place, inner)
+    means = 0.5 * np.einsum("k,mkc->mc", WEIGHTS, node_values)
+    moments = 0.5 * np.einsum("k,mk,mkc->mc", WEIGHTS, place, node_values)
     check_means = _integrate_polynomials(pieces, grid)
     steps = np.abs(np.diff(grid, axis=0))[find_jump_sides(times)]
-    error = share @ np.abs(means - check_means) + uncertain @ steps / span
+    error = share @ np.abs(means - check_means) + jump_time_errors @ steps / span
     rounding = tolerances.SUM_ROUNDING * np.abs(grid).max(axis=0)
     return share @ means, share @ moments, error + rounding
 
@@ -212,16 +214,16 @@ def find_instant_spread(times: Array, heights: Array, highest: float, time: floa
     return float(max(time - first, last - time))
 
 
-def find_near_jumps(instants: Array, jumps: Array, uncertain: Array) -> Mask:
-    """Return the mask of instants so near to a jump that its side is not certain.
+def find_near_jumps(instants: Array, jumps: Array, jump_time_errors: Array) -> Mask:
+    """Mark the instants so near to a jump that it is not certain on which side of it they are.
 
-    uncertain: the error of each jump's instant [s]
+    jump_time_errors: the error of each jump's instant [s]
     """
     near = np.zeros(instants.shape, dtype=bool)
     if not len(jumps):
         return near
     order = np.argsort(jumps)
-    jump_times, jump_errors = jumps[order], uncertain[order]
+    jump_times, jump_errors = jumps[order], jump_time_errors[order]
     after = np.searchsorted(jump_times, instants)
     for k in (np.clip(after - 1, 0, len(jump_times) - 1), np.clip(after, 0, len(jump_times) - 1)):
         near |= np.abs(instants - jump_times[k]) <= jump_errors[k]

@@ -15,9 +15,9 @@ SECTIONS = frozenset({"sections"})
 
 def search_rows(page: Page, study: Study, reports: frozenset[str]) -> Extremes:
     """Search the extremes of the rows of the page, and of the section forces along its runs of cuts."""
-    run_columns = page.run_columns if page.has_runs else None
+    run_columns = page.make_run_columns if page.has_runs else None
     searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.magnitude_columns(), run_columns
+        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), run_columns
     )
     return study.search_extremes(searched, reports - {SHARES}, whole=True)
 

@@ -232,7 +232,11 @@ def _search_bounds(
         return np.where(is_magnitude[: len(own)], values * values, values)
 
     searched = ColumnSearch(
-        sample, [[i] for i in range(len(columns))], np.array(errors), is_magnitude, page.run_columns if runs else None
+        sample,
+        [[i] for i in range(len(columns))],
+        np.array(errors),
+        is_magnitude,
+        page.make_run_columns if runs else None,
     )
     is_searched = study.is_searched(len(errors))
     times = None if is_searched else study.results.time

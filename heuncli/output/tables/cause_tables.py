@@ -24,7 +24,7 @@ from heuncli.study.quantities.digits import (
     UNKNOWN,
     UNKNOWN_NOTE,
     ZERO_NOTE,
-    Certainty,
+    StatedErrors,
     format_unclaimed,
     write_numbers,
     write_times,
@@ -140,7 +140,7 @@ def make_instants_tables(
     numbers: Mapping[NumberKey, NumberWithShares],
     times: Array,
     horizon: float | None,
-    certain: Certainty,
+    certain: StatedErrors,
 ) -> list[TextTable]:
     """Make the table of all numbers of a block that have shares, at every instant. Empty list if there are none."""
     clock = [""] if len(times) == 1 else [f"{x} s" for x in write_times(times.tolist(), float(np.ptp(times)))]
@@ -172,7 +172,7 @@ def make_extremes_tables(
     numbers: Mapping[NumberKey, NumberWithShares],
     instants: Array,
     extremes: Extremes,
-    certain: Certainty,
+    certain: StatedErrors,
     span: float,
 ) -> list[TextTable]:
     """Make the table of the minimum and maximum of every number of a block, with the shares at their instants.
@@ -226,7 +226,7 @@ def make_heading(block: TableBlock) -> str:
     return block.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
 
 
-def make_share_table(heading: str, groups: LineGroups, certain: Certainty) -> TextTable:
+def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) -> TextTable:
     """Make the table of grouped rows with a column for each cause; rows and columns that are zero throughout are left
     out.
     """
@@ -307,7 +307,7 @@ def find_family_scales(lines: Iterable[ShareLine]) -> dict[tuple[str, str], floa
 
 
 def format_lines(
-    lines: Sequence[ShareLine], columns: Sequence[str], small_causes: Sequence[str], certain: Certainty
+    lines: Sequence[ShareLine], columns: Sequence[str], small_causes: Sequence[str], certain: StatedErrors
 ) -> list[list[str]]:
     """Format the numbers of each row: one for each column, their sum, and the total."""
     numbers: list[list[float | None]] = []
@@ -329,7 +329,7 @@ def format_lines(
     return texts
 
 
-def mark_unknown(value: float, text: str, line: ShareLine, certain: Certainty) -> str:
+def mark_unknown(value: float, text: str, line: ShareLine, certain: StatedErrors) -> str:
     """Replace the text of a number that is beyond the horizon or uncertain."""
     if line.is_beyond_horizon:
         return format_unclaimed(value, line.row.unit, certain, text)
@@ -353,7 +353,7 @@ def make_run_extremes_tables(
     results: Results,
     extremes: Extremes,
     places: Sequence[tuple[CutPosition, CutPosition]],
-    certain: Certainty,
+    certain: StatedErrors,
 ) -> list[TextTable]:
     """Make the table of the minimum and maximum of each section force along a run of cuts, with their shares.
 
@@ -373,7 +373,7 @@ def make_run_extremes_tables(
 
 
 def make_run_instants_tables(
-    run: CutRun, results: Results, horizon: float | None, certain: Certainty
+    run: CutRun, results: Results, horizon: float | None, certain: StatedErrors
 ) -> list[TextTable]:
     """Make the table of the minimum and maximum of each section force among the cuts at every instant, with their
     shares.
@@ -410,7 +410,7 @@ def make_run_line(
     return ShareLine(label, where, row, shares, load.size * float(section[quantity][index]))
 
 
-def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: Certainty) -> list[TextTable]:
+def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: StatedErrors) -> list[TextTable]:
     """Make the table of a run of cuts. Empty list if no row has shares."""
     heading = run.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
     return [make_share_table(heading, [("", lines)], certain)] if any(line.shares for line in lines) else []

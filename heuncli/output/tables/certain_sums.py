@@ -12,7 +12,7 @@ from heuncli.output.tables.table_blocks import format_component
 from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, DeterminateSum, Results
 from heuncli.results.results_schema import AXIAL_FORCES, SECTION_FORCES, XYZ
-from heuncli.study.quantities.digits import Certainty, format_unclaimed, largest_magnitude, write_numbers
+from heuncli.study.quantities.digits import StatedErrors, format_unclaimed, largest_magnitude, write_numbers
 from heuncli.study.quantities.table_units import DisplayUnit
 
 MAX_TERMS = 6  # tables show short sums of forces, JSON shows all
@@ -21,7 +21,7 @@ FORCES = frozenset({"force", *AXIAL_FORCES, *SECTION_FORCES})
 
 
 def make_sums_table(
-    results: Results, certain: Certainty, last_instant: Results | None = None, shown_unit: DisplayUnit = ("N", 1.0)
+    results: Results, certain: StatedErrors, last_instant: Results | None = None, shown_unit: DisplayUnit = ("N", 1.0)
 ) -> TextTable | None:
     """Make the table of sums that are determinate although their terms are not; None if there are none.
 
@@ -47,7 +47,7 @@ def make_sums_table(
 
 
 def _format_sum(
-    block: DeterminateSum, certain: Certainty, last_instant: DeterminateSum | None, shown_unit: DisplayUnit
+    block: DeterminateSum, certain: StatedErrors, last_instant: DeterminateSum | None, shown_unit: DisplayUnit
 ) -> str | None:
     """Format one sum with its value, or its first, last, smallest and largest value; None if it is too long or has
     moments.

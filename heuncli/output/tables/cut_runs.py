@@ -16,7 +16,7 @@ from heuncli.study.quantities.digits import (
     UNKNOWN,
     UNKNOWN_NOTE,
     ZERO_NOTE,
-    Certainty,
+    StatedErrors,
     Style,
     choose_style,
     format_unclaimed,
@@ -133,7 +133,7 @@ def make_extremes_tables(
     times: Array,
     extremes: Extremes,
     places: Sequence[tuple[CutPosition, CutPosition]],
-    certain: Certainty,
+    certain: StatedErrors,
     cuts: Extremes | None = None,
 ) -> list[TextTable]:
     """Make two tables: extremes of each quantity over the whole length and time, with their places; extremes at each
@@ -229,7 +229,11 @@ def _make_cuts_table(
 
 
 def make_extremes_table(
-    run: CutRun, times: Array, extremes: Extremes, places: Sequence[tuple[CutPosition, CutPosition]], certain: Certainty
+    run: CutRun,
+    times: Array,
+    extremes: Extremes,
+    places: Sequence[tuple[CutPosition, CutPosition]],
+    certain: StatedErrors,
 ) -> TextTable:
     """Make the table of the lowest and highest value of each quantity over the whole length and time, with place and
     instant.
@@ -265,7 +269,7 @@ def make_extremes_table(
 
 
 def make_instants_tables(
-    run: CutRun, times: Array, horizon: float | None, certain: Certainty, *, every_cut: bool = False
+    run: CutRun, times: Array, horizon: float | None, certain: StatedErrors, *, every_cut: bool = False
 ) -> list[TextTable]:
     """Make the table with the diagram at each instant."""
     styles = _choose_styles(run, certain)
@@ -312,7 +316,7 @@ def _make_diagram(
     shown_cuts: Indices,
     styles: dict[str, Style],
     notes: Sequence[str],
-    certain_beyond: Certainty | None = None,
+    certain_beyond: StatedErrors | None = None,
 ) -> TextTable:
     """Make the diagram at one instant, a row for each cut.
 
@@ -347,7 +351,7 @@ def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
     return TextTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
 
 
-def _choose_styles(run: CutRun, certain: Certainty, extremes: Extremes | None = None) -> dict[str, Style]:
+def _choose_styles(run: CutRun, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:
     """Choose the number style of each unit from all numbers of that unit that are shown of the run."""
     bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
     styles = {}

@@ -18,7 +18,7 @@ from heuncli.study.quantities.digits import (
     UNKNOWN,
     UNKNOWN_NOTE,
     ZERO_NOTE,
-    Certainty,
+    StatedErrors,
     format_unclaimed,
     write_times,
 )
@@ -82,7 +82,7 @@ def drop_components(block: TableBlock) -> TableBlock:
 
 
 def make_extremes_tables(
-    block: TableBlock, times: Array, extremes: Extremes, certain: Certainty, last_values: Array | None = None,
+    block: TableBlock, times: Array, extremes: Extremes, certain: StatedErrors, last_values: Array | None = None,
     doubtful: DoubtfulInstants = NO_DOUBT,
 ) -> list[TextTable]:  # fmt: skip
     """Make the tables of first, last, lowest and highest values with their instants; one row a group if there are many.
@@ -107,7 +107,7 @@ def make_extremes_tables(
 
 
 def _make_full_table(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, doubtful: DoubtfulInstants
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, doubtful: DoubtfulInstants
 ) -> TextTable:
     """Make the table with a row for each number, under a title for each group."""
     rows: list[tuple[str, ...] | str] = []
@@ -126,7 +126,7 @@ def _make_full_table(
 
 
 def _make_rows(
-    part: GroupExtremes, span: float, certain: Certainty, kind: str, doubtful: DoubtfulInstants
+    part: GroupExtremes, span: float, certain: StatedErrors, kind: str, doubtful: DoubtfulInstants
 ) -> tuple[list[tuple[str, ...] | str], set[str]]:
     """Make the rows of a group, and the set of notes they need. Numbers that are zero or open throughout get no row."""
     group, extremes = part.group, part.extremes
@@ -168,7 +168,7 @@ def _make_rows(
     return lines or [f"{INDENT}0 throughout"], notes
 
 
-def _format_extremes(part: GroupExtremes, certain: Certainty) -> list[list[str]]:
+def _format_extremes(part: GroupExtremes, certain: StatedErrors) -> list[list[str]]:
     """Format the first, last, lowest and highest value of each row."""
     rows, last_values = part.group.rows, part.last_values
     first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
@@ -180,7 +180,7 @@ def _format_extremes(part: GroupExtremes, certain: Certainty) -> list[list[str]]
 
 
 def _make_short_table(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, heading: str,
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, heading: str,
     doubtful: DoubtfulInstants,
 ) -> TextTable:  # fmt: skip
     """Make the table with a row for each group: of each number the value farthest from zero, and when. No vector

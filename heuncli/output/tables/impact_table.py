@@ -12,7 +12,7 @@ from heuncli.output.tables.table_blocks import NumberRow, RowGroup, TableBlock
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
-from heuncli.study.quantities.digits import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Certainty
+from heuncli.study.quantities.digits import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, StatedErrors
 
 LEADING_COLUMNS = 3  # name, label and unit
 NUMBER_HEADS = (*XYZ, "value")  # the value of a vector is its magnitude
@@ -20,7 +20,7 @@ EMPTY_CELLS = ("", "0")
 
 
 def make_impact_table(
-    heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: Certainty
+    heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: StatedErrors
 ) -> TextTable:
     """Combine the blocks of one impact in a single table, without rows and columns that are zero.
 
@@ -55,7 +55,7 @@ def _make_columns() -> tuple[TextColumn, ...]:
 
 
 def _iter_rows(
-    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
+    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: StatedErrors
 ) -> Iterator[tuple[str, ...]]:
     """Yield for each vector, and each other number: name, label, unit, components, value, and the group's note."""
     texts = {

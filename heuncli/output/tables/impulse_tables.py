@@ -24,7 +24,7 @@ from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indi
 from heuncli.results.results_schema import IMPULSE_BLOCKS, IMPULSE_UNITS, SHARES, find_quantity
 from heuncli.study.quantities.digits import (
     UNKNOWN,
-    Certainty,
+    StatedErrors,
     add_axis_errors,
     largest_magnitude,
     write_numbers,
@@ -49,7 +49,7 @@ class ImpactReport(NamedTuple):
 
     results: Results
     labels: Labels
-    certain: Certainty
+    certain: StatedErrors
     magnitudes: Magnitudes
     run_extremes: Sequence[Mapping[str, Extremes]] = ()
     details: bool = True
@@ -169,7 +169,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
 
 
 def make_share_tables(
-    block: TableBlock, view: Results, series: Sequence[Series], certain: Certainty, horizon: float | None
+    block: TableBlock, view: Results, series: Sequence[Series], certain: StatedErrors, horizon: float | None
 ) -> list[TextTable]:
     """Make the tables of what each cause contributes to the impulses of a block."""
     from heuncli.output.tables import cause_tables  # few runs need it
@@ -179,7 +179,7 @@ def make_share_tables(
 
 
 def make_run_share_tables(
-    run: cut_runs.CutRun, view: Results, certain: Certainty, horizon: float | None
+    run: cut_runs.CutRun, view: Results, certain: StatedErrors, horizon: float | None
 ) -> list[TextTable]:
     """Make the tables of what each cause contributes to the impulses along a run of cuts; none if shares are not
     requested.

@@ -14,7 +14,7 @@ from heuncli.study.quantities.digits import (
     UNKNOWN,
     UNKNOWN_NOTE,
     ZERO_NOTE,
-    Certainty,
+    StatedErrors,
     format_unclaimed,
     write_times,
 )
@@ -22,7 +22,9 @@ from heuncli.study.quantities.digits import (
 Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each instant
 
 
-def make_instants_tables(block: TableBlock, times: Array, horizon: float | None, certain: Certainty) -> list[TextTable]:
+def make_instants_tables(
+    block: TableBlock, times: Array, horizon: float | None, certain: StatedErrors
+) -> list[TextTable]:
     """Make the tables of a block with a row for each instant, group by group; for one instant a row for each group."""
     word, note = block.missing
     if word != OPEN and all(np.isnan(row.values).all() for group in block.groups for row in group.rows):
@@ -89,7 +91,7 @@ def _order_labels(groups: Sequence[RowGroup]) -> list[str]:
 
 
 def format_group(
-    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: Certainty
+    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: StatedErrors
 ) -> dict[str, list[str]]:
     """Format the cells of a group by label, one for each instant."""
     numbers = np.stack([row.values for row in group.rows], axis=1)

@@ -23,7 +23,7 @@ from heuncli.output.tables.table_plans import PLANS
 from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Mask, Results
 from heuncli.results.results_schema import REPORT_OF, REPORTS, find_quantity
-from heuncli.study.quantities.digits import Certainty, add_axis_errors, find_certainty
+from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.series import Series, convert_units, iter_series
 
@@ -58,7 +58,7 @@ class Page(NamedTuple):
 
     results: Results
     labels: Labels
-    certain: Certainty
+    certain: StatedErrors
     magnitudes: Magnitudes
     last_instant: Results | None = None
     impact_extremes: Sequence[Mapping[str, Extremes]] = ()
@@ -71,7 +71,7 @@ class Page(NamedTuple):
         rows = [row.values**2 if row.is_magnitude else row.values for row in self._find_rows(results)]
         return np.stack(rows, axis=1) if rows else np.zeros((len(results.time), 0))
 
-    def run_columns(self, results: Results) -> list[tuple[str, Array]]:
+    def make_run_columns(self, results: Results) -> list[tuple[str, Array]]:
         """Return the section forces of the runs of cuts, (n_t, n_cuts) each, with the names of their runs."""
         runs = cut_runs.collect_runs(results, self.labels)
         return [(run.name, values) for run in runs for values in run.values[: len(cut_runs.LOADS)]]
@@ -92,7 +92,7 @@ class Page(NamedTuple):
             errors += [self.certain.error_of("sections", load.unit) for load in cut_runs.LOADS]
         return np.array(errors)
 
-    def magnitude_columns(self) -> Mask:
+    def find_magnitude_mask(self) -> Mask:
         """Return the mask of columns that are squares of magnitudes, (n,)."""
         rows = [row.is_magnitude for row in self._find_rows(self.results)]
         n_loads = len(cut_runs.LOADS) * len(cut_runs.collect_runs(self.results, self.labels))
@@ -193,7 +193,7 @@ class Page(NamedTuple):
         return [*tables, *self._make_last_tables(every_cut)]
 
     def _make_instants_share_tables(
-        self, results: Results, certain: Certainty, search_result: Extremes | None, shares: ShareSource
+        self, results: Results, certain: StatedErrors, search_result: Extremes | None, shares: ShareSource
     ) -> list[TextTable]:
         """Make the tables of what each cause contributes at the given instants."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
@@ -266,7 +266,7 @@ def make_page(results: Results, labels: Labels, magnitudes: Magnitudes, *, detai
     magnitudes: what its numbers are summed from
     """
     horizon = results.horizon
-    certain = find_certainty(results, labels, magnitudes)
+    certain = find_stated_errors(results, labels, magnitudes)
     if horizon is None or results.time[-1] < horizon:
         return Page(results, labels, certain, magnitudes, details=details)
     n_known = max(1, int(np.searchsorted(results.time, horizon)))

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.cut_runs import CutRun, RunQuantity, choose_cuts, collect_runs
 from heuncli.results.results import Array, CutPosition, Extremes, Indices, Mask, Results
-from heuncli.study.quantities.digits import Certainty
+from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 
 
@@ -57,7 +57,7 @@ class RunSearch(NamedTuple):
         """Return each quantity along the whole run, (n_t, n_nodes), with the name of the run."""
         return [(self.run.name, values) for values in self.evaluate(results)]
 
-    def find_errors(self, certain: Certainty) -> Array:
+    def find_errors(self, certain: StatedErrors) -> Array:
         """Return the error of each column, (n * n_cuts,), or of each quantity along the run, (n,)."""
         return self._repeat_for_cuts([certain.error_of("sections", quantity.unit) for quantity in self.quantities])
 

@@ -23,7 +23,7 @@ from heuncli.results.results_schema import (
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
-    Certainty,
+    StatedErrors,
     Style,
     find_error_kind,
     largest_magnitude,
@@ -114,7 +114,7 @@ class TableBlock(NamedTuple):
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
 
 
-def choose_styles(rows: Sequence[NumberRow], numbers: Array, certain: Certainty) -> list[Style]:
+def choose_styles(rows: Sequence[NumberRow], numbers: Array, certain: StatedErrors) -> list[Style]:
     """Choose the number style of each row, that of its family, from its values and from `numbers`, (n, n_rows)."""
     scales: dict[tuple[str, ...], float] = {}
     for row, shown in zip(rows, numbers.T, strict=True):
@@ -136,7 +136,7 @@ def _find_family(row: NumberRow) -> tuple[str, ...]:
     return row.family, row.kind, row.unit
 
 
-def format_numbers(group: RowGroup, numbers: Array, certain: Certainty) -> list[list[str]]:
+def format_numbers(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[list[str]]:
     """Format the numbers of each row, (n, n_rows) -> n_rows lists of n; the rows of a family show the same decimals."""
     texts: list[list[str]] = [[] for _ in group.rows]
     styles = choose_styles(group.rows, numbers, certain)

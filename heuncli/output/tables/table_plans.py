@@ -155,7 +155,7 @@ STOPS = TablePlan(
     ),
     _make_stop_note,
 )
-COUPLED = (
+COUPLING_QUANTITIES = (
     *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
     *("radial", "axial", "torque", "efficiency", "tight", "slack", "tension", "last_tension"),
 )
@@ -163,7 +163,7 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    COUPLED,
+    COUPLING_QUANTITIES,
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

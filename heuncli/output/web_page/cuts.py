@@ -10,13 +10,13 @@ from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.output.web_page.number_rows import make_section_loads
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Section, Spec
-from heuncli.study.quantities.digits import Certainty
+from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-def make_sections(spec: Spec, results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
+def make_sections(spec: Spec, results: Results, labels: Labels, certain: StatedErrors) -> list[dict[str, Any]]:
     """Make the page's entry for every section: points of the cuts and axes n, e1, e2 in body axes, and the section
     forces.
     """

@@ -67,7 +67,7 @@ def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES)
         regular = _fill_between(study, sample_times, capacity)
     times = np.asarray(sort_distinct(np.concatenate([regular, extra])))
     largest_turn = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
-    if largest_turn > tolerances.TORN:
+    if largest_turn > tolerances.MAX_INTERPOLATED_TURN:
         notes.append(
             f"Between two frames a body turns up to {math.degrees(largest_turn):.0f}°: only the "
             "frames show where it is."

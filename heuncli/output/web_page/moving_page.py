@@ -22,7 +22,7 @@ from heuncli.output.web_page.page_assembly import assemble_page
 from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.digits import Certainty, find_certainty
+from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import Labels, make_labels
 from heuncli.study.quantities.table_units import Units
 
@@ -41,7 +41,7 @@ def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES
     """Make all data of a page: plain dictionaries and lists, with arrays packed as text."""
     original, spec, scene = study.results, study.spec, study.setup.scene
     labels = replace(make_labels(spec), units=units)
-    certain = find_certainty(original, labels, study.magnitudes)
+    certain = find_stated_errors(original, labels, study.magnitudes)
     peaks = find_peaks(study, labels, certain)
     frames = choose_frames(study, peaks.times, max_frames)
     results = resample_at_frames(study, frames.times)
@@ -89,7 +89,9 @@ def _iter_notes(results: Results, horizon: float | None) -> Iterator[str]:
         yield "Open: redundant supports leave some numbers open; they are told as such, and have no arrow."
 
 
-def _iter_impacts(results: Results, frames: PageFrames, labels: Labels, certain: Certainty) -> Iterator[dict[str, Any]]:
+def _iter_impacts(
+    results: Results, frames: PageFrames, labels: Labels, certain: StatedErrors
+) -> Iterator[dict[str, Any]]:
     """Yield the impacts within the frames, each with the first frame at or after it and its tables."""
     for number, impact in enumerate(results.impulses[:MAX_IMPACTS]):
         time = float(impact["time"])

@@ -19,7 +19,7 @@ from heuncli.output.tables.table_plans import AXIS, IMPULSES, PLANS, TablePlan
 from heuncli.output.web_page.packing import pack_values
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS, STRESSES
-from heuncli.study.quantities.digits import OPEN, Certainty, Style
+from heuncli.study.quantities.digits import OPEN, StatedErrors, Style
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.series import Series, convert_units, iter_impulse_series, iter_series
 
@@ -27,7 +27,7 @@ ZERO_ROWS_PREFIX = "0 throughout: "
 EXCLUDED_KINDS = frozenset({"bodies", "points", "sections"})  # sections have rows of their own
 
 
-def make_blocks(results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
+def make_blocks(results: Results, labels: Labels, certain: StatedErrors) -> list[dict[str, Any]]:
     """Make the tables of all quantities that run over the instants; each heading states signs and axes."""
     series = [item for item in iter_series(results, labels) if not item.cause]
     plans = [plan for plan in PLANS if plan.kind not in EXCLUDED_KINDS and (plan.only is None or plan is AXIS)]
@@ -39,7 +39,7 @@ def make_blocks(results: Results, labels: Labels, certain: Certainty) -> list[di
 
 
 def make_impact_page_tables(
-    number: int, impact: Block, results: Results, labels: Labels, certain: Certainty
+    number: int, impact: Block, results: Results, labels: Labels, certain: StatedErrors
 ) -> list[dict[str, Any]]:
     """Make the tables of one impact; their numbers hold only at its instant."""
     series = [item for item in iter_impulse_series(impact, labels) if not item.cause]
@@ -62,7 +62,7 @@ def _prefix_paths(block: dict[str, Any], number: int) -> dict[str, Any]:
 
 
 def _make_block(
-    plan: TablePlan, series: Iterable[Series], heading: str, labels: Labels, certain: Certainty
+    plan: TablePlan, series: Iterable[Series], heading: str, labels: Labels, certain: StatedErrors
 ) -> dict[str, Any]:
     """Make one table: heading, groups of rows by object, the list of rows that are zero at all times, and the text for
     nan.
@@ -107,7 +107,7 @@ def _is_in_plan(plan: TablePlan, name: str) -> bool:
 
 
 def iter_page_rows(
-    series: Sequence[Series], labels: Labels, certain: Certainty
+    series: Sequence[Series], labels: Labels, certain: StatedErrors
 ) -> Iterator[tuple[dict[str, Any], bool]]:
     """Yield the rows of one object, each with whether it is ever different from zero."""
     rows_by_series = [make_rows(item) for item in convert_units(series, labels.units)]
@@ -143,7 +143,7 @@ def is_zero(row: NumberRow, style: Style) -> bool:
 
 
 def make_section_loads(
-    name: str, section: Mapping[str, Any], labels: Labels, certain: Certainty
+    name: str, section: Mapping[str, Any], labels: Labels, certain: StatedErrors
 ) -> list[dict[str, Any]]:
     """Make the rows of a section's forces and stresses, each (n_t, n_cuts), without those that show 0 everywhere.
 

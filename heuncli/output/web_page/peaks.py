@@ -11,7 +11,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.ask.study import Study
-from heuncli.study.quantities.digits import Certainty
+from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.search.extremes import ColumnSearch, sort_distinct
 
@@ -42,7 +42,7 @@ class Peaks(NamedTuple):
     is_searched: bool
 
 
-def find_peaks(study: Study, labels: Labels, certain: Certainty) -> Peaks:
+def find_peaks(study: Study, labels: Labels, certain: StatedErrors) -> Peaks:
     """Find the instants at which joint and foundation loads and section forces are largest."""
     loads = list(_iter_loads(study.results))
     if not loads:
@@ -89,7 +89,7 @@ def _collect_cut_run_loads(results: Results) -> list[tuple[str, Array]]:
     return [(load.cut_run, load.values) for load in _iter_loads(results) if load.cut_run]
 
 
-def _find_error(load: LoadColumn, labels: Labels, certain: Certainty) -> float:
+def _find_error(load: LoadColumn, labels: Labels, certain: StatedErrors) -> float:
     """Find the stated error of a load, SI."""
     unit, size = labels.units.find(load.unit)
     return certain.error_of(load.kind, unit) / size

@@ -304,7 +304,7 @@ def find_cusp(path: Path) -> float | None:
         slope = path.evaluate_track(s)[1]
         speed = np.sqrt(np.sum(slope * slope, axis=-1))
         i = int(np.argmin(speed))
-        if speed[i] < tolerances.STANDS_STILL * path.track_bounds[1]:
+        if speed[i] < tolerances.NO_PATH_DIRECTION * path.track_bounds[1]:
             return float(s[i])
         low, high = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)]
         s = np.linspace(low, high, 4 * SAMPLES_PER_PIECE + 1)

@@ -71,20 +71,20 @@ class ResolveInputs:
     case: str | None
 
 
-def resolve(document: f.Document, meaning: ResolveInputs, resolver: Resolver | None = None) -> m.Spec:
+def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | None = None) -> m.Spec:
     """Resolve a document without errors into a scene.
 
     resolver: resolves the references; by default a plain Resolver
     """
-    active_resolver = resolver or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
+    active_resolver = resolver or Resolver(document, inputs.locations, inputs.curves, inputs.surfaces)
     joints = active_resolver.resolve_entries("joints", "joint")
-    motor_rotors = make_rotors(document, joints, meaning.locations)
+    motor_rotors = make_rotors(document, joints, inputs.locations)
     return m.Spec(
-        title=format_title(document, meaning.case),
-        path=meaning.path,
-        sha256=meaning.sha256,
+        title=format_title(document, inputs.case),
+        path=inputs.path,
+        sha256=inputs.sha256,
         space=document.head.space,
-        parameters=meaning.parameters,
+        parameters=inputs.parameters,
         gravity=document.head.gravity,
         ground=m.Ground(document.ground.points),
         bodies=active_resolver.resolve_entries("bodies", "body") | motor_rotors.bodies,
@@ -98,15 +98,15 @@ def resolve(document: f.Document, meaning: ResolveInputs, resolver: Resolver | N
         | motor_rotors.couplings,
         latches=active_resolver.resolve_entries("latches", "latch"),
         sections=active_resolver.resolve_entries("sections", "section"),
-        tables=meaning.tables,
+        tables=inputs.tables,
         analysis=active_resolver.resolve_single("analysis"),
         report=tuple(document.head.report) if document.head.report is not None else None,
         foundation=m.Foundation(active_resolver.find_reference_point(document.foundation.about)),
         expect=tuple(active_resolver.resolve_entries("expect", "expect").values()),
         cases={name: case.title for name, case in document.cases.items()},
-        case=meaning.case,
-        warnings=meaning.warnings,
-        locations={**meaning.locations, **motor_rotors.locations} if motor_rotors.locations else meaning.locations,
+        case=inputs.case,
+        warnings=inputs.warnings,
+        locations={**inputs.locations, **motor_rotors.locations} if motor_rotors.locations else inputs.locations,
     )
 
 
@@ -225,6 +225,7 @@ class Resolver:
         )
 
     def joint(self, name: str, joint: f.JointEntry) -> m.Joint[str, m.Vec]:
+        """Resolve a joint: its ends to bodies and points; keys that its kind does not have to their defaults."""
         a, b = self.end(joint.from_), self.end(joint.to)
         axis = getattr(joint, "axis", None) or getattr(joint, "normal", None) or m.Z
         to_axis = getattr(joint, "to_axis", None)

@@ -22,7 +22,15 @@ from heuncli.base.records import replace
 from heuncli.motion.integration.check.changes import ConditionChanges, impulse_time_differences
 from heuncli.results.results import Array, Block, Results, Status
 from heuncli.results.results_paths import find_values
-from heuncli.results.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, error_kind_of_path, find_quantity
+from heuncli.results.results_schema import (
+    CUT,
+    ESTIMATE_OF_ERROR_KIND,
+    EVENTS,
+    MAGNITUDES,
+    SHARES,
+    error_kind_of_path,
+    find_quantity,
+)
 from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
 from heuncli.scene.file_format.resolve_couplings import format_rounded_up
 from heuncli.study.ask.measure import find_reports, stated_error
@@ -215,7 +223,7 @@ class WatchedNumber(NamedTuple):
         largest = float(np.max(np.abs(h), initial=0.0, where=np.isfinite(h)))
         largest = limit + (math.sqrt(largest) if self.is_magnitude else largest)
         kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
-        relative = float(estimate.get(KIND_OF.get(kind, kind), 0.0))  # type: ignore[arg-type]
+        relative = float(estimate.get(ESTIMATE_OF_ERROR_KIND.get(kind, kind), 0.0))  # type: ignore[arg-type]
         known = (*(self.study.magnitudes.errors.get((kind, unit), 0.0) for unit in row.units),) if row else ()
         error = stated_error(self.study, keys) if any(known) else relative * largest
         return max(float(np.nan_to_num(error)), tolerances.WRITTEN * largest)

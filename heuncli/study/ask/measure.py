@@ -49,7 +49,7 @@ class NotInThisRun(NotOneNumber):
 class MeasureRequest(NamedTuple):
     """A number to measure.
 
-    how: the reducer; empty for a number that has no instants, abs for the largest magnitude
+    reducer: how a history becomes one number; empty for a number that has no instants, abs for the largest magnitude
     time [s]: of the reducer `at`
     """
 
@@ -144,7 +144,7 @@ def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) 
 
 def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
     """Return the extreme of one impulse along a run of cuts, over its whole length."""
-    from heuncli.study.search.stretches import find_stretch, find_summits  # where there are runs of cuts
+    from heuncli.study.search.stretches import find_cut_extremes, find_stretch  # where there are runs of cuts
 
     setup = study.with_whole_cuts(False)
     whole = replace(study.results, impulses=study.make_impulse_blocks(setup))
@@ -153,7 +153,7 @@ def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, stu
     if numbers.is_vector:
         values = np.sum(np.square(values), axis=-1)
     nodes = find_values(whole, f"{IMPULSES}.{numbers.keys[1]}.sections.{name}.s").values
-    low, high = find_summits(find_stretch(setup, name), nodes, values)
+    low, high = find_cut_extremes(find_stretch(setup, name), nodes, values)
     lower = request.how == "min" or (request.how == "abs" and abs(low.value) > abs(high.value))
     value, place = low if lower else high
     value = float(np.sqrt(np.abs(value))) if numbers.is_vector else abs(value) if request.how == "abs" else value

@@ -283,7 +283,7 @@ class Study:
             times,
             study_columns.groups,
             errors=search.errors,
-            even=search.even,
+            is_squared=search.even,
             search_between=between,
             max_groups=extremes.MAX_COLUMNS if whole else None,
             sides=sides,

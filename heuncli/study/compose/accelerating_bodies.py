@@ -47,7 +47,7 @@ def list_accelerated_bodies(recovery: Recovery) -> list[str]:
     radius = np.sqrt(np.array([np.trace(b.inertia) for b in mechanism.bodies]) / mass)
     shift, turn = (np.sqrt(np.sum(a[0] ** 2, axis=1)) for a in (states.a_centre, states.alpha))
     fastest = np.maximum(shift, turn * radius)
-    is_accelerated = fastest > tolerances.SET_GOING * load_scale(recovery) / mass
+    is_accelerated = fastest > tolerances.STARTS_MOVING * load_scale(recovery) / mass
     return [
         f"{mechanism.bodies[i].name} " + (f"{shift[i]:.3g} m/s\u00b2" if shift[i] >= turn[i] * radius[i]
                                           else f"{turn[i]:.3g} rad/s\u00b2")
@@ -70,7 +70,7 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
     ):
         return []
     mass = np.array([b.mass for b in layout.mechanism.bodies])
-    least = tolerances.SET_GOING * float((load_scale(recovery) / mass).max())
+    least = tolerances.STARTS_MOVING * float((load_scale(recovery) / mass).max())
     found = [
         (abs(row["udot"]) * lever, f, abs(row["udot"])) for (f, row), lever in zip(free_freedoms, levers, strict=True)
     ]

@@ -160,7 +160,7 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
     ]
     for requested_cuts in recovery.setup.cuts:
         attached = find_attachments(requested_cuts.body, states, actions)
-        cuts = requested_cuts.at_attachments(attached)
+        cuts = requested_cuts.place_for_loads(attached)
         is_open: Mapping[str, Mask] = {}
         if stress is not None:
             from heuncli.loads.redundancy.indeterminate_components import (

@@ -66,11 +66,12 @@ def make_blocks_without_unknown(
     if not len(close_instants):
         return blocks, np.zeros(0)
     moved_solutions = solve_moved_states(recovery, close_instants, run, jumps)
-    skips_open_search = recovery.skips_open_search and np.array_equal(
+    skips_open_search = recovery.skips_indeterminacy_search and np.array_equal(
         moved_solutions.dependent_count, recovery.solutions.dependent_count[close_instants].repeat(DIRECTIONS)
     )
     moved_blocks = make_requested_blocks(
-        Recovery(recovery.setup, moved_solutions, recovery.least_norm, skips_open_search=skips_open_search), reports
+        Recovery(recovery.setup, moved_solutions, recovery.least_norm, skips_indeterminacy_search=skips_open_search),
+        reports,
     )
     unknown = np.zeros(len(close_instants), dtype=bool)
     known = [
@@ -102,8 +103,8 @@ def make_blocks_without_unknown(
 def find_nearly_singular(recovery: Recovery, reports: Set[str]) -> Indices:
     """Return the instants at a singular pose, or so close to one that rounding may decide their results."""
     is_near = recovery.solutions.pivot < tolerances.NEAR_PIVOT
-    if reports & RANK_REPORTS and recovery.decided is not None and recovery.decided.all_stress is not None:
-        is_near |= recovery.decided.all_stress.count > recovery.generic_count
+    if reports & RANK_REPORTS and recovery.decided is not None and recovery.decided.found_self_stress is not None:
+        is_near |= recovery.decided.found_self_stress.count > recovery.generic_self_stress_count
     return np.flatnonzero(is_near)
 
 
@@ -112,10 +113,10 @@ def find_left_out_rows(recovery: Recovery, close_instants: Indices) -> Mask:
 
     Their multipliers are missing from the loads, and the directions that they constrain accelerate freely.
     """
-    stress = recovery.decided.all_stress if recovery.decided is not None else None
+    stress = recovery.decided.found_self_stress if recovery.decided is not None else None
     if stress is None:
         return np.zeros(len(close_instants), dtype=bool)
-    return np.asarray(stress.count[close_instants] > recovery.generic_count[close_instants])
+    return np.asarray(stress.count[close_instants] > recovery.generic_self_stress_count[close_instants])
 
 
 def solve_moved_states(
@@ -212,4 +213,4 @@ def find_unknown(errors: Array, scale: Array) -> Mask:
     """Mark the numbers that are unknown: their errors (n, ...) are too large relative to the largest of their kind
     (n,).
     """
-    return np.asarray(errors > tolerances.TOLD_BESIDE * scale.reshape(-1, *[1] * (errors.ndim - 1)))
+    return np.asarray(errors > tolerances.UNKNOWN_NEAR_SINGULAR * scale.reshape(-1, *[1] * (errors.ndim - 1)))

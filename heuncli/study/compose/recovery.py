@@ -46,8 +46,9 @@ if TYPE_CHECKING:  # loaded only for closed chains, sections, or loads by cause
 
 RANK_REPORTS = SHARED_BLOCKS  # reports that need the rank of the closures
 ENERGY_REPORTS = frozenset({"energy", IMPULSES})  # reports that show energies
-WITHOUT_VERDICTS = frozenset({"states", "unsplit", "loads", "energy", "inertia"})  # whatever is indeterminate
-WITHOUT_CUTS = WITHOUT_VERDICTS | {"decided", "shares"}
+# properties that do not depend on which components are indeterminate
+INDEPENDENT_OF_VERDICTS = frozenset({"states", "unsplit", "loads", "energy", "inertia"})
+INDEPENDENT_OF_CUTS = INDEPENDENT_OF_VERDICTS | {"decided", "shares"}
 
 
 @record
@@ -71,16 +72,16 @@ class Recovery:
 
     def with_cuts(self, setup: Setup) -> Recovery:
         """Return the same with the cuts of another setup; what was computed stays."""
-        return self._share_computed(replace(self, setup=setup), WITHOUT_CUTS)
+        return self._share_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
 
     def select(self, mask: Mask) -> Recovery:
         """Return the recovery of some of the instants."""
         found: Recovery = replace(self, solutions=self.solutions.select(mask), state_instants=None)
         return found
 
-    def without_open_search(self) -> Recovery:
+    def without_indeterminacy_search(self) -> Recovery:
         """Return the same without a search for indeterminate components; what was computed stays."""
-        return self._share_computed(replace(self, skips_open_search=True), WITHOUT_VERDICTS)
+        return self._share_computed(replace(self, skips_indeterminacy_search=True), INDEPENDENT_OF_VERDICTS)
 
     def _share_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
         other.__dict__.update({name: value for name, value in self.__dict__.items() if name in names})
@@ -101,12 +102,12 @@ class Recovery:
             return None
         from heuncli.loads.redundancy.resolve import Resolution, resolve_redundancy  # a tree starts faster without it
 
-        if self.skips_open_search:
-            return self._add_flanks(Resolution(self.unsplit))
+        if self.skips_indeterminacy_search:
+            return self._add_flanks(Resolution(self.kernel_joint_loads))
         setup = self.setup
         return self._add_flanks(
             resolve_redundancy(
-                setup.runner, self.solutions, self.states, self.unsplit, self.least_norm, setup.self_stress
+                setup.runner, self.solutions, self.states, self.kernel_joint_loads, self.least_norm, setup.self_stress
             )
         )
 
@@ -121,19 +122,19 @@ class Recovery:
         couplings = self.find_couplings(resolution)
         remaining_stress, stress = (
             None if stress_part is None else add_flank_columns(stress_part, layout, resolution.joints, couplings)
-            for stress_part in (resolution.remaining_stress, resolution.stress)
+            for stress_part in (resolution.remaining_self_stress, resolution.stress)
         )
         return replace(
             resolution,
             joints=add_separating_forces(layout, resolution.joints, couplings),
-            remaining_stress=remaining_stress,
+            remaining_self_stress=remaining_stress,
             stress=stress,
         )
 
     @property
-    def needs_verdicts(self) -> bool:
-        """Whether it matters what redundant joints leave indeterminate: to the requested results, or to how joints are
-        split.
+    def needs_indeterminacy(self) -> bool:
+        """Whether the requested results, or the split of the joints' loads, depend on what redundant joints leave
+        indeterminate.
         """
         setup = self.setup
         may_share = bool(setup.model["redundant"] or setup.scene.layout.contacts)
@@ -144,7 +145,7 @@ class Recovery:
         """The joints' reactions."""
         if self.decided is not None:
             return self.decided.joints
-        return self.unsplit
+        return self.kernel_joint_loads
 
     @cached_property
     def requested_joints(self) -> list[JointLoads]:
@@ -163,8 +164,8 @@ class Recovery:
         return find_joint_loads(self.setup.scene.layout, self.solutions, self.states, names)
 
     @cached_property
-    def unsplit(self) -> list[JointLoads]:
-        """The joints' reactions as the kernel solves them: where some are redundant, one split of many."""
+    def kernel_joint_loads(self) -> list[JointLoads]:
+        """The joints' reactions as the kernel solves them; with redundant joints, one of many possible splits."""
         if self.state_instants is not None and self.state_instants.joints:
             return select_instants(self.state_instants.joints, slice(0, len(self.solutions.times)), self.states)
         return find_joint_loads(self.setup.scene.layout, self.solutions, self.states)
@@ -238,8 +239,8 @@ class Recovery:
     @cached_property
     def actions(self) -> list[Action]:
         """All actions on the bodies except their weight; a joint's constraint and drive are one action."""
-        may_differ = self.needs_verdicts or self.setup.scene.mechanism.couplings
-        joints = list_whole_joint_actions(self.joints if may_differ else self.unsplit)
+        may_differ = self.needs_indeterminacy or self.setup.scene.mechanism.couplings
+        joints = list_whole_joint_actions(self.joints if may_differ else self.kernel_joint_loads)
         return [*self.applied_actions, *joints, *list_coupling_actions(self.couplings)]
 
     @property
@@ -272,7 +273,7 @@ class Recovery:
         return inertia_scale(self.setup.scene.mechanism, self.states)
 
     @property
-    def generic_count(self) -> Array:
+    def generic_self_stress_count(self) -> Array:
         """The largest number of self-stresses at each instant outside singular poses, (n_t,).
 
         Those of the start, and one more for each contact that has closed since.
@@ -284,7 +285,7 @@ class Recovery:
     @property
     def indeterminate(self) -> SelfStress | None:
         """The self-stresses that no split has resolved."""
-        return self.decided.remaining_stress if self.decided is not None else None
+        return self.decided.remaining_self_stress if self.decided is not None else None
 
 
 def vector_magnitudes(velocities: Array) -> Array:
@@ -306,7 +307,7 @@ def recover(
     if setup.scene.mechanism.joint_friction and found.decided is not None:
         from heuncli.loads.redundancy.friction_check import require_determinate_friction  # few scenes need it
 
-        require_determinate_friction(setup.scene.layout, found.decided.all_stress, found.states, solutions.times)
+        require_determinate_friction(setup.scene.layout, found.decided.found_self_stress, found.states, solutions.times)
     return found
 
 

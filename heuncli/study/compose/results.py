@@ -159,7 +159,7 @@ def make_model_block(setup: Setup, history: History, recovery: Recovery, *, is_c
 
     is_complete: whether `recovery` is at all instants of the results
     """
-    split = recovery.decided.words if recovery.needs_verdicts and recovery.decided is not None else ()
+    split = recovery.decided.words if recovery.needs_indeterminacy and recovery.decided is not None else ()
     return (
         setup.model
         | ({"split": "; ".join(split)} if split else {})

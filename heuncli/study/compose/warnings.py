@@ -33,8 +33,10 @@ def collect_warnings(
 ) -> tuple[str, ...]:
     """Collect the warnings at the instants of `recovery`; joints: their block, residual: of d'Alembert's principle."""
     singular = []
-    if recovery.needs_verdicts and recovery.decided is not None:
-        singular = recovery.decided.describe_singular_poses(recovery.solutions.times, recovery.generic_count)
+    if recovery.needs_indeterminacy and recovery.decided is not None:
+        singular = recovery.decided.describe_singular_poses(
+            recovery.solutions.times, recovery.generic_self_stress_count
+        )
     return (
         *warn_unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),

@@ -126,12 +126,14 @@ def set_up(
     if chosen is not None and reduce:
         if auto and scene.mechanism.couplings:  # most gear trains are driven; then a smaller scene saves nothing
             follows = find_determined_motion(runner.integrated_scene)
-        if not follows.is_so:
+        if not follows.is_determined:
             reduced, runner = reduce_scene(scene, runner, stages)
             follows = find_determined_motion(runner.integrated_scene)
     reductions_block = describe_reductions(left_out, scene, reduced)
     if chosen is not None and auto:
-        chosen = DRIVE_DETERMINED if follows.is_so else choose_first_method(runner.integrated_scene.layout, spec)
+        chosen = (
+            DRIVE_DETERMINED if follows.is_determined else choose_first_method(runner.integrated_scene.layout, spec)
+        )
         reductions_block = follows.add_to_block(reductions_block)
     redundancies = count_redundancy(scene, runner, stages)
     note = make_model_block(scene, runner, chosen.name if chosen else "none", redundancies) | reductions_block

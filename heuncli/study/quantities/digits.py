@@ -20,7 +20,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Magnitudes, Results
-from heuncli.results.results_schema import BY_CAUSE, KIND_OF, SHARES, error_kind_of_path
+from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND, SHARES, error_kind_of_path
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.series import Series, iter_impulse_series, iter_series
 from heuncli.study.quantities.table_units import Units
@@ -68,7 +68,7 @@ class Style(NamedTuple):
         return f"{value:.{max(self.decimals, 0)}f}"
 
 
-class Certainty(NamedTuple):
+class StatedErrors(NamedTuple):
     """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
 
     singular_times: instants close to singular poses, at which nan means unknown
@@ -91,12 +91,14 @@ class Certainty(NamedTuple):
         return choose_style(scale, self.error_of(kind, unit), self.rounding_of(unit))
 
 
-def find_certainty(results: Results, labels: Labels, magnitudes: Magnitudes) -> Certainty:
+def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes) -> StatedErrors:
     """Return the errors of a run: those that its check run found, otherwise its estimates times the largest of each
     kind.
     """
     scales = find_scales(results, labels)
-    errors = {key: results.relative_error(KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
+    errors = {
+        key: results.relative_error(ESTIMATE_OF_ERROR_KIND.get(key[0], key[0])) * scale for key, scale in scales.items()
+    }
     for kind in LOADS:
         for error_kind in (kind, f"{kind} {BY_CAUSE}"):
             errors |= _wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
@@ -116,7 +118,7 @@ def find_certainty(results: Results, labels: Labels, magnitudes: Magnitudes) -> 
     horizon = results.horizon
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
-    return add_units(Certainty(errors, rounding), labels.units)
+    return add_units(StatedErrors(errors, rounding), labels.units)
 
 
 def find_scales(results: Results, labels: Labels, only_kind: str | None = None) -> dict[tuple[str, str], float]:
@@ -144,7 +146,7 @@ def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, ki
     return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
 
 
-def add_units(certain: Certainty, units: Units) -> Certainty:
+def add_units(certain: StatedErrors, units: Units) -> StatedErrors:
     """Add errors and rounding in the display units of tables to those in SI units."""
     errors, roundings = dict(certain.errors), dict(certain.rounding)
     for (kind, unit), error in certain.errors.items():
@@ -174,8 +176,8 @@ def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> d
 
 
 def add_axis_errors(
-    certain: Certainty, results: Results, magnitudes: Magnitudes, units: Units, unit: str = "N"
-) -> Certainty:
+    certain: StatedErrors, results: Results, magnitudes: Magnitudes, units: Units, unit: str = "N"
+) -> StatedErrors:
     """Add the errors of the central axis at the shown instants: it is no more accurate than its force.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
@@ -229,7 +231,7 @@ def trim_zeros(texts: Sequence[str]) -> list[str]:
     return [text[: len(text) - cut] if cut and "." in text and "e" not in text else text for text in texts]
 
 
-def format_unclaimed(value: float, unit: str, certain: Certainty, text: str) -> str:
+def format_unclaimed(value: float, unit: str, certain: StatedErrors, text: str) -> str:
     """Format a number after the horizon: `?`, unless it is indeterminate or only rounding."""
     if text == OPEN:
         return OPEN

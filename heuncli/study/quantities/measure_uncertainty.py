@@ -13,7 +13,7 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.selection import list_entries, split_entry
-from heuncli.study.quantities.digits import find_certainty, find_load_error, is_load
+from heuncli.study.quantities.digits import find_load_error, find_stated_errors, is_load
 from heuncli.study.quantities.labels import make_unit_labels
 from heuncli.study.quantities.table_units import Units
 
@@ -72,7 +72,7 @@ def _find_unit_error(keys: tuple[str, ...], unit: str, study: Study) -> float | 
     labels = replace(make_unit_labels(study.spec), units=SI)
     if is_load(kind, unit) and study.results.horizon is None:
         return find_load_error(study.results, labels, magnitudes, kind, unit) or None
-    return find_certainty(study.results, labels, study.magnitudes).error_of(kind, unit) or None
+    return find_stated_errors(study.results, labels, study.magnitudes).error_of(kind, unit) or None
 
 
 def _find_root_error(value: float, largest: float) -> float:

@@ -27,9 +27,9 @@ class Series(NamedTuple):
     """One quantity over the instants: `values` is (n_t, n_components), or (1, n_components) if it is static.
 
     cause: the load whose share it is; empty for the whole quantity
-    of_cuts: whether components begin with the number of a cut
+    has_cuts: whether components begin with the number of a cut
 
-    Of results that are written piece by piece, the values may be in a file.
+    If results are written in parts, the values may be in a file.
     """
 
     kind: str

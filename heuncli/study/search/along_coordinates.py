@@ -1,8 +1,9 @@
-"""Find where loads that depend on coordinates need more instants: a body carries them along however fast they change.
+"""Find where loads that depend on coordinates need more instants: they change as fast as the body moves that carries
+them.
 
-Where such loads push a constrained direction, no integration step feels them. So they are sampled directly: each
-interval of a grid once, unless cubics through its neighbours predict both its ends, and divided there until the cubics
-through four neighbours predict them (study/search/turnings.py).
+Where such loads push along a constrained direction, no integration step notices them. So they are sampled directly:
+each interval of a grid once, unless cubics through its neighbours predict both its ends, and divided there until the
+cubics through four neighbours predict them (study/search/turnings.py).
 """
 
 from __future__ import annotations

@@ -98,10 +98,10 @@ class StudyColumns:
             return self._rows(self._compose(recovery))
         is_decided = verdicts.covers(recovery.solutions)
         if is_decided.all():
-            return self._rows(self._compose(recovery.without_open_search(), verdicts))
+            return self._rows(self._compose(recovery.without_indeterminacy_search(), verdicts))
         if not is_decided.any():
             return self._rows(self._compose(recovery))
-        decided_rows = self._rows(self._compose(recovery.select(is_decided).without_open_search(), verdicts))
+        decided_rows = self._rows(self._compose(recovery.select(is_decided).without_indeterminacy_search(), verdicts))
         other_rows = self._rows(self._compose(recovery.select(~is_decided)))
         rows = np.empty((len(times), decided_rows.shape[1]))
         rows[is_decided], rows[~is_decided] = decided_rows, other_rows
@@ -149,13 +149,16 @@ class StudyColumns:
         return peaks._replace(low=low, high=high, places=tuple(places))
 
     def _find_place(
-        self, k: int, side: float, own: tuple[str, float, Array, Array], value: float
+        self, k: int, side: float, run_sample: tuple[str, float, Array, Array], value: float
     ) -> tuple[float, CutPosition]:
-        """Return the value of an extreme of a run, and its place; own: its run and instant, the nodes, their values."""
+        """Return the value of an extreme of a run of cuts, and its place.
+
+        run_sample: name of the run, instant, nodes along the run, and the values at these
+        """
         assert self.search.cut_columns is not None and self.setup is not None
         from heuncli.study.search.stretches import cut_at, find_sides, find_stretch, locate_summit
 
-        name, at, nodes, values = own
+        name, at, nodes, values = run_sample
         s, end, ends = locate_summit(nodes, values, side)
         if self.search.bent and math.isfinite(value):
 
@@ -166,9 +169,9 @@ class StudyColumns:
                 ][1].T
 
             one = slice(len(self.search.groups) + k, len(self.search.groups) + k + 1)
-            errors, even = self.search.errors[one], self.search.even[one]
+            errors, is_squared = self.search.errors[one], self.search.even[one]
             search_result = extremes.search_extremes(
-                sample_places, np.linspace(*ends, 17), errors=errors, even=even, sides=(side,)
+                sample_places, np.linspace(*ends, 17), errors=errors, is_squared=is_squared, sides=(side,)
             )
             value, s = (
                 float(x[0])

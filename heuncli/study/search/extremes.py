@@ -19,7 +19,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Extremes, Indices, Mask, Results
 from heuncli.scene.expressions.discontinuities import MAX_TIED_DOUBLES
 from heuncli.study.search.intervals import (
-    FOURTH,
+    FOURTH_DERIVATIVE_SHARE,
     Intervals,
     bound_heights,
     bound_heights_cheaply,
@@ -31,7 +31,7 @@ ColumnSampler = Callable[[Array], Array]  # of sorted instants (n,) the quantiti
 HeightToBeat = Callable[[Array, Array, Indices], Array]  # by the heights at both ends of intervals, and their targets
 
 FIRST_INTERVALS = 4  # intervals of a quantity that are sampled in the first round, twice as many in each following one
-MIN_STRETCH = 5  # fewest instants of a smooth stretch that show its bend, and the change of it
+MIN_STRETCH = 5  # fewest instants of a smooth stretch that show its second derivative and how that changes
 MAX_ROUNDS = 60  # enough halvings to reach rounding at an unannounced jump
 MAX_PROBES = 100_000  # instants sampled in one search
 MAX_COLUMNS = 400  # of varying quantities, in tables; if there are more, the grid's own values are shown
@@ -47,7 +47,7 @@ class ColumnSearch(NamedTuple):
 
     cut_columns: quantities of runs of cuts, each with the name of its run, (n_t, n_cuts); each is one more group
     errors: of the groups' numbers
-    even: whether the groups' numbers are squares
+    is_squared: whether the columns of a group are squares of its numbers
     bent: whether the quantities along runs are no polynomials of the loads, as stresses
     sides: the extremes that are needed, -1 the lowest, 1 the highest; others are not searched between the samples
     """
@@ -67,11 +67,12 @@ def make_no_columns(results: Results) -> Array:
 
 
 class Targets(NamedTuple):
-    """The 2n targets of a search: the lowest values of n groups of columns, then the highest, as heights.
+    """The 2n targets of a search, as heights: the lowest values of n groups of columns, then the highest.
 
-    column, owner (m,): the columns of all groups, and to which group each belongs
+    column (m,): the columns of all groups
+    group_index (m,): the group of each of these columns
     error (n,): absolute, of the searched number
-    even (n,): whether the columns are its squares
+    is_squared (n,): whether the columns are squares of that number
     """
 
     n: int
@@ -81,11 +82,11 @@ class Targets(NamedTuple):
     even: Mask
 
     def min_gain(self, height: Array) -> Array:
-        """By how much an interval has to promise more than the best found (2n,) to be worth sampling, (2n,)."""
-        error, even = GOOD_ENOUGH * self.error, self.even
+        """Return how much more than the best so far (2n,) an interval must promise to be worth a sample, (2n,)."""
+        error, is_squared = GOOD_ENOUGH * self.error, self.even
         size = np.where(np.isfinite(height), np.abs(height), 0.0).reshape(2, self.n)
         squared = error * error + 2.0 * error * np.sqrt(size)
-        return np.asarray(np.where(even, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
+        return np.asarray(np.where(is_squared, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
 
     def limit_promise(self, promise: Array, target: Indices) -> Array:
         """Limit promises of targets to possible values: no square is below 0."""
@@ -124,7 +125,7 @@ def search_extremes(
     groups: Sequence[Sequence[int]] | None = None,
     *,
     errors: Array | None = None,
-    even: Mask | None = None,
+    is_squared: Mask | None = None,
     search_between: bool = True,
     max_groups: int | None = None,
     sides: tuple[float, ...] = BOTH_SIDES,
@@ -133,7 +134,7 @@ def search_extremes(
 
     groups: the columns that are compared with each other; by default each column is on its own
     errors (n,): of each group's numbers
-    even (n,): whether its columns are their squares
+    is_squared (n,): whether its columns are squares of these numbers
     search_between: whether to search between the instants, too, if no more than `max_groups` groups vary; otherwise the
     values at `times` are the result
     sides: the extremes searched between the instants
@@ -146,11 +147,11 @@ def search_extremes(
         return Extremes(none, none, nowhere, none, none, nowhere, is_searched=True)
     column = np.concatenate([np.asarray(group, dtype=np.intp) for group in column_groups])
     owner = np.repeat(np.arange(n), [len(group) for group in column_groups])
-    even = np.zeros(n, dtype=bool) if even is None else np.asarray(even, dtype=bool)
+    is_squared = np.zeros(n, dtype=bool) if is_squared is None else np.asarray(is_squared, dtype=bool)
     largest = np.zeros(n)
     np.maximum.at(largest, owner, replace_non_finite(np.abs(values[:, column]), 0.0).max(axis=0))
-    least = tolerances.CONSTANT * np.where(even, np.sqrt(largest), largest)
-    targets = Targets(n, column, owner, least if errors is None else np.fmax(errors, least), even)
+    least = tolerances.CONSTANT * np.where(is_squared, np.sqrt(largest), largest)
+    targets = Targets(n, column, owner, least if errors is None else np.fmax(errors, least), is_squared)
     best = find_best(times, values, targets)
     if max_groups is not None:
         search_between = search_between and len(sort_distinct(owner[_find_varying(values[:, column])])) <= max_groups
@@ -200,7 +201,7 @@ def find_intervals_above(
     left, right = fill_missing(*_compute_bends(times, slope, step, smooth))
     up, down = _compute_rises(slope, step)
     most = np.maximum(np.abs(left), np.abs(right))
-    doubt = FOURTH * most
+    doubt = FOURTH_DERIVATIVE_SHARE * most
     inner = np.concatenate([[False], smooth, [False]])
     parts = []
     for side in sides:
@@ -274,7 +275,9 @@ def refine_best(sample: ColumnSampler, pool: Intervals, targets: Targets, best: 
             return True
         if probes > MAX_PROBES:
             return False
-        is_chosen = _select_worthiest(promise - best.height[pool.target], pool.target, FIRST_INTERVALS << min(turn, 12))
+        is_chosen = _select_most_promising(
+            promise - best.height[pool.target], pool.target, FIRST_INTERVALS << min(turn, 12)
+        )
         chosen, shape, rest = (
             (pool, shape, None)
             if is_chosen.all()
@@ -308,15 +311,15 @@ def merge_neighbours(times: Array, width: Array) -> Array:
     return merged
 
 
-def _select_worthiest(worth: Array, target: Indices, most: int) -> Mask:
-    """Mark the `most` worthiest of each target."""
-    if len(target) <= most:
+def _select_most_promising(gains: Array, target: Indices, max_count: int) -> Mask:
+    """Mark for each target the `max_count` intervals that promise the largest gains."""
+    if len(target) <= max_count:
         return np.ones(len(target), dtype=bool)
-    order = np.lexsort((-worth, target))
+    order = np.lexsort((-gains, target))
     starts = np.append(True, target[order[1:]] > target[order[:-1]])
     rank = np.arange(len(order)) - np.maximum.accumulate(np.where(starts, np.arange(len(order)), 0))
     is_chosen = np.empty(len(order), dtype=bool)
-    is_chosen[order] = rank < most
+    is_chosen[order] = rank < max_count
     return is_chosen
 
 

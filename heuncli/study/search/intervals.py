@@ -20,11 +20,13 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Indices, Mask
 
-DIFFERENCE = 0.5  # of the difference of the two bends, added to the larger: for third derivatives that change sign
-FOURTH = 0.5  # of the bend: possible effect of the fourth derivative where four instants span a summit
-NEAREST = 0.02  # of an interval: how near to its ends it is divided: a summit's neighbourhood shrinks so fast
-ROUNDED_UP = 0.26  # of a bend: a quarter, and more than rounding adds to it
-ROUGH = 0.2  # of the bend: a parabola that misses a value by more indicates a kink, or too coarse a grid
+THIRD_DERIVATIVE_SHARE = (
+    0.5  # of the difference of the two bends, added to the larger: for third derivatives that change sign
+)
+FOURTH_DERIVATIVE_SHARE = 0.5  # of the bend: possible effect of the fourth derivative where four instants span a summit
+MIN_END_DISTANCE = 0.02  # of an interval: how near to its ends it is divided: a summit's neighbourhood shrinks so fast
+MAX_RISE_PER_BEND = 0.26  # of a bend: a quarter, and more than rounding adds to it
+MIN_KINK_MISFIT = 0.2  # of the bend: a parabola that misses a value by more indicates a kink, or too coarse a grid
 
 
 class Bends(NamedTuple):
@@ -49,8 +51,8 @@ class Intervals(NamedTuple):
     """Intervals that may hold a target's best value.
 
     t, f (m, 4): instants and heights of a, b, c, d; the interval is from b to c
-    doubt (m,): by how much the parabola missed the last sample
-    rough (m,): whether that was most of the bend, as at a kink
+    misfit (m,): by how much the parabola missed the last sample, as a bend
+    is_rough (m,): whether it missed by so much that a kink, or too coarse a grid, is likely
     target, column: what the interval is searched for
     """
 
@@ -63,8 +65,8 @@ class Intervals(NamedTuple):
 
     def select(self, mask: Mask | Indices) -> Intervals:
         """Return the marked intervals."""
-        t, f, doubt, rough, target, column = self
-        return Intervals(t[mask], f[mask], doubt[mask], rough[mask], target[mask], column[mask])
+        t, f, misfit, is_rough, target, column = self
+        return Intervals(t[mask], f[mask], misfit[mask], is_rough[mask], target[mask], column[mask])
 
     def compute_bends(self) -> Bends:
         """Compute the bends and rises of each interval."""
@@ -84,10 +86,10 @@ class Intervals(NamedTuple):
         smooth = bound_heights(
             b, c, bends.kappa_before, bends.kappa_after, self.doubt, bends.rise_before, bends.rise_after
         )
-        if not self.rough.any():
+        if not self.is_rough.any():
             return smooth
         kink = b + bends.rise_before * find_kink(c - b, bends.rise_before, bends.rise_after)
-        return np.asarray(np.where(self.rough, np.fmax(smooth, kink), smooth))
+        return np.asarray(np.where(self.is_rough, np.fmax(smooth, kink), smooth))
 
     def choose_probes(self, bends: Bends) -> Array:
         """Choose where to sample: at the summit of the mean parabola.
@@ -105,13 +107,13 @@ class Intervals(NamedTuple):
             summit = 0.5 + 0.5 * rise / np.where(
                 mean_kappa > np.abs(rise), mean_kappa, np.maximum(kappa_before, kappa_after)
             )
-        smooth = (difference < np.abs(mean_kappa)) & np.isfinite(summit) & ~self.rough
+        smooth = (difference < np.abs(mean_kappa)) & np.isfinite(summit) & ~self.is_rough
         share = summit
         if not smooth.all():
             kink = find_kink(rise, rise_before, rise_after)
             kink = np.where((kink > 0.0) & (kink < 1.0), kink, 0.5)
             share = np.where(smooth, summit, kink)
-        share = np.minimum(np.maximum(share, NEAREST), 1.0 - NEAREST)
+        share = np.minimum(np.maximum(share, MIN_END_DISTANCE), 1.0 - MIN_END_DISTANCE)
         return np.asarray(self.t[:, 1] + share * (self.t[:, 2] - self.t[:, 1]))
 
     def divide(self, bends: Bends, times: Array, height: Array) -> Intervals:
@@ -119,10 +121,10 @@ class Intervals(NamedTuple):
         (ta, tb, tc, td), (a, b, c, d) = self.t.T, self.f.T
         share = (times - tb) / (tc - tb)
         expected = b + (c - b) * share + 0.5 * (bends.kappa_before + bends.kappa_after) * share * (1.0 - share)
-        doubt = np.abs(height - expected) / (share * (1.0 - share))  # as a bend
-        rough = doubt > ROUGH * np.maximum(np.abs(bends.kappa_before), np.abs(bends.kappa_after))
+        misfit = np.abs(height - expected) / (share * (1.0 - share))  # as a bend
+        is_rough = misfit > MIN_KINK_MISFIT * np.maximum(np.abs(bends.kappa_before), np.abs(bends.kappa_after))
         parts = [
-            Intervals(np.array(t).T, np.array(f).T, doubt * part, rough, self.target, self.column)
+            Intervals(np.array(t).T, np.array(f).T, misfit * part, is_rough, self.target, self.column)
             for t, f, part in (
                 ((ta, tb, times, tc), (a, b, height, c), share), ((tb, times, tc, td), (b, height, c, d), 1.0 - share),
             )
@@ -158,19 +160,22 @@ def find_kink(rise: Array, rise_before: Array, rise_after: Array) -> Array:
 
 
 def bound_heights(
-    b: Array, c: Array, kappa_before: Array, kappa_after: Array, doubt: Array, rise_before: Array, rise_after: Array
+    b: Array, c: Array, kappa_before: Array, kappa_after: Array, misfit: Array, rise_before: Array, rise_after: Array
 ) -> Array:
     """Bound the highest value between two heights, by the bends of the two parabolas through them.
 
-    rise_before, rise_after: continuation into the interval from its left and its right. A quantity continues so up to a
-    jump within, and the parabolas then differ by as much as it falls.
+    misfit: by how much a parabola missed the last sample
+    rise_before, rise_after: continuation into the interval from its left and its right
+
+    Up to a jump within the interval a quantity follows these continuations; the parabolas then differ by as much as it
+    falls.
     """
     rise, difference, larger_kappa = (
         np.abs(c - b),
         np.abs(kappa_before - kappa_after),
         np.maximum(kappa_before, kappa_after),
     )
-    bend = larger_kappa + DIFFERENCE * difference + doubt
+    bend = larger_kappa + THIRD_DERIVATIVE_SHARE * difference + misfit
     spare = bend - rise
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         bound = np.maximum(b, c) + np.where(spare > 0.0, 0.25 * spare * spare / bend, 0.0)
@@ -181,7 +186,8 @@ def bound_heights(
 def bound_heights_cheaply(b: Array, c: Array, largest_kappa: Array, rise_before: Array, rise_after: Array) -> Array:
     """Bound `bound_heights` from above at less cost; largest_kappa: the larger of the two bends' magnitudes.
 
-    The bend that it uses is at most 1 + 2 DIFFERENCE + FOURTH of that, and a parabola rises by a quarter of its bend.
+    The bend that it uses is at most 1 + 2 THIRD_DERIVATIVE_SHARE + FOURTH_DERIVATIVE_SHARE of that, and a parabola
+    rises by a quarter of its bend.
     """
-    bend = (1.0 + 2.0 * DIFFERENCE + FOURTH) * largest_kappa
-    return np.asarray(np.fmax(np.maximum(b, c) + ROUNDED_UP * bend, np.fmax(b + rise_before, c + rise_after)))
+    bend = (1.0 + 2.0 * THIRD_DERIVATIVE_SHARE + FOURTH_DERIVATIVE_SHARE) * largest_kappa
+    return np.asarray(np.fmax(np.maximum(b, c) + MAX_RISE_PER_BEND * bend, np.fmax(b + rise_before, c + rise_after)))

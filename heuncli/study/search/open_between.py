@@ -24,12 +24,12 @@ from heuncli.study.compose.recovery import Recovery
 
 
 class Verdicts(NamedTuple):
-    """The verdicts at some instants, times (n_t,).
+    """What is indeterminate at some instants, times (n_t,).
 
     dependent (n_t,): number of dependent closure rows
     holding (n_t, contacts): which contacts are closed
     ordinary (n_t,): whether the pose is not singular
-    open: for each array over the instants the mask of its indeterminate components, None for none
+    open_masks: for each array over the instants the mask of its indeterminate components, None for none
     """
 
     times: Array
@@ -88,11 +88,15 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
     decided, recovered = recovery.decided, recovery.solutions
     if decided is None or decided.choices or decided.words or recovery.setup.scene.mechanism.joint_friction:
         return None
-    stress = decided.all_stress
-    ordinary = np.ones(len(recovered.times), dtype=bool) if stress is None else stress.count <= recovery.generic_count
-    determinate_leaves = list(iter_leaves(make_requested_blocks(recovery.without_open_search(), reports)))
+    stress = decided.found_self_stress
+    ordinary = (
+        np.ones(len(recovered.times), dtype=bool)
+        if stress is None
+        else stress.count <= recovery.generic_self_stress_count
+    )
+    determinate_leaves = list(iter_leaves(make_requested_blocks(recovery.without_indeterminacy_search(), reports)))
     found: tuple[Mask | None, ...] = (None,) * len(determinate_leaves)
-    if decided.remaining_stress is not None:
+    if decided.remaining_self_stress is not None:
         leaves_with_open = iter_leaves(make_requested_blocks(recovery, reports))
         found = tuple(
             find_newly_open(own.block[own.name], other.block[other.name])

@@ -46,7 +46,7 @@ def find_passages(recover: Callable[[Array], Recovery], grid: Array) -> Array:
 
 def find_points_on_pieces(recovery: Recovery) -> Array:
     """Return 1 where a point that moves over a body lies on the piece of a single cut of it, else 0, (n_t, m)."""
-    from heuncli.loads.kinetostatics.sections import find_attachments, is_on_piece
+    from heuncli.loads.kinetostatics.sections import find_attachments, mark_points_on_pieces
 
     actions = [
         *list_whole_joint_actions(recovery.joints),
@@ -54,7 +54,7 @@ def find_points_on_pieces(recovery: Recovery) -> Array:
         *list_coupling_actions(recovery.couplings),
     ]
     columns = [
-        is_on_piece(cuts, a.point)[:, 0]
+        mark_points_on_pieces(cuts, a.point)[:, 0]
         for cuts in recovery.setup.cuts
         if cuts.s is None
         for a in find_attachments(cuts.body, recovery.states, actions)

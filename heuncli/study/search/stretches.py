@@ -75,7 +75,7 @@ def find_impulse_extremes(setup: Setup, impulse: Block, quantities: Sequence[str
     for cuts in setup.cuts:
         if isinstance(cuts, Stretch):
             section = impulse["sections"][cuts.name]
-            summits_of_quantities = [find_summits(cuts, section["s"], section[name]) for name in quantities]
+            summits_of_quantities = [find_cut_extremes(cuts, section["s"], section[name]) for name in quantities]
             low, high = (np.array([one[side].value for one in summits_of_quantities]) for side in (0, 1))
             times, column = (
                 np.full(len(summits_of_quantities), float(impulse["time"])),
@@ -86,18 +86,20 @@ def find_impulse_extremes(setup: Setup, impulse: Block, quantities: Sequence[str
     return found
 
 
-class Summit(NamedTuple):
-    """An extreme along a stretch, and its place."""
+class CutExtreme(NamedTuple):
+    """An extreme along a run of cuts, and its place."""
 
     value: float
     place: CutPosition
 
 
-def find_summits(stretch: Stretch, s: Array, values: Array) -> tuple[Summit, Summit]:
-    """Return the lowest and the highest along a stretch, from the values (9 m,) at its nodes s."""
+def find_cut_extremes(stretch: Stretch, s: Array, values: Array) -> tuple[CutExtreme, CutExtreme]:
+    """Return the lowest and the highest value along a run of cuts, from the values (9 m,) at the nodes s of its m
+    pieces.
+    """
     low, high = compute_envelope(values[None])[0].tolist()
     places = [stretch.make_place(*locate_summit(s, values, side)[:2]) for side in (-1.0, 1.0)]
-    return Summit(low + 0.0, places[0]), Summit(high + 0.0, places[1])
+    return CutExtreme(low + 0.0, places[0]), CutExtreme(high + 0.0, places[1])
 
 
 def locate_summit(s: Array, values: Array, side: float) -> tuple[float, float, tuple[float, float]]:

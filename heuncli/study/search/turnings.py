@@ -50,24 +50,27 @@ class SampledTurns(NamedTuple):
     complete: bool
 
 
-def add_turning_points(sample: ColumnSampler, times: Array, grid: Array, errors: Array, even: Mask) -> SampledTurns:
+def add_turning_points(
+    sample: ColumnSampler, times: Array, grid: Array, errors: Array, is_squared: Mask
+) -> SampledTurns:
     """Return the samples at the instants of a grid and at all turning points between them.
 
-    times (n_t,), grid (n_t, n_columns): the first samples
+    times (n_t,): the instants of the grid
+    grid (n_t, n_columns): the samples there
     errors (n_columns,): of the numbers
-    even: whether columns are their squares
+    is_squared: whether columns are squares of these numbers
     """
 
     def slack(size: Array, _: Array) -> Array:
         """Return the part of numbers of some sizes (m, n_columns) that their errors cover."""
-        return np.asarray(np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors))
+        return np.asarray(np.where(is_squared, errors * errors + 2.0 * errors * np.sqrt(size), errors))
 
     first_samples = refine_until_predicted(sample, SampledTurns(times, grid, complete=True), slack)
     if len(times) < 2 or not first_samples.complete or not np.isfinite(first_samples.values).all():
         return first_samples
     columns = np.arange(grid.shape[1], dtype=np.intp)
-    targets = Targets(len(columns), columns, columns, errors, even)
-    required_height = make_required_height(errors, even)
+    targets = Targets(len(columns), columns, columns, errors, is_squared)
+    required_height = make_required_height(errors, is_squared)
     pool = find_intervals_above(first_samples.times, first_samples.values, targets, required_height, BOTH_SIDES)
     span, probes = float(np.ptp(times)), 0
     parts = [first_samples]
@@ -212,9 +215,10 @@ def merge_samples(parts: Sequence[SampledTurns], *, complete: bool) -> SampledTu
     return SampledTurns(times[order][first], values[order][first], complete)
 
 
-def make_required_height(errors: Array, even: Mask) -> Callable[[Array, Array, Indices], Array]:
-    """Return the height that an interval between two heights has to promise to hide a relevant turning point of a
-    target.
+def make_required_height(errors: Array, is_squared: Mask) -> Callable[[Array, Array, Indices], Array]:
+    """Return a function that tells how high an interval must promise to go before it may hide a relevant turning point.
+
+    The function takes the heights at both ends of intervals, and their targets.
     """
     n = len(errors)
 
@@ -222,6 +226,6 @@ def make_required_height(errors: Array, even: Mask) -> Callable[[Array, Array, I
         higher, of = np.maximum(b, c), target % n
         error, size = GOOD_ENOUGH * errors[of], np.abs(higher)
         squared = error * error + 2.0 * error * np.sqrt(size)
-        return np.asarray(higher + np.where(even[of], squared, error) + tolerances.SUM_ROUNDING * size)
+        return np.asarray(higher + np.where(is_squared[of], squared, error) + tolerances.SUM_ROUNDING * size)
 
     return beat

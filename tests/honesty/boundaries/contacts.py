@@ -13,7 +13,7 @@ from heuncli.motion.integration.contacts.complementarity import solve_complement
 from heuncli.motion.integration.contacts.resting import is_short_flight
 from heuncli.motion.integration.contacts.restitution import solve_contact_impulses
 from heuncli.motion.integration.contacts.sequential_impacts import find_independent
-from heuncli.motion.integration.contacts.touching import TouchingContacts, moves_something
+from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, study
 
@@ -75,7 +75,7 @@ def hardly_moved(x: float) -> str:
     layout: Any = SimpleNamespace(bodies={"mass": np.ones(1)}, size=1.0)
     one = np.ones(1)
     touch = TouchingContacts(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one, one)
-    return "moves" if moves_something(layout, touch, np.array([[x]]))[0] else "held"
+    return "moves" if can_move_bodies(layout, touch, np.array([[x]]))[0] else "held"
 
 
 def hop(x: float) -> str:

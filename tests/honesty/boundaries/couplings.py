@@ -72,11 +72,11 @@ PART = Part(
     rows=(
         Row("TYPED_AXES", lambda x: meshes(x, 0.1), "fine", "refused: gear-axes"),
         Row("TYPED_POINT", lambda x: meshes(0.0, 0.1 + 0.4 * x), "fine", "refused: gear-axes"),
-        Row("STANDS_STILL", slow, "refused: path-form", "fine"),
+        Row("NO_PATH_DIRECTION", slow, "refused: path-form", "fine"),
         Row("SAME_PLACE", touches, "refused: path-branch", "fine"),
     ),
     exempt={
-        "PARTED": "why a run ended, told; tests/closed_forms/test_couplings.py: drives that fight, and that agree",
+        "DRIVES_DISAGREE": "why a run ended; tests/closed_forms/test_couplings.py: drives that fight, and that agree",
     },
 )
 JIB = """

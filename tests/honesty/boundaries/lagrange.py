@@ -35,7 +35,7 @@ def vector(x: float) -> str:
 PART = Part(
     headings=("coordinates of Lagrange's equations",),
     rows=(
-        Row("TELLING", told, "told", "refused"),
+        Row("COORDINATE_RATIO", told, "told", "refused"),
         Row("NO_OFFSET", rests, "rests", "moves"),
         Row("HALF_TURN", vector, "none", "told"),
     ),

@@ -144,7 +144,7 @@ PART = Part(
         "SLENDER": "which bodies' moments are looked at at all: those of the others are far above NO_INERTIA",
         "KERNEL.much_lent": "how much inertia is lent: what it takes is given back",
         "SPINS_LIGHTLY": "what is integrated: either way the same motion, at other costs",
-        "LENT_REACH": "an inertia lent to a spin on which nothing depends",
+        "ARTIFICIAL_RADIUS": "an inertia lent to a spin on which nothing depends",
     },
     wanted={
         "ALONG": "which joint the tree cuts beside a thin rod",

@@ -48,7 +48,7 @@ def drift(x: float) -> str:
 PART = Part(
     ("loads that are none",),
     rows=(
-        Row("SET_GOING", nearly_carried, "rests", "moves"),
+        Row("STARTS_MOVING", nearly_carried, "rests", "moves"),
         Row("NO_FORCE", axis_of, "no axis", "an axis"),
         Row("NO_LOAD", carried_by_nothing, "none", "judged"),
         Row("NO_ENERGY", drift, "at rest", "a drift"),

@@ -37,6 +37,6 @@ analysis: {{duration: {2.0 * PERIOD}, samples: 3}}
 
 PART = Part(
     headings=("orders",),
-    rows=(Row("CANCELS", left, "cancels", "remains"), Row("COMES_BACK", growing, "told", "no-period")),
+    rows=(Row("CANCELS", left, "cancels", "remains"), Row("SAME_PERIOD", growing, "told", "no-period")),
     exempt={"ORDERS_SETTLED": "how many samples are taken: with more of them the orders are the same to their digits"},
 )

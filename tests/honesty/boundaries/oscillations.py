@@ -121,6 +121,6 @@ PART = Part(
         Row("STEEP", beside_a_bend, "fine", "refused: no-modes"),
     ),
     wanted={
-        "GOES_ON": "whether what moves steadily goes on in the same way",
+        "STEADY_CHANGE": "whether what moves steadily goes on in the same way",
     },
 )

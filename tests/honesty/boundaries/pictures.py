@@ -97,8 +97,8 @@ PART = Part(
         Row("THROUGHOUT", told_once, "throughout", "varies"),
         Row("IN_ONE_PLANE", out_of_the_plane, "xy", "no plane"),
         Row("TOLD_ACROSS", across, "silent", "told"),
-        Row("COMES_ROUND", from_turn_to_turn, "the last turn", "the whole run"),
-        Row("TORN", between_frames, "followed", "torn"),
+        Row("SAME_TURN_DRAWN", from_turn_to_turn, "the last turn", "the whole run"),
+        Row("MAX_INTERPOLATED_TURN", between_frames, "followed", "torn"),
         Row("NOTHING_ACTS", carried, "nothing", "pivot"),
     ),
 )

@@ -102,7 +102,7 @@ PART = Part(
         "REST_FINER": "how much finer a search is than the one that it checks",
         "REST_SAME": "whether two searches have found one pose: two poses lie farther apart",
         "REST_WAY": "how near two searches have to come along what nothing holds: what is left is stated",
-        "REST_BESIDE": "the same, of those that are made at most: farther apart is told as another pose",
+        "REST_SEARCHES_DIFFER": "the same, of those that are made at most: farther apart is told as another pose",
         "REST_DOUBT": "when a finer search is made: tests/closed_forms/test_rest.py has starts beside a ridge",
     },
 )

@@ -62,7 +62,7 @@ def compute_twists(layout: Layout, recovered: Evaluation) -> Twists:
     """Return the twists at recovered instants."""
     R, r = recovered.bodies["R"], recovered.bodies["r"]
     n_t, n_b = R.shape[:2]
-    turn, shift = np.zeros((2, n_t, n_b, layout.answer_count, 3))  # shift: of the joint point, at first
+    turn, shift = np.zeros((2, n_t, n_b, layout.velocity_count, 3))  # shift: of the joint point, at first
     table, directions = layout.tables["freedoms"], vector_array(layout.tables["freedoms"]["direction"])
     for k, body in enumerate(layout.bodies):
         parent = int(body["parent"])
@@ -111,7 +111,7 @@ def closure_rows(body_twists: Twists, recovered: Evaluation) -> Array:
     """Return J of all closure rows on all freedoms of the tree, including driven ones, (n_t, rows, n)."""
     layout = body_twists.layout
     closures = layout.tables["closures"]
-    J = np.zeros((len(body_twists.turn), len(closures), layout.answer_count))
+    J = np.zeros((len(body_twists.turn), len(closures), layout.velocity_count))
     order = [hang.body for hang in layout.spanning.links]
     for i, row in enumerate(closures):
         a, b = (order[k] if k >= 0 else GROUND for k in (int(row["a"]), int(row["b"])))

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 from heuncli.results.results_schema import (
+    ESTIMATE_OF_ERROR_KIND,
     IMPULSES,
-    KIND_OF,
     NAMES,
     REPORT_OF,
     XYZ,
@@ -70,7 +70,11 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     shape = " by ".join("x, y, z" if axis.letters == XYZ else axis.name for axis in row.shape) or "one number"
     yield "shape", shape + (" at each instant" if row.is_timed else "")
     kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
-    yield "error", f"accuracy.estimate.{KIND_OF.get(kind, kind)}, of the largest of its kind: heun explain accuracy"
+    yield (
+        "error",
+        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, of the largest of its kind: "
+        "heun explain accuracy",
+    )
     report = REPORT_OF.get(keys[0], keys[0])
     component = f"{path}.x" if row.shape and row.shape[-1].letters == XYZ and path.split(".")[-1] not in XYZ else path
     yield "told by", f'heun run SPEC --only {report}; heun run SPEC --measure "max {component}"'

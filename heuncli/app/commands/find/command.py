@@ -71,7 +71,7 @@ def main(request: FindRequest) -> int:
             value=value,
         )
     require_known_measure(findings)
-    page_units = units_shown if request.units else use_unit_of(units_shown, condition)
+    page_units = units_shown if request.units else use_condition_unit(units_shown, condition)
     page = FindPage(evaluator.spec.title, condition, interval, findings, scan, max_variants, page_units)
     emit(FORMS[form](page), request.output)
     note_si_format(request.units, form, request.quiet)
@@ -119,7 +119,7 @@ def require_known_measure(findings: IntervalFindings) -> None:
         )
 
 
-def use_unit_of(units_shown: Units, condition: FindCondition) -> Units:
+def use_condition_unit(units_shown: Units, condition: FindCondition) -> Units:
     """Return the display units with the measure in the unit in which its value was given."""
     if not condition.given_unit or not condition.unit:
         return units_shown

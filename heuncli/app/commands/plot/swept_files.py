@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.analyses.sweep_store.columns import CODE, NUMBER, REASON, WORDS, make_parameter_columns
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
 from heuncli.analyses.sweep_store.store import open_store
-from heuncli.analyses.sweep_store.which import choose_sweep, split_number
+from heuncli.analyses.sweep_store.which import choose_sweep, split_store_argument
 from heuncli.analyses.variants.evaluation import MeasureValue
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
@@ -39,7 +39,7 @@ def read_sweep(word: str) -> SweepTable:
     """Read the sweep in a file. Raises UsageError, OutputError."""
     if PurePath(word).suffix.lower() == ".csv":
         return _read_csv(word)
-    name, number = split_number(word, COMMAND)
+    name, number = split_store_argument(word, COMMAND)
     store = open_store(name)
     with closing(store.connection):
         sweeps = list(store.iter_sweeps())

@@ -20,7 +20,7 @@ def make_glb(study: Study) -> bytes:
     times = choose_instants(study)
     if not study.has_one_instant and len(times) > 1:
         turned = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
-        if turned > tolerances.TORN:
+        if turned > tolerances.MAX_INTERPOLATED_TURN:
             study.later_warnings[WARNING.format(math.degrees(turned))] = None
     poses = compute_poses(study, times)
     return encode_gltf(make_page_machine(study.spec, study.setup.scene), poses, find_up_direction(study.spec, poses))

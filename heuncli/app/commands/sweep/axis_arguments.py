@@ -11,7 +11,7 @@ from heuncli.analyses.variants.axes import (
     RandomVariable,
     format_quantity,
     parse_axis_values,
-    parse_figure,
+    parse_number_with_unit,
 )
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
@@ -54,7 +54,7 @@ class AxisArgument(NamedTuple):
         known_kinds: set[str] = set()
         samples: dict[str, int] = {}
         for k, text in enumerate(self.texts):
-            figure = parse_figure(text)
+            figure = parse_number_with_unit(text)
             kind = f"number {figure.unit}" if figure is not None else text
             if kind not in known_kinds:
                 known_kinds.add(kind)

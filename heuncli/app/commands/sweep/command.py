@@ -109,7 +109,7 @@ def make_plan(axis_arguments: Sequence[AxisArgument], request: SweepRequest) -> 
     AxisError.
     """
     draws = draw_samples([one.axis for one in axis_arguments if isinstance(one.axis, RandomVariable)], request)
-    return combine_axes([one for one in axis_arguments if not is_every_case(one)], request, draws)
+    return combine_axes([one for one in axis_arguments if not is_all_cases_axis(one)], request, draws)
 
 
 def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, draws: Draws | None) -> Plan:
@@ -119,9 +119,9 @@ def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, 
     return make_axes_plan(axes, together=request.zip, draws=draws, columns=columns)
 
 
-def is_every_case(one: AxisArgument) -> bool:
+def is_all_cases_axis(axis_argument: AxisArgument) -> bool:
     """Return whether an axis is the word `case=all`."""
-    return one.name == CASE and one.column is None and [*one.texts] == [ALL_CASES]
+    return axis_argument.name == CASE and axis_argument.column is None and [*axis_argument.texts] == [ALL_CASES]
 
 
 def make_evaluator(recipe: Recipe, plan: Plan) -> VariantEvaluator:
@@ -148,11 +148,12 @@ def expand_cases(
     plan: Plan, axis_arguments: Sequence[AxisArgument], request: SweepRequest, evaluator: VariantEvaluator
 ) -> Plan:
     """Return the plan with `case=all` replaced by every load case. Raises AxisError."""
-    if not any(map(is_every_case, axis_arguments)):
+    if not any(map(is_all_cases_axis, axis_arguments)):
         return plan
     case_axis = ParameterAxis(CASE, tuple(evaluator.spec.cases)) if varies_cases(evaluator.spec) else None
     expanded = [
-        one._replace(axis=case_axis) if case_axis is not None and is_every_case(one) else one for one in axis_arguments
+        one._replace(axis=case_axis) if case_axis is not None and is_all_cases_axis(one) else one
+        for one in axis_arguments
     ]
     return combine_axes(expanded, request, plan.draws)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.analyses.variants.axes import RandomVariable
-from heuncli.analyses.variants.draws import SAMPLES_HINT, make_draws, warn_unbalanced
+from heuncli.analyses.variants.draws import SAMPLES_HINT, make_draws, make_imbalance_warning
 from heuncli.analyses.variants.plans import Draws
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.output import print_stderr
@@ -27,7 +27,7 @@ def draw_samples(laws: Sequence[RandomVariable], request: SweepRequest) -> Draws
         message = f"{', '.join(law.name for law in laws)}: how many are drawn?"
         raise UsageError(Problem("bad-option", message, hint=SAMPLES_HINT))
     draws = make_draws(laws, request.samples, request.seed or 0, indices=request.indices)
-    imbalance = warn_unbalanced(laws, request.samples)
+    imbalance = make_imbalance_warning(laws, request.samples)
     if imbalance and not request.quiet:
         print_stderr(f"warning: {imbalance}")
     if request.indices and not request.quiet:

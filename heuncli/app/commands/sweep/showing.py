@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 
 from heuncli.analyses.sweep_store.store import open_store
-from heuncli.analyses.sweep_store.which import choose_sweep, format_sweep, split_number
+from heuncli.analyses.sweep_store.which import choose_sweep, format_sweep, split_store_argument
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file
 from heuncli.app.cli.output import print_stderr
@@ -28,7 +28,7 @@ def show_stored(request: SweepRequest, output: SweepOutput) -> int:
     """Write a sweep of a store; returns the exit code. Raises UsageError, OutputError."""
     assert request.show is not None
     _require_alone(request)
-    name, sweep_number = split_number(request.show, "--show")
+    name, sweep_number = split_store_argument(request.show, "--show")
     shard = parse_shard(request.shard)
     if request.output is not None and is_same_file(name, request.output):
         raise UsageError(Problem("bad-option", "--show and -o name the same file", hint="name another file"))

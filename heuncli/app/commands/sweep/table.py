@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from heuncli.analyses.variants.axes import ParameterAxis, parse_figure
+from heuncli.analyses.variants.axes import ParameterAxis, parse_number_with_unit
 from heuncli.app.commands.sweep.axis_arguments import AxisArgument, AxisColumn
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
@@ -86,7 +86,7 @@ def _parse_heads(file: str, n: int, heads: Sequence[TableCell], problems: list[P
     for cell in heads:
         place = SourceLocation(file, n, cell.column)
         name, unit = split_heading(cell.text)
-        if not name or parse_figure(name) is not None:
+        if not name or parse_number_with_unit(name) is not None:
             problems.append(Problem(CODE, f"'{cell.text}' is not the name of a parameter", place, FORM))
         elif any(name == other for other, _ in names):
             problems.append(Problem(CODE, f"there are two columns '{name}'", place, "one column a parameter"))
@@ -108,7 +108,7 @@ def _format_value(file: str, n: int, cell: TableCell, head: tuple[str, str], mar
             Problem(CODE, f"an empty cell in the column '{name}'", SourceLocation(file, n, cell.column), hint)
         )
     text = DECIMAL_COMMA.sub(r"\1.\2", cell.text) if mark == ";" else cell.text
-    figure = parse_figure(text) if unit else None
+    figure = parse_number_with_unit(text) if unit else None
     return f"{text} {unit}" if figure is not None and not figure.unit else text
 
 

@@ -35,7 +35,7 @@ class BatchResults(NamedTuple):
 
 
 def solve_variants(
-    evaluator: VariantEvaluator, plan: Plan, numbers: Iterator[int], jobs_: int, stop_descriptor: int | None = None
+    evaluator: VariantEvaluator, plan: Plan, numbers: Iterator[int], job_count: int, stop_descriptor: int | None = None
 ) -> Iterator[tuple[int, VariantResult]]:
     """Yield each number with its result, in the order of completion.
 
@@ -49,7 +49,7 @@ def solve_variants(
             batches.record_time(batch, batch_results.seconds)
             yield from zip(batch, batch_results.results, strict=True)
         return
-    for batch, outcome in jobs.run_as_completed(work, batches.next, jobs_, stop_descriptor):
+    for batch, outcome in jobs.run_as_completed(work, batches.next, job_count, stop_descriptor):
         if isinstance(outcome, jobs.ProcessDeath):
             yield from ((number, make_death_result(outcome)) for number in batches.retries.add_lost(batch, outcome))
         else:

@@ -3,7 +3,8 @@ error.
 
 A run notices a contradiction at the end of a step, when gaps have opened, or near the end of a range, where rates grow
 without bound. The instant is found by halving between the last state that meets all conditions and there. A state
-counts as good where its chains close, and its accelerations keep them closed within SHUT, to the right of the instant.
+counts as good where its chains close, and its accelerations keep them closed within DRIVE_FOLLOWED, to the right of the
+instant.
 
 Where several drives move one loop, they may contradict each other within a step and agree at its end. In that case the
 steps of a run are inspected again.
@@ -132,8 +133,8 @@ def evaluate_after(runner: Runner, t: float, y: Array) -> Evaluation:
 
 def meets_conditions(runner: Runner, evaluation: Evaluation) -> bool:
     """Return whether an evaluated state has neither gaps nor unmet conditions."""
-    closed = evaluation.gap[0] <= tolerances.SHUT * runner.size
-    return bool(closed and evaluation.residual[0] <= tolerances.SHUT)
+    closed = evaluation.gap[0] <= tolerances.DRIVE_FOLLOWED * runner.size
+    return bool(closed and evaluation.residual[0] <= tolerances.DRIVE_FOLLOWED)
 
 
 def advance_state(runner: Runner, good: TimedState, t: float) -> TimedState | None:

@@ -29,7 +29,7 @@ from heuncli.motion.integration.contacts.latches import (
     add_catches,
     work_of_catches,
 )
-from heuncli.motion.integration.contacts.resting import find_resting, find_undecided_by_friction, is_short_flight
+from heuncli.motion.integration.contacts.resting import find_contradicted, find_resting, is_short_flight
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
     chattering_error,
@@ -49,7 +49,7 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     list_bilateral_contacts,
     select_loaded,
 )
-from heuncli.motion.integration.contacts.touching import TouchingContacts, find_touching, moves_something, opening_rates
+from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, solve_impulses
 from heuncli.multibody.response import ImpulseColumns as Answered
@@ -258,7 +258,7 @@ class Contacts:
         rates = opening_rates(contacts_touching, solution.columns.bodies)
         A = 0.5 * (rates[:, n:] + rates[:, n:].T)
         return solution, ContactProblem(
-            contacts_touching, A, moves_something(self.layout, contacts_touching, A), rates[:, :n].sum(axis=1)
+            contacts_touching, A, can_move_bodies(self.layout, contacts_touching, A), rates[:, :n].sum(axis=1)
         )
 
     def solve(
@@ -363,7 +363,7 @@ class Contacts:
         contacts_touching, full_holding = problem.touching, self.latches.holding()
         full_holding[contacts_touching.indices] = holding
         evaluation = self.evaluator.evaluate(np.array([t]), after_state[None, :], holding=full_holding)
-        is_wrong = find_undecided_by_friction(contacts_touching, problem.A, holding, rate, evaluation, self.layout)
+        is_wrong = find_contradicted(contacts_touching, problem.A, holding, rate, evaluation, self.layout)
         if is_wrong.any():
             names = ", ".join(self.layout.contacts[i].name for i in contacts_touching.indices[is_wrong])
             message = (

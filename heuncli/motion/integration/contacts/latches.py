@@ -19,7 +19,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.conditions import Conditions, read_coordinates
 from heuncli.motion.integration.contacts.impulses import RightSides
-from heuncli.motion.integration.contacts.touching import TouchingContacts, gap_terms, unit_load
+from heuncli.motion.integration.contacts.touching import TouchingContacts, gap_term_size, unit_load
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.layout import Contact, Layout
@@ -165,7 +165,7 @@ class Latches:
             return None
         if latch.position is None:
             return gap
-        near = tolerances.CONTACT_TOUCHES * gap_terms(self.layout, evaluation.bodies[0], contact)
+        near = tolerances.CONTACT_TOUCHES * gap_term_size(self.layout, evaluation.bodies[0], contact)
         return latch.position if is_passed or (is_still and abs(gap) <= near) else None
 
 
@@ -176,7 +176,7 @@ def latch_rate(layout: Layout, evaluation: Evaluation, contact: Contact, last: f
     rate = float(np.sum(unit_loads[:, :3] * bodies["omega"]) + np.sum(unit_loads[:, 3:] * bodies["v"]))
     sizes = np.linalg.norm(unit_loads[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
     sizes += np.linalg.norm(unit_loads[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)
-    reach = tolerances.KERNEL["touching"] * gap_terms(layout, bodies, contact)
+    reach = tolerances.KERNEL["touching"] * gap_term_size(layout, bodies, contact)
     return rate, max(tolerances.CONTACT_RATE * float(sizes), reach / (last or 1.0))
 
 

@@ -41,15 +41,15 @@ def find_resting(
     return holding, q + A @ scatter(solution.z, candidates, len(contacts))
 
 
-def find_undecided_by_friction(
+def find_contradicted(
     contacts_touching: TouchingContacts, A: Array, holding: Array, rate: Array, evaluation: Evaluation, layout: Layout
 ) -> Mask:
-    """Return which of the touching contacts contradict the result of `find_resting`, (k,): its w and z assume given
-    loads.
+    """Mark the touching contacts whose loads or accelerations contradict the result of `find_resting`, (k,).
 
-    Load-dependent joint friction changes as contacts bear.
+    `find_resting` takes all applied loads as given, but load-dependent joint friction changes as contacts bear. A
+    closed contact then may pull, or an open one accelerate inwards.
 
-    evaluation: the state with those contacts held that are said to be
+    evaluation: the state with the contacts held that `holding` names
     """
     contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
     rows = evaluation.rows[0]

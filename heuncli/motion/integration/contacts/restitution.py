@@ -30,7 +30,7 @@ class ContactImpulses:
 
     depends (k,): closed by others, so that it is unknown how they share the impulse
     count (k,): how often each was struck
-    settled (k,): those that rebound, yet rest after infinitely many impacts in a sequence
+    comes_to_rest (k,): contacts with restitution that rest after infinitely many impacts in a sequence
     """
 
     impulses: Array

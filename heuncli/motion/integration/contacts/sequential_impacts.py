@@ -26,7 +26,7 @@ from heuncli.results.results import Array, Indices, Mask
 
 MAX_IMPACTS = 20_000  # of one group at one instant: reached by a ball between a wall and a mass 4e7 times its own
 UNSOLVED_FRACTION = 0.1  # fraction of a rate's rounding that may remain where contacts are solved together
-SETTLING = 200  # consecutive plastic impacts without a flight, after which their limit is solved
+MAX_PLASTIC_IMPACTS = 200  # consecutive plastic impacts without a flight, after which their limit is solved
 
 Solver = Callable[[Array, Indices, Array, Array], tuple[Array, Mask]]
 
@@ -67,16 +67,15 @@ def is_coupled(A: Array) -> Mask:
 
 
 class ContactRates:
-    """Rates and gaps of contacts during a sequence. Plain numbers, because a few contacts may be struck thousands of
-    times.
+    """Rates and gaps of contacts during a sequence; every flight and impact changes them.
+
+    Plain numbers, because a few contacts may be struck thousands of times.
 
     v: rates of opening
     gap: gaps, in any unit of length
     widest: largest gap since the last impact, the scale of its rounding
-    total: impulses
+    impulses: sums of the impulses so far
     largest_rates, rate_changes: largest value of each rate, and the sum of its changes, the scales of its rounding
-
-    Everything changes with every flight and impact.
     """
 
     def __init__(self, start: Array, lengths: Array, A: Array) -> None:
@@ -160,10 +159,11 @@ def strike_in_sequence(
 
     contacts_touching: the contacts (k,)
     A (k, k): rates of opening from unit impulses
-    start (k,): rates of opening after what is given
+    start (k,): rates of opening after the given impulses
     noise (k,): rounding error of these rates
     moves (k,): whether an impulse moves anything
-    solve_impulses(v, own, e, noise): impulses of contacts that close together, and which depend on others
+    solve_impulses: function of the rates, the indices of contacts that close together, their restitution and noise;
+    returns their impulses, and which of them depend on others
 
     Raises EndlessImpacts.
     """
@@ -184,7 +184,7 @@ def strike_in_sequence(
             plastic_count, plastic_contacts = 0, set()
         else:
             plastic_count, plastic_contacts = plastic_count + 1, plastic_contacts | set(struck_contacts)
-        if plastic_count > SETTLING:
+        if plastic_count > MAX_PLASTIC_IMPACTS:
             struck_contacts, plastic_count = sorted(plastic_contacts), 0
         contact_rates.fly(time, struck_contacts)
         if any(coupled[i, k] for i in struck_contacts for k in struck_contacts if i != k):

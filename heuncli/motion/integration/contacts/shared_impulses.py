@@ -17,7 +17,7 @@ from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
 
-MOST_NAMES = 6  # that a sentence lists
+MAX_NAMES = 6  # that a sentence lists
 
 
 @record
@@ -179,8 +179,8 @@ def format_sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]
 
 def join_names(names: Sequence[str]) -> str:
     """Join names as in a sentence, only the first of many."""
-    if len(names) > MOST_NAMES:
-        return f"{', '.join(names[:MOST_NAMES])} and {len(names) - MOST_NAMES} more"
+    if len(names) > MAX_NAMES:
+        return f"{', '.join(names[:MAX_NAMES])} and {len(names) - MAX_NAMES} more"
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 

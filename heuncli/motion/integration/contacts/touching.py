@@ -46,12 +46,13 @@ class TouchingContacts:
 
 
 def find_touching(
-    layout: Layout, evaluation: Evaluation, is_closed: Mask, event: int | None, last: float
+    layout: Layout, evaluation: Evaluation, is_closed: Mask, event_row: int | None, end_time: float
 ) -> TouchingContacts:
-    """Find the contacts that touch at a state: closed ones, the row of the event, and those with hardly a gap.
+    """Find the contacts that touch at a state: closed ones, the one whose row caused the event, and those with hardly a
+    gap.
 
-    A contact that was closed opens with no rate; nor does one that would stay within its reach over the run, up to
-    `last`.
+    A closed contact has no rate of opening. Nor has one that opens so slowly that up to `end_time` it would stay within
+    the rounding of its gap.
     """
     rows, bodies = evaluation.rows[0], evaluation.bodies[0]
     numbers = []
@@ -59,14 +60,14 @@ def find_touching(
         if contact.sense == 0:
             continue  # a latch
         gap = -contact.sense * float(rows["gap"][contact.row])
-        tolerance = tolerances.CONTACT_TOUCHES * gap_terms(layout, bodies, contact)
-        if is_closed[i] or contact.row == event or gap <= tolerance:
+        tolerance = tolerances.CONTACT_TOUCHES * gap_term_size(layout, bodies, contact)
+        if is_closed[i] or contact.row == event_row or gap <= tolerance:
             numbers.append(i)
     contacts = [layout.contacts[i] for i in numbers]
     loads = np.array([unit_load(layout, evaluation, contact, -contact.sense) for contact in contacts])
     loads = loads.reshape(len(contacts), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
-    terms = np.array([gap_terms(layout, bodies, contact) for contact in contacts])
+    terms = np.array([gap_term_size(layout, bodies, contact) for contact in contacts])
     reaches = tolerances.KERNEL["touching"] * terms
     moments, forces = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
     speeds = moments @ np.linalg.norm(bodies["omega"], axis=1) + forces @ np.linalg.norm(bodies["v"], axis=1)
@@ -79,7 +80,7 @@ def find_touching(
             0.0,
             np.einsum("kbi,bi->k", loads, motion) + prescribed_opening_rate(layout, contacts, evaluation),
         ),
-        noise=np.maximum(noise, reaches / (last or 1.0)),
+        noise=np.maximum(noise, reaches / (end_time or 1.0)),
         reach=reaches,
         restitution=np.array([contact.restitution for contact in contacts]),
         length=layout.tables["closures"]["weight"][[contact.row for contact in contacts]],
@@ -95,8 +96,8 @@ def prescribed_opening_rate(layout: Layout, contacts: Sequence[Contact], evaluat
     return np.array(rates).reshape(len(contacts))
 
 
-def gap_terms(layout: Layout, bodies: Table, contact: Contact) -> float:
-    """Return the size of the terms that a contact's gap is the sum of [m or rad]."""
+def gap_term_size(layout: Layout, bodies: Table, contact: Contact) -> float:
+    """Return the sum of the magnitudes of the terms of a contact's gap [m or rad], the scale of its rounding."""
     row = layout.tables["closures"][contact.row]
     places = [
         world_point(bodies, part) for part in find_conditions(layout, contact.row) if part["kind"] not in ON_SHEAVE
@@ -149,8 +150,10 @@ def opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
     return np.asarray(np.einsum("kbi,cbi->kc", contacts_touching.loads, motion))
 
 
-def moves_something(layout: Layout, contacts_touching: TouchingContacts, A: Array) -> Mask:
-    """Return whether a bearing contact moves something; else all bilateral constraints hold it too."""
+def can_move_bodies(layout: Layout, contacts_touching: TouchingContacts, A: Array) -> Mask:
+    """Return whether each contact could move a body if it bore a load, (k,); if not, bilateral constraints hold all
+    that it pushes.
+    """
     mass = layout.bodies["mass"]
     size = np.einsum("kbi,b->k", contacts_touching.loads[:, :, 3:] ** 2, 1.0 / mass)
     size += np.einsum("kbi,b->k", (contacts_touching.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)

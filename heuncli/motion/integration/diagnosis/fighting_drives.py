@@ -27,7 +27,9 @@ def find_fighting_drives(mechanism: Mechanism, t: float, start_time: float) -> P
             terms = [
                 [coordinate.ratio * jet[k] for coordinate, jet in zip(coordinates, jets, strict=True)] for k in range(2)
             ]
-            if any(abs(sum(coordinate)) > tolerances.PARTED * max(map(abs, coordinate)) for coordinate in terms):
+            if any(
+                abs(sum(coordinate)) > tolerances.DRIVES_DISAGREE * max(map(abs, coordinate)) for coordinate in terms
+            ):
                 return make_problem(mechanism, coupling, [drive.name for drive in drives], start_time)
     return None
 

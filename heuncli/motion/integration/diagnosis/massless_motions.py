@@ -338,7 +338,7 @@ def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> li
     mechanism, i = scene.mechanism, scene.layout.spanning.links[place].body
     body = mechanism.bodies[i]
     arms = [p - body.center for j in mechanism.joints for end, p in ((j.a, j.p), (j.b, j.q)) if end == i]
-    reach = max([tolerances.LENT_REACH * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
+    reach = max([tolerances.ARTIFICIAL_RADIUS * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
     inertia = max(body.mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
     return [{"body": place, "root": math.sqrt(inertia), "axis": axis} for axis in axes]
 

@@ -178,5 +178,5 @@ def describe_axes(axes: Array) -> str:
         return "any axis"
     n = axes[0] if len(axes) == 1 else np.cross(axes[0], axes[1])
     n = n * np.sign(n[np.argmax(np.abs(n))])  # the sign of a singular vector is arbitrary
-    components = ", ".join(f"{x:.4g}" for x in np.where(np.abs(n) < tolerances.DUST, 0.0, n))
+    components = ", ".join(f"{x:.4g}" for x in np.where(np.abs(n) < tolerances.PRINTED_COMPONENT, 0.0, n))
     return f"its axis ({components})" if len(axes) == 1 else f"its axes across ({components})"

@@ -30,10 +30,10 @@ if TYPE_CHECKING:  # loaded only for scenes with contacts
 class Interruptions:
     """The impulses of a run, each solved where the run reaches its instant, and its contacts. Changes the run.
 
-    due: given impulses still to come
-    done: impulses that happened
+    pending: given impulses still to come
+    events: impulses that happened
 
-    They are solved in the full scene, even if a reduced one is integrated in its place.
+    Impulses are solved in the full scene, even if a reduced one is integrated in its place.
     """
 
     def __init__(self, progress: RunProgress) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from heuncli.results.results_schema import AFTER_THE_RUN, first_element_suffix, independent_axes
+from heuncli.results.results_schema import BLOCKS_KNOWN_AFTER_RUN, first_element_suffix, independent_axes
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.names import UNTIL, is_name
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
@@ -71,7 +71,11 @@ def check_event_path(draft: DraftDocument) -> Iterator[Violation]:
         runs = runs if runs is not None else find_cut_runs(draft)
         if (wrong := find_path_error(condition.of, draft.names, runs)) is not None:
             yield Violation(of_path, *wrong)
-        elif not isinstance(target, NumberKind) or not target.is_known or condition.of.split(".")[0] in AFTER_THE_RUN:
+        elif (
+            not isinstance(target, NumberKind)
+            or not target.is_known
+            or condition.of.split(".")[0] in BLOCKS_KNOWN_AFTER_RUN
+        ):
             if condition.of.split(".")[0] not in draft.unread:
                 message = f"'{condition.of}': only the run can tell what that is"
                 yield Violation(of_path, message, "name a number of joints, sections, coordinates, energy, ...")

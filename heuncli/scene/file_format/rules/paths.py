@@ -97,7 +97,7 @@ def check_roller(joint_path: Path_, joint: f.CurveJoint, path: Path, normal: Dir
     assert joint.radius is not None
     roller = make_roller_path(path, joint.radius, normal)
     tightest_travel, share = find_max_curvature(roller)
-    if share > 1.0 - tolerances.STANDS_STILL:
+    if share > 1.0 - tolerances.NO_PATH_DIRECTION:
         tightest_travel = (
             tightest_travel if abs(tightest_travel) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0
         )  # a smaller value is rounding error

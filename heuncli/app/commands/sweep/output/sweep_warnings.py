@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.cached_evaluator import strip_figures
+from heuncli.analyses.variants.cached_evaluator import strip_numbers
 from heuncli.app.cli.output import print_stderr
 from heuncli.base.named_tuples import NamedTuple
 
@@ -46,7 +46,7 @@ def collect_warnings(head: SweepHead, rows: Iterable[SweptRow]) -> SweepWarnings
         if row.answer.code:
             codes[row.answer.code] += 1
         for text in row.answer.warnings:
-            kind = strip_figures(text)
+            kind = strip_numbers(text)
             if kind in warnings or len(warnings) < MAX_KINDS:
                 first, so_far = warnings.get(kind, (text, 0))
                 warnings[kind] = first, so_far + 1
