@@ -14,6 +14,9 @@ if not cython.compiled:
     from heuncli.kernel.programs import Bounds
     from heuncli.kernel.shadow import cython
 
+    # The coefficients of a parabola: the values at its ends, and the place where the tangents there meet.
+    PARABOLA_START, PARABOLA_MIDDLE, PARABOLA_END = range(3)
+
 
 def multiply_by_x(b: cython.p_double, n: cython.int) -> cython.void:
     """Multiply a polynomial of degree n by x; the result has degree n + 1."""

@@ -15,7 +15,14 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.bernstein import bound_polynomial, convert_rows, differentiate
+    from heuncli.kernel.bernstein import (
+        PARABOLA_END,
+        PARABOLA_MIDDLE,
+        PARABOLA_START,
+        bound_polynomial,
+        convert_rows,
+        differentiate,
+    )
     from heuncli.kernel.dense import clip_time
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import all_numbers
@@ -111,9 +118,9 @@ def build_end_window(
         a = 0.0 if scene.variables[i].is_rate else last[scene.freedoms[scene.variables[i].freedom].u_at]
         b: cython.p_double = course.value[i]
         # through z at the middle, with u and a there
-        b[0] = run.z[column] - u * half + 0.5 * a * half * half
-        b[1] = run.z[column] - 0.5 * a * half * half
-        b[2] = run.z[column] + u * half + 0.5 * a * half * half
+        b[PARABOLA_START] = run.z[column] - u * half + 0.5 * a * half * half
+        b[PARABOLA_MIDDLE] = run.z[column] - 0.5 * a * half * half
+        b[PARABOLA_END] = run.z[column] + u * half + 0.5 * a * half * half
         differentiate(b, course.rate[i], 2, course.length)
         differentiate(course.rate[i], course.second[i], 1, course.length)
 

@@ -19,6 +19,11 @@ if not cython.compiled:
 
     # What a step tried comes to.
     NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
+    # Rows of the interpolating polynomial: the cubic, and what accelerations at both ends add to it.
+    CHANGE, START_SLOPE, END_SLOPE, START_BEND, END_BEND = range(5)
+    HERMITE_ROWS = 3  # those of the cubic, which every method has
+    # A record of the track: whether the step's polynomial is recorded, its start, its length.
+    HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
     MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
 
 
@@ -161,9 +166,9 @@ def build_hermite(method: cython.pointer[Method], run: cython.pointer[Run]) -> c
     z: cython.p_double = run.chart.z
     for i in range(run.n):
         change = z[i] - y[i]
-        run.dense[0][i] = change
-        run.dense[1][i] = run.h * first[i] - change
-        run.dense[2][i] = 2.0 * change - run.h * (last[i] + first[i])
+        run.dense[CHANGE][i] = change
+        run.dense[START_SLOPE][i] = run.h * first[i] - change
+        run.dense[END_SLOPE][i] = 2.0 * change - run.h * (last[i] + first[i])
 
 
 def build_quintic(
@@ -179,15 +184,20 @@ def build_quintic(
     square: cython.double = run.h * run.h
     build_hermite(method, run)
     for i in range(run.n):
-        run.dense[3][i] = run.dense[4][i] = 0.0
+        run.dense[START_BEND][i] = run.dense[END_BEND][i] = 0.0
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if not freedom.driven:
             q = freedom.q_at
             first: cython.double = run.K[0][freedom.u_at]
             last: cython.double = run.K[method.stages][freedom.u_at]
-            run.dense[3][q] = 0.5 * square * first + run.dense[1][q] - run.dense[2][q]
-            run.dense[4][q] = 0.5 * square * last + run.dense[1][q] + 2.0 * run.dense[2][q] - run.dense[3][q]
+            run.dense[START_BEND][q] = 0.5 * square * first + run.dense[START_SLOPE][q] - run.dense[END_SLOPE][q]
+            run.dense[END_BEND][q] = (
+                0.5 * square * last
+                + run.dense[START_SLOPE][q]
+                + 2.0 * run.dense[END_SLOPE][q]
+                - run.dense[START_BEND][q]
+            )
 
 
 def build_explicit_interpolant(
@@ -209,10 +219,14 @@ def build_explicit_interpolant(
     build_hermite(method, run)
     for s in range(method.dense_rows):
         combine_stages(
-            method, method.stages + 1 + method.extra + method.estimates + s, run.chart.K, run.n, run.dense[3 + s]
+            method,
+            method.stages + 1 + method.extra + method.estimates + s,
+            run.chart.K,
+            run.n,
+            run.dense[HERMITE_ROWS + s],
         )
         for i in range(run.n):
-            run.dense[3 + s][i] *= run.h
+            run.dense[HERMITE_ROWS + s][i] *= run.h
 
 
 def build_collocation_interpolant(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
@@ -221,7 +235,7 @@ def build_collocation_interpolant(method: cython.pointer[Method], run: cython.po
     build_hermite(method, run)
     for s in range(method.dense_rows):
         row: cython.int = method.stages + 1 + method.extra + method.estimates + s
-        combine_stages(method, row, run.newton.known, run.n, run.dense[3 + s])
+        combine_stages(method, row, run.newton.known, run.n, run.dense[HERMITE_ROWS + s])
 
 
 def ensure_interpolant(
@@ -246,7 +260,7 @@ def interpolate(
     result: cython.p_double,
 ) -> cython.void:
     """Find the state at the fraction x of the step."""
-    evaluate_polynomial(run.dense, 0, 3 + method.dense_rows, run.chart.y, run.n, x, result)
+    evaluate_polynomial(run.dense, 0, HERMITE_ROWS + method.dense_rows, run.chart.y, run.n, x, result)
     if method.attitude:
         leave_chart(scene, method.attitude, run.y, result)
 
@@ -302,12 +316,12 @@ def record_course(method: cython.pointer[Method], run: cython.pointer[Run]) -> c
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
     span: cython.p_double = run.track.spans[run.track.done]
-    count: cython.Py_ssize_t = 3 + method.dense_rows
+    count: cython.Py_ssize_t = HERMITE_ROWS + method.dense_rows
     first: cython.Py_ssize_t = (count + 1) * run.track.done
-    span[0] = run.has_interpolant and not (method.by_step or method.attitude or run.determined)
-    span[1] = run.t
-    span[2] = run.h
-    if span[0]:
+    span[HAS_COURSE] = run.has_interpolant and not (method.by_step or method.attitude or run.determined)
+    span[STEP_START] = run.t
+    span[STEP_LENGTH] = run.h
+    if span[HAS_COURSE]:
         for i in range(run.n):
             run.track.courses[first][i] = run.y[i]
             for k in range(count):

@@ -68,6 +68,10 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
 
+    # The arrays of `Expressions.memory`, in their order.
+    CODE_MEMORY, CONSTANT_MEMORY, VARIABLE_MEMORY, STACK_MEMORY, JET_MEMORY, HELD_MEMORY, DOUBT_MEMORY = range(7)
+    RANGE_MEMORY, MIDDLE_MEMORY, SPAN_MEMORY, TABLE_MEMORY = range(7, 11)
+
 OPERATIONS = {
     "const": CONST, "var": VAR, "add": ADD, "sub": SUB, "mul": MUL, "div": DIV, "pow": POW, "atan2": ATAN2,
     "hypot": HYPOT, "min": MIN, "max": MAX, "lt": LT, "le": LE, "gt": GT, "ge": GE, "eq": EQ, "ne": NE, "neg": NEG,
@@ -179,7 +183,7 @@ class Expressions:
             self.programs.spans = [self.programs.ranges[0]] * depth
         else:
             wide: bool = cython.sizeof(cython.p_double) == 8
-            self.memory: tuple[Any, ...] = (
+            arrays: list[Any] = [
                 array("i", code),
                 array("d", constants),
                 array("d", bytes(8 * max(variables, 1))),
@@ -192,18 +196,19 @@ class Expressions:
                 array("d", bytes(48 * depth)),
                 array("Q" if wide else "L", [address_of(table) for table in tables]),
                 tuple([memoryview(table) for table in tables]),
-            )
-            self.programs.code = cython.cast(cython.pointer[Instruction], address_of(self.memory[0]))
-            self.programs.constants = cython.cast(cython.p_double, address_of(self.memory[1]))
-            self.programs.variables = cython.cast(cython.p_double, address_of(self.memory[2]))
-            self.programs.stack = cython.cast(cython.p_double, address_of(self.memory[3]))
-            self.programs.jets = cython.cast(cython.pointer[Jet], address_of(self.memory[4]))
-            self.programs.held = cython.cast(cython.p_double, address_of(self.memory[5]))
-            self.programs.doubt = cython.cast(cython.p_int, address_of(self.memory[6]))
-            self.programs.ranges = cython.cast(cython.pointer[Span], address_of(self.memory[7]))
-            self.programs.middles = cython.cast(cython.pointer[Span], address_of(self.memory[8]))
-            self.programs.spans = cython.cast(cython.pointer[Span], address_of(self.memory[9]))
-            self.programs.tables = cython.cast(cython.pointer[cython.p_double], address_of(self.memory[10]))
+            ]
+            self.memory: tuple[Any, ...] = tuple(arrays)
+            self.programs.code = cython.cast(cython.pointer[Instruction], address_of(arrays[CODE_MEMORY]))
+            self.programs.constants = cython.cast(cython.p_double, address_of(arrays[CONSTANT_MEMORY]))
+            self.programs.variables = cython.cast(cython.p_double, address_of(arrays[VARIABLE_MEMORY]))
+            self.programs.stack = cython.cast(cython.p_double, address_of(arrays[STACK_MEMORY]))
+            self.programs.jets = cython.cast(cython.pointer[Jet], address_of(arrays[JET_MEMORY]))
+            self.programs.held = cython.cast(cython.p_double, address_of(arrays[HELD_MEMORY]))
+            self.programs.doubt = cython.cast(cython.p_int, address_of(arrays[DOUBT_MEMORY]))
+            self.programs.ranges = cython.cast(cython.pointer[Span], address_of(arrays[RANGE_MEMORY]))
+            self.programs.middles = cython.cast(cython.pointer[Span], address_of(arrays[MIDDLE_MEMORY]))
+            self.programs.spans = cython.cast(cython.pointer[Span], address_of(arrays[SPAN_MEMORY]))
+            self.programs.tables = cython.cast(cython.pointer[cython.p_double], address_of(arrays[TABLE_MEMORY]))
         self.programs.holding = FREE
 
     def evaluate(self, start: cython.int, count: cython.int, x: Sequence[float]) -> float:

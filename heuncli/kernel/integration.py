@@ -14,7 +14,7 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.dense import clip_time, evaluate_polynomial
+    from heuncli.kernel.dense import HERMITE_ROWS, STEP_LENGTH, STEP_START, clip_time, evaluate_polynomial
     from heuncli.kernel.events import MAX_PEAK_PARTS, hold_branches, reset_watches
     from heuncli.kernel.following import is_linear, prepare_step
     from heuncli.kernel.memory import Memory
@@ -50,7 +50,7 @@ def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, steps:
     rows_out: cython.pp_double = memory.view_rows(states, len(times), n)
     for k in range(len(times)):
         step = step_numbers[k]
-        x: cython.double = (t[k] - spans[step][1]) / spans[step][2]
+        x: cython.double = (t[k] - spans[step][STEP_START]) / spans[step][STEP_LENGTH]
         evaluate_polynomial(course, step * rows + 1, rows - 1, course[step * rows], n, x, rows_out[k])
     memory.fetch()
 
@@ -129,7 +129,7 @@ class Integration:
         run.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
         if self.method.by_step:
             run.beside = self.memory.matrix(self.method.stages, n)
-        run.dense = self.memory.matrix(3 + self.method.dense_rows, n)
+        run.dense = self.memory.matrix(HERMITE_ROWS + self.method.dense_rows, n)
         self.allocate_chart(n)
         reset_watches(cython.address(self.workspace.scene))
         run.group_count = len(start["groups"])
@@ -153,7 +153,7 @@ class Integration:
         """Allocate the course of the coordinates that expressions and contacts depend on, if something is watched."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         course: cython.pointer[Course] = cython.address(self.run.course)
-        rows: cython.Py_ssize_t = 4 + self.method.dense_rows
+        rows: cython.Py_ssize_t = 1 + HERMITE_ROWS + self.method.dense_rows
         course.value = self.memory.matrix(scene.variable_count, rows)
         course.rate = self.memory.matrix(scene.variable_count, rows)
         course.second = self.memory.matrix(scene.variable_count, rows)
@@ -253,10 +253,10 @@ class Integration:
             newton.pairs[k].B = self.memory.zeros(n * n)
             newton.pairs[k].pivots = self.memory.ints(bytes(4 * n))
         newton.Z = self.memory.matrix(formula.stages, n)
-        newton.known = self.memory.matrix(formula.stages + 4, n)
+        newton.known = self.memory.matrix(formula.stages + 1 + HERMITE_ROWS, n)
         for k in range(formula.stages):
             newton.known[k + 1] = newton.Z[k]
-        for k in range(3):
+        for k in range(HERMITE_ROWS):
             newton.known[formula.stages + 1 + k] = self.run.dense[k]
         newton.W = self.memory.matrix(formula.stages, n)
         newton.step = self.memory.matrix(formula.stages, n)
@@ -387,7 +387,7 @@ class Integration:
     @property
     def course_rows(self) -> int:
         """Return the rows recorded of a step's polynomial: the state at its start, and the coefficients."""
-        return 4 + self.method.dense_rows
+        return 1 + HERMITE_ROWS + self.method.dense_rows
 
     @property
     def t(self) -> float:

@@ -46,6 +46,9 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import add_load_to_body
 
+    # Rows of `trial`, a number for each joint: N, what is left of N = |E1| + |E2|, its weight, the contraction's step,
+    # and the change of N by Newton's method or along a direction.
+    NORMAL_FORCE, RESIDUAL, WEIGHT, CONTRACTION_STEP, FORCE_CHANGE = range(5)
     MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
 
 FRICTION_ROUNDING = 8.8817841970012523e-16  # of the terms: four roundings
@@ -214,7 +217,7 @@ def factor_friction_bound(scene: cython.pointer[Scene]) -> cython.int:
     k: cython.Py_ssize_t
     i: cython.Py_ssize_t
     x: cython.double
-    w: cython.Py_ssize_t = 2 * n
+    w: cython.Py_ssize_t = WEIGHT * n
     for j in range(n):
         scene.trial[w + j] = 1.0
         for k in range(n):
@@ -259,23 +262,23 @@ def friction_residual(scene: cython.pointer[Scene]) -> cython.double:
     largest: cython.double = 0.0
     has_residual: cython.bint = False
     for j in range(n):
-        scene.trial[n + j] = -scene.trial[j]
+        scene.trial[RESIDUAL * n + j] = -scene.trial[j]
         size = fabs(scene.trial[j])
         for k in range(n):
             scene.newton[n * j + k] = 1.0 if j == k else 0.0
         for end in range(2):
             E: Vec3 = contact_force_part(scene, j, end)
             length = norm(E)
-            scene.trial[n + j] += length
+            scene.trial[RESIDUAL * n + j] += length
             size += norm(force_part(scene, 0, j, end))
             for k in range(n):
                 A: Vec3 = force_part(scene, k + 1, j, end)
                 size += fabs(scene.trial[k]) * norm(A)
                 if length > 0.0:
                     scene.newton[n * j + k] -= dot(E, A) / length
-        has_residual = has_residual or not fabs(scene.trial[n + j]) <= FRICTION_ROUNDING * size
-        if not fabs(scene.trial[n + j]) <= largest * scene.trial[2 * n + j]:
-            largest = fabs(scene.trial[n + j]) / scene.trial[2 * n + j]
+        has_residual = has_residual or not fabs(scene.trial[RESIDUAL * n + j]) <= FRICTION_ROUNDING * size
+        if not fabs(scene.trial[RESIDUAL * n + j]) <= largest * scene.trial[WEIGHT * n + j]:
+            largest = fabs(scene.trial[RESIDUAL * n + j]) / scene.trial[WEIGHT * n + j]
     return largest if has_residual else 0.0
 
 
@@ -294,15 +297,15 @@ def iterate_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
             break
         previous = residual
         for k in range(n):
-            scene.trial[3 * n + k] = scene.trial[n + k]
-            scene.trial[4 * n + k] = scene.trial[n + k]
-        solve_friction_newton(scene, 4 * n)
+            scene.trial[CONTRACTION_STEP * n + k] = scene.trial[RESIDUAL * n + k]
+            scene.trial[FORCE_CHANGE * n + k] = scene.trial[RESIDUAL * n + k]
+        solve_friction_newton(scene, FORCE_CHANGE * n)
         for k in range(n):
-            scene.trial[k] += scene.trial[4 * n + k]
+            scene.trial[k] += scene.trial[FORCE_CHANGE * n + k]
         residual = friction_residual(scene)
         if not residual <= 0.5 * previous:
             for k in range(n):
-                scene.trial[k] += scene.trial[3 * n + k] - scene.trial[4 * n + k]
+                scene.trial[k] += scene.trial[CONTRACTION_STEP * n + k] - scene.trial[FORCE_CHANGE * n + k]
             residual = friction_residual(scene)
             if not residual < previous:
                 break  # what is left is rounding
@@ -340,15 +343,15 @@ def solve_single_friction(scene: cython.pointer[Scene]) -> cython.int:
     residual: cython.double
     if scene.bound[0] > 0.0 and excess_at_infinity(scene) > 0.0:
         return JAMS
-    scene.trial[0] = 0.0
-    scene.trial[2] = 1.0
+    scene.trial[NORMAL_FORCE] = 0.0
+    scene.trial[WEIGHT] = 1.0
     for i in range(MAX_FRICTION_ITERATIONS):
         residual = friction_residual(scene)
         if not residual > 0.0:
-            return FOUND if scene.trial[0] == 0.0 else TWO
+            return FOUND if scene.trial[NORMAL_FORCE] == 0.0 else TWO
         if not scene.newton[0] > 0.0:
             return JAMS
-        scene.trial[0] += scene.trial[1] / scene.newton[0]
+        scene.trial[NORMAL_FORCE] += scene.trial[RESIDUAL] / scene.newton[0]
     return TWO
 
 
@@ -369,21 +372,21 @@ def excess_at_infinity(scene: cython.pointer[Scene]) -> cython.double:
 
 
 def find_normal_force_tangent(scene: cython.pointer[Scene]) -> cython.void:
-    """Write the change of N to `trial` from 4 n on, from the change of E at the same N: column n + 1."""
+    """Write the change of N to its row of `trial`, from the change of E at the same N: column n + 1."""
     n: cython.Py_ssize_t = scene.rub_count
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     end: cython.int
     length: cython.double
     for j in range(n):
-        scene.trial[4 * n + j] = 0.0
+        scene.trial[FORCE_CHANGE * n + j] = 0.0
         for k in range(n):
             scene.newton[n * j + k] = 1.0 if j == k else 0.0
         for end in range(2):
             E: Vec3 = contact_force_part(scene, j, end)
             length = norm(E)
             if length > 0.0:
-                scene.trial[4 * n + j] += dot(E, force_part(scene, n + 1, j, end)) / length
+                scene.trial[FORCE_CHANGE * n + j] += dot(E, force_part(scene, n + 1, j, end)) / length
                 for k in range(n):
                     scene.newton[n * j + k] -= dot(E, force_part(scene, k + 1, j, end)) / length
-    solve_friction_newton(scene, 4 * n)
+    solve_friction_newton(scene, FORCE_CHANGE * n)

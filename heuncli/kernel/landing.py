@@ -25,6 +25,7 @@ if not cython.compiled:
     from heuncli.kernel.course import build_end_window, build_step_course, course_instant
     from heuncli.kernel.dense import (
         EVENT_CHATTER,
+        HERMITE_ROWS,
         MAX_LANDINGS,
         NO_EVENT,
         REPEAT_TO,
@@ -116,7 +117,7 @@ def find_branch_event(
         if find_first_event(scene, course) == NOTHING and not course.undecided:
             return NO_EVENT
     ensure_interpolant(scene, method, run)
-    build_step_course(scene, run, 3 + method.dense_rows)
+    build_step_course(scene, run, HERMITE_ROWS + method.dense_rows)
     doubt = find_first_event(scene, course)
     if doubt == NOTHING:
         run.undecided += course.undecided

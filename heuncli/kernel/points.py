@@ -27,7 +27,14 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import dot, norm
     from heuncli.kernel.attitudes import GLOBAL, leave_chart
-    from heuncli.kernel.bernstein import bound_polynomial, convert_rows, differentiate
+    from heuncli.kernel.bernstein import (
+        PARABOLA_END,
+        PARABOLA_MIDDLE,
+        PARABOLA_START,
+        bound_polynomial,
+        convert_rows,
+        differentiate,
+    )
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import all_numbers, magnitude
     from heuncli.kernel.load_ranges import bound_load_variable, bounds_between, evaluate_load_end
@@ -132,17 +139,17 @@ def build_state_window(
     last: cython.p_double = run.K[method.stages]
     points.charted = 0
     for i in range(points.n):
-        points.states[i][0] = run.z[i] - half * last[i]
-        points.states[i][1] = run.z[i]
-        points.states[i][2] = run.z[i] + half * last[i]
+        points.states[i][PARABOLA_START] = run.z[i] - half * last[i]
+        points.states[i][PARABOLA_MIDDLE] = run.z[i]
+        points.states[i][PARABOLA_END] = run.z[i] + half * last[i]
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if not freedom.driven:
             bend = 0.5 * half * half * last[freedom.u_at]
             b: cython.p_double = points.states[freedom.q_at]
-            b[0] = b[0] + bend
-            b[1] = b[1] - bend
-            b[2] = b[2] + bend
+            b[PARABOLA_START] = b[PARABOLA_START] + bend
+            b[PARABOLA_MIDDLE] = b[PARABOLA_MIDDLE] - bend
+            b[PARABOLA_END] = b[PARABOLA_END] + bend
 
 
 # Bounds over a part

@@ -62,7 +62,8 @@ def iter_code_lines(text: str) -> Iterator[str]:
         lines[token.start[0] - 1 : token.end[0]] = [""] * (token.end[0] - token.start[0] + 1)
     for token in tokens:
         if token.type == COMMENT:
-            lines[token.start[0] - 1] = lines[token.start[0] - 1][: token.start[1]]
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column]
     return (line.rstrip() for line in lines if line.strip())
 
 

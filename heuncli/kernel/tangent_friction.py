@@ -19,6 +19,7 @@ if not cython.compiled:
     from heuncli.kernel.closures import apply_multipliers
     from heuncli.kernel.directions import world_direction
     from heuncli.kernel.joint_friction import (
+        FORCE_CHANGE,
         find_normal_force_tangent,
         joint_force,
         joint_moment,
@@ -68,7 +69,7 @@ def add_friction_tangent(scene: cython.pointer[Scene]) -> cython.double:
     find_normal_force_tangent(scene)
     for k in range(n):
         load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[k]])
-        change: Vec3 = scale_vector(scene.trial[4 * n + k], load.unit)
+        change: Vec3 = scale_vector(scene.trial[FORCE_CHANGE * n + k], load.unit)
         power += dot(change, world_direction(scene, load.a, load.axis)) * load.rate
         d: LoadTangent = LoadTangent(zero, zero, change)
         if load.kind == SHIFT_FRICTION:

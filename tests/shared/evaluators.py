@@ -18,7 +18,7 @@ def answers(form: Form, pack: Pack, count: int, x: Sequence[float]) -> list[str]
     """Value, and value with derivatives in time alone, of the pack's first program, to the last bit."""
     evaluator, derived = form
     programs = evaluator.Expressions(pack.code, pack.constants, len(pack.variables), 0, pack.starts, pack.tables)
-    return bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])])
+    return bits([programs.evaluate(0, count, x), *derived.find_derivatives(programs, 0, count, x[0])])
 
 
 def bits(numbers: Iterable[float]) -> list[str]:

@@ -319,7 +319,7 @@ for _ in range(400):
     middles = [(a + middle, a + middle, 1.0, 1.0, 0.0, 0.0) for a in range(VARIABLES)]
     for mode in (0, HELD):
         programs.hold(mode)
-        ends = enclosure.close_span_of(programs, *span, ranges, middles)
+        ends = enclosure.find_close_span(programs, *span, ranges, middles)
         found.append([*(x.hex() if x == x else "nan" for x in ends), programs.take_doubts()])
 print(json.dumps(found))
 """

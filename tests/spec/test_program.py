@@ -225,7 +225,7 @@ def test_any_program_gives_the_same_bits_compiled_and_plain() -> None:
         for evaluator, derived in (COMPILED, PLAIN):
             programs = evaluator.Expressions(code, constants, VARIABLES, tables=program.tables)
             count = len(program.code)
-            found.append(bits([programs.evaluate(0, count, x), *derived.derivatives(programs, 0, count, x[0])]))
+            found.append(bits([programs.evaluate(0, count, x), *derived.find_derivatives(programs, 0, count, x[0])]))
         assert found[0] == found[1], program
         have_value += found[0][0] != "nan"
         seen |= {op for op, _ in program.code if isinstance(op, str)}
@@ -260,10 +260,10 @@ def test_the_depth_counted_is_the_largest_seen_on_every_stack(holds: bool) -> No
         memory.stack, memory.jets, memory.spans = (Watched(x) for x in (memory.stack, memory.jets, memory.spans))
         for holding in ("taken", "held") if holds else ("free",):
             programs.hold(plain.HOLDING[holding])
-            derived.gradient(programs, *span, [1.0] * VARIABLES)
-        bounds.span_of(programs, *span, [(-9.0, 9.0, -9.0, 9.0, -9.0, 9.0)] * VARIABLES)
+            derived.find_gradient(programs, *span, [1.0] * VARIABLES)
+        bounds.find_span(programs, *span, [(-9.0, 9.0, -9.0, 9.0, -9.0, 9.0)] * VARIABLES)
         if not holds:
-            derived.derivatives(programs, *span, 1.0)
+            derived.find_derivatives(programs, *span, 1.0)
         tops = [stack.top for stack in (memory.stack, memory.jets, memory.spans)]
         assert max(tops) <= depth, program
         if not any(op == "unless" for op, _ in program.code):
