@@ -1,4 +1,4 @@
-"""The pictures at the top of the README: each is what the command written below it draws."""
+"""The pictures at the top of the README: each is what a command written below them draws."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from heuncli.app.cli.entry import enter
 from tests.shared.manual import FOLDER, README, ROOT, TEXTS, blocks
 
-PICTURES = re.findall(r"^!\[[^]]+\]\((heuncli/manual/pictures/[\w-]+\.svg)\)$", TEXTS[README], re.MULTILINE)
+PICTURES = re.findall(r"!\[[^]]+\]\((heuncli/manual/pictures/[\w-]+\.svg)\)", TEXTS[README])
 COMMANDS = [line for block in blocks(README, "sh") for line in block.splitlines() if line.startswith("heun plot ")]
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
 TAG_OR_TEXT = re.compile(r"<[^>]*>|[^<]+")
