@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from tests.shared.manual import FOLDER, README, ROOT, TEXTS, blocks
+from tests.shared.folders import ROOT
+from tests.shared.manual import FOLDER, README, TEXTS, blocks
 
 PICTURES = re.findall(r"!\[[^]]+\]\((heuncli/manual/pictures/[\w-]+\.svg)\)", TEXTS[README])
 COMMANDS = [line for block in blocks(README, "sh") for line in block.splitlines() if line.startswith("heun plot ")]

@@ -15,7 +15,8 @@ import pytest
 import yaml
 
 from heuncli.app.cli.entry import enter
-from tests.shared.manual import ROOT, blocks
+from tests.shared.folders import ROOT
+from tests.shared.manual import blocks
 
 pytestmark = pytest.mark.heavy  # whole runs of whole specs, by the command
 
