@@ -9,7 +9,6 @@ from heuncli.analyses.published.cases import read_case
 from heuncli.analyses.published.files import list_names
 from heuncli.app.commands.check.references_page import format_digits, format_largest_difference, list_kinds
 from tests.manual.tables import Table
-from tests.shared.manual import README
 from tests.shared.published import compared_case
 
 
@@ -22,10 +21,10 @@ def row(name: str) -> tuple[str, ...]:
 
 
 def tables() -> tuple[Table, Table]:
-    """What stands below the headings Proof and On your machine."""
+    """What stands below the heading On your machine."""
     head = ("case", "what", "numbers", "which are", "digits", "last digits", "of the largest")
     sources = [(f"`{name}`", read_case(name).source) for name in list_names()]
     return (
-        Table(README, "Proof", head, [row(name) for name in list_names()]),
+        Table("references", "On your machine", head, [row(name) for name in list_names()]),
         Table("references", "On your machine", ("case", "source"), sources),
     )

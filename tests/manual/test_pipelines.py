@@ -1,4 +1,4 @@
-"""What the README says to copy into a pipeline: each parsed, and each of its commands run as it stands."""
+"""What the page on pipelines says to copy into a pipeline: each parsed, and each of its commands run as it stands."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ import pytest
 import yaml
 
 from heuncli.app.cli.entry import enter
-from tests.shared.manual import README, ROOT, blocks
+from tests.shared.folders import ROOT
+from tests.shared.manual import blocks
 
 pytestmark = pytest.mark.heavy  # whole runs of whole specs, by the command
 
-WORKFLOW, JOB, HOOKS = (yaml.safe_load(text) for text in blocks(README, "yml"))
-(RULE,) = blocks(README, "make")
+PAGE = "pipelines"
+WORKFLOW, JOB, HOOKS = (yaml.safe_load(text) for text in blocks(PAGE, "yml"))
+(RULE,) = blocks(PAGE, "make")
 FEW = ("double.yaml", "engine.yaml", "axle_loads.yaml")
 
 
