@@ -51,10 +51,10 @@ class Resolution:
     joints: list[JointLoads]
     words: tuple[str, ...] = ()
     stress: SelfStress | None = None
-    remaining_stress: SelfStress | None = None
+    remaining_self_stress: SelfStress | None = None
     choices: tuple[SelfStressChoice, ...] = ()
     added_multipliers: Array | None = None  # what the split adds to the multipliers of the closure rows, (n_t, rows)
-    all_stress: SelfStress | None = None  # all self-stresses found, also where there are none
+    found_self_stress: SelfStress | None = None  # all self-stresses found, also where there are none
 
     def apply_choices(self, joints: list[JointLoads], states: BodyStates) -> tuple[list[JointLoads], Array | None]:
         """Apply the same split to other loads of the joints, such as shares by cause; also return what it adds to

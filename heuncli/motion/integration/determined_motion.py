@@ -24,7 +24,7 @@ class DeterminedMotion:
     notes: sentences that state this, or explain why not where a reader might expect it
     """
 
-    is_so: bool
+    is_determined: bool
     notes: tuple[str, ...]
 
     def add_to_block(self, block: Block) -> Block:

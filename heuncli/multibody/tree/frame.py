@@ -39,7 +39,7 @@ class LayoutFrame:
     weights: Array
     tables: dict[str, Table]
     indices: Array
-    answer_count: int
+    velocity_count: int
     column_count: int
     work_at: int
     islands: tuple[Island, ...]

@@ -77,13 +77,13 @@ class Layout:
     components that do not control the step size
     tables: the kernel's structs by name (kernel/scene.py)
     indices: the indices that the closure rows point into
-    answer_count: number of generalised velocities of the tree: scalar freedoms, and three rotations for each ball
+    velocity_count: number of generalised velocities of the tree: scalar freedoms, and three rotations for each ball
     column_count: numbers in the columns of all closure rows
     pack: the programs of all expressions
     work_at: index of the work in the state (-1: it is not computed)
     islands: the groups of closure rows whose loops share bodies
     contacts: the rows that open and close
-    measure (answer_count,): scale of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
+    measure (velocity_count,): scale of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
     outside
     flat: whether the kernel moves it in the plane (kernel/plane.py), without loads across it
     """
@@ -102,7 +102,7 @@ class Layout:
     weights: Array
     tables: dict[str, Table]
     indices: array[int]
-    answer_count: int  # freedoms of the tree, a ball's three turns among them
+    velocity_count: int  # freedoms of the tree, a ball's three turns among them
     column_count: int
     pack: Pack
     work_at: int  # index of the work in the state; -1: it is not integrated

@@ -67,7 +67,7 @@ class Recovery:
     least_norm: bool
     given_actions: tuple[Action, ...] = ()
     causes: tuple[str, ...] | None = None
-    skips_open_search: bool = False
+    skips_indeterminacy_search: bool = False
     state_instants: ComparedInstants | None = None
 
     def with_cuts(self, setup: Setup) -> Recovery:

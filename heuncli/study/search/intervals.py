@@ -59,7 +59,7 @@ class Intervals(NamedTuple):
     t: Array
     f: Array
     doubt: Array
-    rough: Mask
+    is_rough: Mask
     target: Indices
     column: Indices
 
