@@ -100,9 +100,9 @@ class Stretch:
         """Return the height along n, from the body's origin."""
         return np.asarray(float(self.cuts.points[0] @ self.cuts.n) + s)
 
-    def at_attachments(self, attachments: Sequence[AttachedLoad]) -> Cuts:
+    def place_for_loads(self, attached_loads: Sequence[AttachedLoad]) -> Cuts:
         """Return the cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
-        moving = [a.point @ self.cuts.n for a in attachments if a.point.ndim == 2]
+        moving = [a.point @ self.cuts.n for a in attached_loads if a.point.ndim == 2]
         if not moving:
             return self.fixed_cuts
         heights = np.clip(np.stack(moving, axis=1), self.corners[0], self.corners[-1])

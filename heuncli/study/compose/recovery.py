@@ -47,7 +47,7 @@ if TYPE_CHECKING:  # loaded only for closed chains, sections, or loads by cause
 RANK_REPORTS = SHARED_BLOCKS  # reports that need the rank of the closures
 ENERGY_REPORTS = frozenset({"energy", IMPULSES})  # reports that show energies
 # properties that do not depend on which components are indeterminate
-INDEPENDENT_OF_VERDICTS = frozenset({"states", "unsplit", "loads", "energy", "inertia"})
+INDEPENDENT_OF_VERDICTS = frozenset({"states", "kernel_joint_loads", "loads", "energy", "inertia"})
 INDEPENDENT_OF_CUTS = INDEPENDENT_OF_VERDICTS | {"decided", "shares"}
 
 
@@ -159,7 +159,7 @@ class Recovery:
             mechanism.joints[stop.joint].name for stop in mechanism.stops if stop.name in selection.names_in("stops")
         }
         names = selection.names_in("joints") | stopped
-        if resolution is not None or self.state_instants is not None or "unsplit" in self.__dict__:
+        if resolution is not None or self.state_instants is not None or "kernel_joint_loads" in self.__dict__:
             return [load for load in self.joints if load.joint.name in names]
         return find_joint_loads(self.setup.scene.layout, self.solutions, self.states, names)
 
