@@ -140,7 +140,7 @@ class FollowedStep(Struct):
 
 
 class Controller(Struct):
-    """The lengths of the steps, and what determines them (step_acceptance.py)."""
+    """The lengths of the steps, and what determines them (judging.py)."""
 
     tolerance: float
     step: float  # of a method of fixed step; 0: adaptive

@@ -209,7 +209,9 @@ def groups_of_equations() -> Iterator[tuple[str, str, str]]:
 
 
 TABLES = (
-    Table("equations", "Equations of the paper", ("equations", "of", "seen in"), list(groups_of_equations())),
+    Table(
+        "references", "Equations of the paper, by group", ("equations", "of", "seen in"), list(groups_of_equations())
+    ),
     Table(README, "The manual", ("page", "about"), list(pages())),
     Table("results", "Paths", ("path", "SI unit", ""), list(results())),
     Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),

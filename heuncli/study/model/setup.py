@@ -36,6 +36,7 @@ from heuncli.study.model.selection import EVERYTHING, Selection
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.loads.kinetostatics.cuts import Cuts
     from heuncli.loads.redundancy.self_stress import CachedStress
+    from heuncli.multibody.tree.layout import Layout
     from heuncli.study.model.rest_pose import Rest
 
 
@@ -85,6 +86,12 @@ class Setup:
         return {i: spin.axis for i, spin in find_constant_spins(self.scene).items()}
 
 
+def explain_choice(method: Method, layout: Layout, spec: Spec, *, is_auto: bool) -> list[str]:
+    """Explain how a method represents attitudes and, if `auto` chose it, why."""
+    reasons = [*describe_attitudes(method, layout)]
+    return [*reasons, *explain_method(method, layout, spec)] if is_auto and not method.is_determined else reasons
+
+
 def set_up(
     spec: Spec, method: str | None = None, *, reduce: bool = True, selection: Selection = EVERYTHING,
     find_rest: bool = True, stages: Stages = NO_CACHE,
@@ -131,16 +138,13 @@ def set_up(
             follows = find_determined_motion(runner.integrated_scene)
     reductions_block = describe_reductions(left_out, scene, reduced)
     if chosen is not None and auto:
-        chosen = (
-            DRIVE_DETERMINED if follows.is_determined else choose_first_method(runner.integrated_scene.layout, spec)
-        )
+        layout = runner.integrated_scene.layout
+        chosen = DRIVE_DETERMINED if follows.is_determined else choose_first_method(layout, spec)
         reductions_block = follows.add_to_block(reductions_block)
     redundancies = count_redundancy(scene, runner, stages)
     note = make_model_block(scene, runner, chosen.name if chosen else "none", redundancies) | reductions_block
     if chosen is not None:
-        note["reasons"] += describe_attitudes(chosen, runner.integrated_scene.layout)
-        if auto and not chosen.is_determined:
-            note["reasons"] += explain_method(chosen, runner.integrated_scene.layout, spec)
+        note["reasons"] += explain_choice(chosen, runner.integrated_scene.layout, spec, is_auto=auto)
     step = spec.analysis.step if chosen is not None and chosen.has_fixed_step else None
     note |= {} if step is None else {"step": step}
     return Setup(
