@@ -52,8 +52,8 @@ class Counterweight:
 class CounterweightSolution:
     """The counterweights of a solution.
 
-    is_ambiguous: whether other weights would serve as well; these are the smallest
-    is_linear: whether one linear system determined them
+    several: whether other weights would serve as well; these are the smallest
+    linear: whether one linear system determined them
     """
 
     weights: tuple[Counterweight, ...]

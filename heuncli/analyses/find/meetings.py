@@ -37,8 +37,8 @@ FLAT_FACTOR = 4.0  # times E / chord: an enclosure that is not flat
 class SlopeEstimate(NamedTuple):
     """Bounds of the slope at a sample.
 
-    min_slope: the smallest possible |g'|
-    half_curvature: |g''|/2
+    least: the smallest possible |g'|
+    bend: |g''|/2
     chord: the smallest slope of the chords to the neighbours
     is_reliable: whether the slopes between the neighbours also hold at the sample
     """

@@ -32,7 +32,7 @@ class Crossing(NamedTuple):
 
     sample: the variant there
     direction: 1 if it rises through the value, -1 if it falls; 0 at an end of the known range
-    is_flat: the slope there is smaller than its own error; the error of the place then reaches to the neighbours that
+    flat: the slope there is smaller than its own error; the error of the place then reaches to the neighbours that
     are certainly on one side of the value
     """
 

@@ -24,13 +24,13 @@ class Coordinates:
     """The n undriven coordinates and their positions in the layout.
 
     weights (n,): 1 for a rotation, 1 / size for a shift
-    is_shift (n,): whether a coordinate is a shift
+    shifts (n,): whether a coordinate is a shift
     result_indices (n,): their indices in the layout's results
     rates (n,): indices of their rates in the state
-    ball_bodies: tree indices of the bodies on ball joints
-    first_rotations: for each of these, the number of the first of its three rotations
+    balls: tree indices of the bodies on ball joints
+    turns: for each of these, the number of the first of its three rotations
     freedoms: indices of the other undriven freedoms
-    freedom_coordinates: for each of these, the number of its coordinate
+    numbers: for each of these, the number of its coordinate
     """
 
     layout: Layout

@@ -33,7 +33,7 @@ PERTURBED_POSES = 4  # poses moved by rounding; it is unlikely that all of them 
 class RestLaw:
     """The linear law at a pose: T (n, f), T+ (f, n), A (f, f) and its decomposition, c and its noise (f,).
 
-    equations: the linearised equations it was made from
+    law: the linearised equations it was made from
     eigenvalue_errors (f,): rounding errors of the eigenvalues
     sum_rounding (f,): rounding of the sums in c alone, a part of its noise
     nonlinearity (f,): deviation from the law at poses moved by rounding; larger than rounding only for loads that jump

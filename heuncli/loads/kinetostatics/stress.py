@@ -31,7 +31,7 @@ class SectionModuli:
     """Area [m2], second moments about e1 and e2 [m4], half extents c1 along e1 and c2 along e2 [m], W_T [m3].
 
     shear: the largest shear stress over the mean one
-    round: whether bending about any axis has the same extent (circle, tube); else the corners count
+    is_round: whether bending about any axis has the same extent (circle, tube); else the corners count
     largest: function of the maxima over the section
     """
 

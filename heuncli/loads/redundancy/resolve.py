@@ -44,7 +44,7 @@ class Resolution:
 
     words: sentences on the split
     stress: the self-stresses that it chose from; None if there are none
-    remaining_stress: those that it left indeterminate; None if there are none
+    remaining_self_stress: those that it left indeterminate; None if there are none
     choices: the self-stresses that were added
     """
 

@@ -34,7 +34,7 @@ class SelfStress:
     largest (n_t, k): the largest share of each, in couplings too, moments divided by `length`
     count (n_t,): number of self-stresses
     length [m]: divisor of moments
-    smallest_kept (n_t,): the smallest relative singular value that counts towards the rank
+    least (n_t,): the smallest relative singular value that counts towards the rank
     largest_dropped (n_t,): the largest one that does not, if it is more than the closure gap may simulate
     dependent (n_t,): number of rows that depend on others, in a planar scene including those across the plane
     """

@@ -30,8 +30,8 @@ class MemberStep:
     """The motion of a member by that of its parent: z = offset + transfer z_parent + N y_here.
 
     parent: index of the parent, -1 for none
-    blocked_rows (r, 6): rows on z_parent that the member cannot follow because it is held
-    blocked_sides (r,): their right side
+    rest (r, 6): rows on z_parent that the member cannot follow because it is held
+    lack (r,): their right side
     """
 
     own: Array

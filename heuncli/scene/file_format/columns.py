@@ -68,10 +68,10 @@ class Heading(NamedTuple):
 class ColumnLayout(NamedTuple):
     """Layout of a file.
 
-    mark: the cell separator; None: blanks
+    separator: the cell separator; None: blanks
     names: the cells of the first row if they are headings, else empty
     width: number of cells in the first row
-    before: number of lines before the numbers
+    header_lines: number of lines before the numbers
     """
 
     separator: str | None

@@ -156,7 +156,7 @@ class Cam(NamedTuple):
     at: the point of the follower, in its axes: centre of a roller of `radius` [m], or a point of the flat face with a
     normal
     phase: angle of the disc at which the lift table has its zero [rad]
-    both: the follower is guided on both sides
+    is_two_sided: the follower is guided on both sides
     restitution: of a follower that lifts off and hits the disc again; None: the run ends where it would lift
     """
 

@@ -38,8 +38,8 @@ class NamedFile(NamedTuple):
     """A file as read.
 
     content: its bytes
-    unread: why it could not be read, or None
-    outside: the warning about its place, or None
+    read_error: why it could not be read, or None
+    outside_warning: the warning about its place, or None
     """
 
     content: bytes

@@ -46,10 +46,10 @@ class TriangleFaces(NamedTuple):
     normals: (3, m) unit normals
     offsets: (m,) heights of their planes over the origin
     corners: (3, m) corner numbers
-    joined: (3, m) the same number for corners that are one, or joined by triangles with almost no width
-    double: (m,) twice their areas
-    narrow: (m,) which are too narrow for their planes to be used
-    joins: whether any corners are joined
+    joined_corners: (3, m) the same number for corners that are one, or joined by triangles with almost no width
+    double_areas: (m,) twice their areas
+    is_narrow: (m,) which are too narrow for their planes to be used
+    has_joined_corners: whether any corners are joined
     """
 
     places: Array

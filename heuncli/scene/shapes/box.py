@@ -44,7 +44,7 @@ class Box(ThickSolid):
     """A box.
 
     center: centre [m]
-    half: half sizes along its own axes [m]
+    half_size: half sizes along its own axes [m]
     axes: its axes, in columns
     density: [kg/m3]
     """

@@ -34,13 +34,13 @@ MAX_STEPS = 120  # towards a root; bisection alone takes 53, with an interpolati
 class Crossings(NamedTuple):
     """The crossings of zero of a number.
 
-    is_positive_first: whether the number is positive at the first instant
+    begins: whether the number is positive at the first instant
     times (n,): ascending
     is_rise (n,): whether it is positive after the crossing
     error (n,): of the times
-    is_jump (n,): whether it jumps there
-    has_gaps: whether it was nan somewhere
-    is_complete: whether every interval that may hide a crossing was searched
+    jumps (n,): whether it jumps there
+    gaps: whether it was nan somewhere
+    complete: whether every interval that may hide a crossing was searched
     """
 
     begins: bool

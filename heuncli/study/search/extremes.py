@@ -47,7 +47,7 @@ class ColumnSearch(NamedTuple):
 
     cut_columns: quantities of runs of cuts, each with the name of its run, (n_t, n_cuts); each is one more group
     errors: of the groups' numbers
-    is_squared: whether the columns of a group are squares of its numbers
+    even: whether the columns of a group are squares of its numbers
     bent: whether the quantities along runs are no polynomials of the loads, as stresses
     sides: the extremes that are needed, -1 the lowest, 1 the highest; others are not searched between the samples
     """
@@ -70,9 +70,9 @@ class Targets(NamedTuple):
     """The 2n targets of a search, as heights: the lowest values of n groups of columns, then the highest.
 
     column (m,): the columns of all groups
-    group_index (m,): the group of each of these columns
+    owner (m,): the group of each of these columns
     error (n,): absolute, of the searched number
-    is_squared (n,): whether the columns are squares of that number
+    even (n,): whether the columns are squares of that number
     """
 
     n: int

@@ -51,7 +51,7 @@ class Intervals(NamedTuple):
     """Intervals that may hold a target's best value.
 
     t, f (m, 4): instants and heights of a, b, c, d; the interval is from b to c
-    misfit (m,): by how much the parabola missed the last sample, as a bend
+    doubt (m,): by how much the parabola missed the last sample, as a bend
     is_rough (m,): whether it missed by so much that a kink, or too coarse a grid, is likely
     target, column: what the interval is searched for
     """

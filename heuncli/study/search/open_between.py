@@ -29,7 +29,7 @@ class Verdicts(NamedTuple):
     dependent (n_t,): number of dependent closure rows
     holding (n_t, contacts): which contacts are closed
     ordinary (n_t,): whether the pose is not singular
-    open_masks: for each array over the instants the mask of its indeterminate components, None for none
+    open: for each array over the instants the mask of its indeterminate components, None for none
     """
 
     times: Array

@@ -31,7 +31,7 @@ class JointLaws(NamedTuple):
     """What moves the joints.
 
     initial: start values of free joints by name
-    driven: numbers of the joints with a drive
+    driven_joints: numbers of the joints with a drive
     """
 
     parameters: tuple[DescribedParameter, ...]
