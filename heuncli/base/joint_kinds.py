@@ -71,7 +71,7 @@ CONSTANT_VELOCITY = Turn(
     "alike", (), sum_of_dots=((-0.5, "first", "second"), (0.5, "second", "first"))
 )  # by the bend alone
 NO_ROTATION = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
-ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as drawn: in the plane nothing tilts it
+ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # the body stays parallel to the plane
 
 # What of these moves in a plane, where that is all that is left of a scene: no condition across it. The axis stands
 # along the plane's normal, which is then z, or lies across it, in the plane; what has no axis is as if it stood along.
@@ -115,7 +115,7 @@ class JointKind(NamedTuple):
     motions: tuple[Motion, ...] = ()
     # what it is in a scene declared planar, None: it cannot be there
     planar: str | None = None
-    # what may take its place and hold less, the gentlest first: in space and in a planar scene
+    # kinds with fewer constraints that may replace it, those that remove fewest first: in space and in a planar scene
     weaker_kinds: tuple[str, ...] = ()
     weaker_planar_kinds: tuple[str, ...] = ()
     # what it is called elsewhere; and by users, where that is not its name
@@ -296,7 +296,7 @@ JOINTS: dict[str, JointKind] = TYPES | {
         ),
     )
 }
-# with what they all are where a scene is solved in its plane (multibody/reduction/plane/step.py)
+# the kinds as they are in a scene solved in its plane (multibody/reduction/plane/step.py)
 FLAT: dict[tuple[str, bool], JointKind] = {
     (kind.name, along): kind._replace(
         name=f"{kind.name} {'along' if along else 'across'} the normal",
