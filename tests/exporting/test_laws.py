@@ -144,7 +144,7 @@ def section_of(run: Study, case: LoadCase, section: str) -> dict[str, Array]:
 def side_of(at: Array, point: Array, cuts: Any, k: int) -> float:
     """On which side of a cut a point lies; in its plane the side of the cut decides."""
     off = float((at - point) @ cuts.n)
-    return float(cuts.side[k]) if abs(off) <= cuts.near else off
+    return float(cuts.side[k]) if abs(off) <= cuts.plane_tolerance else off
 
 
 @pytest.mark.parametrize("words", ["N,mm,t", "kN,mm,kg,ms", "lbf,in,slinch"])

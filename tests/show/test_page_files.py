@@ -44,7 +44,9 @@ def test_wheels_carry_all_of_its_files() -> None:
     packed = project["tool"]["setuptools"]["package-data"]["heuncli"]
     files = [path for path in FOLDER.iterdir() if path.is_file() and path.suffix != ".py"]
     assert len(files) > 10
-    assert not [path.name for path in files if not any(fnmatch(f"page/{path.name}", form) for form in packed)]
+    assert not [
+        path.name for path in files if not any(fnmatch(f"output/web_page/{path.name}", form) for form in packed)
+    ]
 
 
 def test_every_script_is_used_once_and_after_what_it_needs() -> None:

@@ -130,4 +130,4 @@ def drop_axes(foundation: Mapping[str, Any], largest: float, parts: list[slice])
         for stored in foundation["axis"].values() if is_zero.any() else ():
             rows = stored[part]
             rows[is_zero] = np.nan
-            stored.put(part.start, rows)
+            stored.write_rows(part.start, rows)

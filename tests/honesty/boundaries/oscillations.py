@@ -71,7 +71,9 @@ def pushed_freely(x: float) -> str:
     """What nothing holds, pushed by x of the loads there."""
     f, one = np.zeros((1, 1)), np.eye(1)
     system = ReducedEquations(one, f, one, f, f, f, np.array([x]), 1.0, 0.0)
-    here = SimpleNamespace(system=system, weights=np.ones(1), loose=IndifferentMotions(one, one, 0.0, f, one, f, f))
+    here = SimpleNamespace(
+        system=system, weights=np.ones(1), indifferent=IndifferentMotions(one, one, 0.0, f, one, f, f)
+    )
     return "falls" if np.isinf(distance_from_rest(here)) else "rests"  # type: ignore[arg-type]
 
 
