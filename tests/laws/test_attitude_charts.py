@@ -70,7 +70,7 @@ def spin(kappa: Array, rate: Array) -> Array:
 def test_composition(case: int) -> None:
     """kappa of R(b) R(a) is (b + a + b x a) / (1 - a . b); counted from a it is b."""
     a, b = np.random.default_rng(case).normal(size=(2, 3))
-    turned = CHART.turn_quaternion(vector(b), quaternion_of(a))
+    turned = CHART.rotate_quaternion(vector(b), quaternion_of(a))
     near(np.linalg.norm(numbers(turned)), 1.0, 1.0, 1e-15)
     none = CHART.Quaternion(1.0, 0.0, 0.0, 0.0)
     whole = numbers(CHART.kappa_of(turned, none))
@@ -84,12 +84,12 @@ def test_rates(case: int) -> None:
     """W^-1 undoes W, and the second derivative is that of a motion kappa(t): by complex steps."""
     kappa, rate, second = np.random.default_rng(case).normal(size=(3, 3))
     sigma = spin(kappa, rate)
-    near(numbers(CHART.spin_of(vector(kappa), vector(rate))), sigma, 1.0, 1e-14)
-    near(numbers(CHART.rate_of(vector(kappa), vector(sigma))), rate, 1.0, 1e-13)
+    near(numbers(CHART.angular_velocity(vector(kappa), vector(rate))), sigma, 1.0, 1e-14)
+    near(numbers(CHART.kappa_rate(vector(kappa), vector(sigma))), rate, 1.0, 1e-13)
     R, dR = rotation(kappa), rotation(kappa + 1j * STEP * rate).imag / STEP
     near(dR, hat(sigma) @ R, 1.0, 1e-13)
     sigmadot = spin(kappa + 1j * STEP * rate, rate + 1j * STEP * second).imag / STEP
-    near(numbers(CHART.second_of(vector(kappa), vector(rate), vector(sigmadot))), second, 1.0, 1e-12)
+    near(numbers(CHART.kappa_acceleration(vector(kappa), vector(rate), vector(sigmadot))), second, 1.0, 1e-12)
 
 
 def by_complex_steps(f: Callable[[Array], Array], x: Array) -> Array:
@@ -146,7 +146,7 @@ def test_lagrange_form_against_the_kernel() -> None:
             y[row["rate_at"] :][:3] = spin(q[3 * k :][:3], rates[3 * k :][:3])
         alpha = runner.evaluate(np.zeros(1), y[None, :]).bodies["alpha"][0]
         found = [
-            numbers(CHART.second_of(vector(q[3 * k :][:3]), vector(rates[3 * k :][:3]), vector(alpha[k])))
+            numbers(CHART.kappa_acceleration(vector(q[3 * k :][:3]), vector(rates[3 * k :][:3]), vector(alpha[k])))
             for k in range(2)
         ]
         wanted, condition = lagrange(q, rates)
