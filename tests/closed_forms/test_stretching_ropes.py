@@ -256,7 +256,7 @@ analysis: {{duration: 0.2, samples: 5}}
 
 @pytest.mark.parametrize("analysis", ["{type: state}", "{duration: 1, samples: 2}", "{duration: 1, samples: 9}"])
 def test_what_a_rope_does_to_the_ground_is_its_own_share(analysis: str) -> None:
-    """Of two instants or of many, force and moment of each cause: its strand from the ground has no cause but itself."""
+    """Of one instant or of many, force and moment of each cause: its strand on the ground has no cause but itself."""
     results = solved(
         winch("stiffness: 2e4, damping: 300, length: 9.8", analysis), wanted=frozenset({"foundation", "shares"})
     )
