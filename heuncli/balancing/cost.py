@@ -29,8 +29,8 @@ MOMENTS = ("moment", "drive")
 FAINT = 1e-12  # of the largest square: a magnitude of a millionth, whose rounding is of no digit that is told
 
 
-def loads_of(scene: LoadedScene, plan: CyclePlan, about: Array) -> dict[str, OverCycle]:
-    """Force, moment, drive and joints by their names, over the cycle."""
+def loads_of(scene: LoadedScene, plan: CyclePlan, about: Array) -> tuple[dict[str, OverCycle], tuple[str, ...]]:
+    """Force, moment, drive and joints by their names, over the cycle; with what is to be told beside them."""
     first = scene.at_first()
     names = [*squares(first, plan, about)]
     opened: set[str] = set()
@@ -42,10 +42,11 @@ def loads_of(scene: LoadedScene, plan: CyclePlan, about: Array) -> dict[str, Ove
 
     found = scene.numbers(columns, [1] * len(names), faint(columns(first), names, scene.setup.scene.layout.size))
     tops = of_squares({name: found.values[:, k] for k, name in enumerate(names)}, found.nodes)
-    return {
+    over = {
         name: OverCycle(None, None) if name in opened else OverCycle(own.rms, own.peak, own.error)
         for name, own in tops.items()
     }
+    return over, found.notes
 
 
 def squares(recovery: Recovery, plan: CyclePlan, about: Array) -> dict[str, Array]:
@@ -72,9 +73,9 @@ def faint(values: Array, names: Sequence[str], size: float) -> list[float]:
 
 def cost(
     spec: Spec, scene: PreparedScene, heavier: Mechanism, plan: CyclePlan, about: Array
-) -> tuple[dict[str, OverCycle], dict[str, OverCycle]]:
-    """The loads before and after; heavier: with the weights."""
+) -> tuple[dict[str, OverCycle], dict[str, OverCycle], tuple[str, ...]]:
+    """The loads before and after, and what is to be told beside them; heavier: with the weights."""
     rate = plan.rate or 1.0
     two: Sequence[Mechanism] = (scene.mechanism, heavier)
-    before, after = (loads_of(loaded(spec, scene, own, plan, rate), plan, about) for own in two)
-    return before, after
+    (before, notes), (after, more) = (loads_of(loaded(spec, scene, own, plan, rate), plan, about) for own in two)
+    return before, after, (*notes, *more)

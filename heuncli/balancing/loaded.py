@@ -10,6 +10,7 @@ from heuncli.balancing.choice import CyclePlan
 from heuncli.balancing.cycle import driven_mechanism, require_determined, still
 from heuncli.balancing.followed import FollowedRun
 from heuncli.balancing.nodes import PieceNodes
+from heuncli.balancing.recurring import unlike
 from heuncli.balancing.resolved import CycleResolver, scales_of
 from heuncli.balancing.unseen import laws_of_angle, suspects
 from heuncli.expressions.programs import Expression
@@ -87,7 +88,9 @@ class LoadedScene:
             notes.append(f"in {steps} bounds could not decide what loads do: shorter events may be missing")
         if not found.settled:
             notes.append("loads vary too much to be followed to their digits: what is told errs by as much as it says")
-        return CycleNumbers(found.nodes, found.values, tuple(dict.fromkeys(notes)), found.settled and not notes)
+        settled = found.settled and not notes
+        notes += unlike(run, found.nodes)
+        return CycleNumbers(found.nodes, found.values, tuple(dict.fromkeys(notes)), settled)
 
 
 def has_others(values: Sequence[Expression], joint: str) -> bool:

@@ -108,7 +108,8 @@ class PlacedWeight:
 class Counterbalance:
     """The counterweights of least square: of force, moment or both by a lever [m]; what is left, and what they cost.
 
-    several: others would serve as well, these are the least; orders: what is left, by quantity; before, after: loads.
+    several: others would serve as well, these are the least; orders: what is left, by quantity; before, after: loads;
+    notes: what is to be told beside these.
     """
 
     weights: tuple[PlacedWeight, ...]
@@ -119,6 +120,7 @@ class Counterbalance:
     words: Mapping[str, str]
     before: Mapping[str, OverCycle]
     after: Mapping[str, OverCycle]
+    notes: tuple[str, ...] = ()
 
 
 @record

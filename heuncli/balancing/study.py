@@ -45,7 +45,8 @@ def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
     if asked.weights:
         from heuncli.balancing.weights import counterbalanced  # where they are asked for
 
-        found = replace(found, counterbalance=counterbalanced(spec, scene, plan, cycle, about, asked))
+        own = counterbalanced(spec, scene, plan, cycle, about, asked)
+        found = replace(found, counterbalance=own, notes=tuple(dict.fromkeys((*found.notes, *own.notes))))
     if asked.flywheel is not None:
         from heuncli.balancing.wheel import with_wheel  # where one is asked for
 

@@ -39,11 +39,11 @@ def counterbalanced(
     there = sampled(turning(replace(scene, mechanism=heavier), plan), about)[0]
     effects, turns = mass_effects(there, about), CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
     rows = all_rows(effects, turns, rounding_of(effects, turns.scale))
-    before, after = cost(spec, scene, heavier, plan, about)
+    before, after, notes = cost(spec, scene, heavier, plan, about)
     return Counterbalance(
         weights=tuple(told(weight) for weight in found.weights),
         minimised=what, lever=lever if what == "mix" else None, several=found.several,
-        orders=rows, words={name: in_words(own) for name, own in rows.items()}, before=before, after=after,
+        orders=rows, words={name: in_words(own) for name, own in rows.items()}, before=before, after=after, notes=notes,
     )  # fmt: skip
 
 

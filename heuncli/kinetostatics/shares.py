@@ -178,11 +178,16 @@ def foundation_shares(
 
 def alone(shares: Shares, action: Action) -> Action:
     """A load's action by cause: it is all its own."""
-    force, moment = np.zeros((2, len(shares.causes), *action.force.shape))
-    if action.name in shares.causes:
-        own = shares.place(action.name)
-        force[own], moment[own] = action.force, action.moment
-    return replace(action, force=force, moment=moment)
+    own = shares.place(action.name) if action.name in shares.causes else None
+
+    def by_cause(values: Array) -> Array:
+        found = np.zeros((len(shares.causes), *values.shape))
+        if own is not None:
+            found[own] = values
+        return found
+
+    opposite = None if action.opposite is None else by_cause(action.opposite)
+    return replace(action, force=by_cause(action.force), moment=by_cause(action.moment), opposite=opposite)
 
 
 def from_outside(

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.balancing.asked import AskedWheel, BalanceOptions
+from heuncli.balancing.asked import AskedWeight, AskedWheel, BalanceOptions
 from heuncli.balancing.results import Flywheel
 from heuncli.balancing.study import balance
 from heuncli.errors import SolveError
@@ -133,3 +133,52 @@ def test_loads_have_orders_as_high_as_they_go() -> None:
         assert rows[float(k)].amplitude[0] == pytest.approx(abs(5.0 * (k == 30) - wanted), abs=rows[float(k)].error)
         assert rows[float(k)].error < 1e-9
     assert max(rows) == 158.0
+
+
+GEARED = """\
+heun: 1
+ground: {points: {A: [0, 0, 0], B: [0.3, 0, 0]}}
+bodies:
+  a: {mass: 2, center: [0.05, 0, 0], inertia: [0.01, 0.01, 0.02], points: {o: [0, 0, 0]}}
+  b: {mass: 0.3, center: [0.02, 0, 0], inertia: [0.02, 0.02, 0.03], position: [0.3, 0, 0], points: {o: [0, 0, 0]}}
+joints:
+  sa: {type: pin, from: ground.A, to: a.o, axis: [0, 0, 1]}
+  sb: {type: pin, from: ground.B, to: b.o, axis: [0, 0, 1]}
+drives: {motor: {joint: sa, angle: 50*t}}
+couplings: {mesh: {type: gear, of: [sa, sb], ratio: -1}}
+forces: {tool: LOAD}
+"""
+
+
+@pytest.mark.parametrize(
+    ("load", "turns", "back"),
+    [
+        ('{type: torque, joint: sb, value: "5*cos(sb.angle)"}', 1, True),
+        ('{type: torque, joint: sb, value: "5*cos(sb.angle/2)"}', 1, False),
+        ('{type: torque, joint: sb, value: "5*cos(sb.angle/2)"}', 2, True),
+        ('{type: torque, joint: sa, value: "5*cos(sa.angle/2)"}', 1, False),
+        ('{type: torque, joint: sa, value: "5*cos(sa.angle/3)"}', 2, False),
+        ('{type: torque, joint: sb, value: "3 if sin(sb.angle) > 0 else -3"}', 1, True),
+        ('{type: torque, joint: sb, value: "3 if sin(sb.angle/2) > 0 else -3"}', 1, False),
+        ("{type: turn_spring, joint: sb, stiffness: 4}", 1, False),
+        ("{type: damper, joint: sb, coefficient: 0.1}", 1, True),
+        ("{type: spring, from: ground.B, to: a.o, stiffness: 100, length: 0.1}", 1, True),
+    ],
+)
+def test_a_load_that_takes_longer_than_the_cycle_is_told(load: str, turns: int, back: bool) -> None:
+    """Where it comes back its orders are its own; else they are those of a law that jumps, and a note says so."""
+    told = balance_of(GEARED.replace("LOAD", load), turns=turns)
+    notes = [note for note in told.notes if note.startswith("forces.tool is not after ")]
+    assert len(notes) == (0 if back else 1)
+    assert all(("--turns 2" in note) == (turns == 1) for note in notes)
+    if back and "cos" in load:
+        (row,) = (row for row in told.orders["load"] if row.verdict == "remains")
+        assert row.order == 1.0 / turns and row.amplitude == pytest.approx([5.0], rel=1e-12)
+
+
+@pytest.mark.parametrize(("law", "back"), [("5*cos(50*t)", True), ("5*cos(30*t)", False)])
+def test_what_a_counterweight_costs_under_a_load_in_time(law: str, back: bool) -> None:
+    """The loads of joints are those of one cycle: of another law in time the next one has others."""
+    scene = GEARED.replace("LOAD", f'{{type: torque, joint: sb, value: "{law}"}}')
+    told = balance_of(scene, weights=(AskedWeight("a", "o", 0.03),))
+    assert any(note.startswith("forces.tool is not after a turn") for note in told.notes) != back

@@ -252,3 +252,19 @@ analysis: {{duration: 0.2, samples: 5}}
         assert parts == pytest.approx(whole["force"], abs=1e-9)
     assert section["shares"]["rope"]["direct_force"][:, 0] == pytest.approx(-T, abs=1e-9)
     assert T.max() > 5 * G
+
+
+@pytest.mark.parametrize("analysis", ["{type: state}", "{duration: 1, samples: 2}", "{duration: 1, samples: 9}"])
+def test_what_a_rope_does_to_the_ground_is_its_own_share(analysis: str) -> None:
+    """Of one instant or of many, force and moment of each cause: its strand on the ground has no cause but itself."""
+    results = solved(
+        winch("stiffness: 2e4, damping: 300, length: 9.8", analysis), wanted=frozenset({"foundation", "shares"})
+    )
+    element = results.foundation["elements"]["rope"]
+    for name in ("force", "moment"):
+        parts = {cause: own[name] for cause, own in element["shares"].items()}
+        assert {values.shape for values in parts.values()} == {results.foundation[name].shape}
+        assert parts["rope"] == pytest.approx(element[name], abs=1e-9)
+        assert not any(values.any() for cause, values in parts.items() if cause != "rope")
+        whole = sum(own[name] for own in results.foundation["shares"].values())
+        assert whole == pytest.approx(results.foundation[name], abs=1e-9)
