@@ -59,8 +59,11 @@ def test_nothing_is_found_is_no_error_but_under_strict(heun: Heun) -> None:
 
 
 def test_parts_that_cannot_be_solved_fail_under_strict(heun: Heun) -> None:
-    done = heun("find", "-", "b=0.2:2", "joints.C.force = 40 N", "--strict", text=TWO_BARS)
-    assert done.returncode == 1 and done.stdout.count("[does-not-fit]") == 2
+    """Both ends of the interval are left out; what is asked for is met between them, and alone would be no failure."""
+    text = PENDULUM.replace("mass: m}", "mass: m if abs(a - 0.8) < 0.5 else -1}")
+    done = heun(*FOUND, "--strict", text=text)
+    assert done.returncode == 1 and done.stdout.count("[not-positive]") == 2 and "rises" in done.stdout
+    assert heun(*FOUND, text=text).returncode == 0
 
 
 def test_where_nothing_can_be_solved(heun: Heun) -> None:

@@ -277,8 +277,13 @@ class Texts(Sequence[str]):
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("form", ["csv", "json", "parquet"])
-def test_memory_does_not_grow_with_the_rows(form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("form", "fewer", "more"), [("csv", 24_000, 40_000), ("json", 8_000, 13_000), ("parquet", 4_000, 9_000)]
+)
+def test_memory_does_not_grow_with_the_rows(
+    form: str, fewer: int, more: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Counts from where the buffers of a form are full; of JSON and Parquet 8 bytes of each row more would be seen."""
     plan = plan_of([ParameterAxis("n", Texts())])
 
     def rows(count: int) -> Iterator[SweptRow]:
@@ -289,12 +294,12 @@ def test_memory_does_not_grow_with_the_rows(form: str, tmp_path: Path, monkeypat
     how = Telling(form, str(tmp_path / f"out.{form}"))
     told.tell(head_of(plan, "N"), rows(1), how)  # what is loaded for it
     peaks = []
-    for count in (24_000, 40_000):
+    for count in (fewer, more):
         tracemalloc.start()
         told.tell(head_of(plan, "N"), rows(count), how)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    assert peaks[1] < 1.1 * peaks[0] + 100_000, peaks
+    assert peaks[1] < 1.01 * peaks[0] + 20_000, peaks
 
 
 @pytest.mark.heavy

@@ -54,8 +54,11 @@ def shaking_force(m: float, length: float, phi: Array) -> Array:
 
 
 def least_largest(length: float) -> tuple[float, float]:
-    """The weight for which the largest shaking force is least, and that force: by halving thirds, it is convex in m."""
-    phi = np.linspace(0.0, math.pi, 200_001)
+    """The weight for which the largest shaking force is least, and that force: by halving thirds, it is convex in m.
+
+    Between angles 1.6e-4 apart the largest is missed by 3e-9 of it at most.
+    """
+    phi = np.linspace(0.0, math.pi, 20_001)
     low, high = 0.0, 3.0
     while high - low > 1e-10:
         a, b = low + (high - low) / 3.0, high - (high - low) / 3.0

@@ -11,6 +11,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,6 +63,12 @@ def answer(tree: Any) -> SceneModes | str:
         return f"failed: {error}"
 
 
+@cache
+def first_answer(kind: str, seed: int) -> SceneModes | str:
+    """The modes of a scene as it is drawn, found once for all that it is compared with."""
+    return answer(scene(kind, seed))
+
+
 def by_kind(found: SceneModes) -> dict[str, list[Mode]]:
     """The modes of each kind, by their eigenvalues."""
     kinds: dict[str, list[Mode]] = {}
@@ -101,7 +108,7 @@ def judged(kind: str, seed: int, way: str) -> tuple[Finding, Any, Retold]:
     """A scene and its telling."""
     tree = scene(kind, seed)
     told = TELLINGS[way](tree, np.random.default_rng([seed, 6]), None)  # type: ignore[arg-type]
-    return agree(answer(tree), answer(told.tree), told), tree, told
+    return agree(first_answer(kind, seed), answer(told.tree), told), tree, told
 
 
 RIGHT = ("same", "refused")
