@@ -100,7 +100,7 @@ def differentiate_state(
     differentiate_motion(scene, y, direction)
     if scene.point_count:
         set_variable_slopes(scene)
-    add_kept_inertia_tangents(scene)
+    add_artificial_inertia_tangents(scene)
     power: cython.double = add_load_tangents(scene)
     add_closure_tangents(scene)
     add_branch_tangents(scene)
@@ -115,7 +115,7 @@ def differentiate_state(
         result[scene.work_at] = power
 
 
-def add_kept_inertia_tangents(scene: cython.pointer[Scene]) -> cython.void:
+def add_artificial_inertia_tangents(scene: cython.pointer[Scene]) -> cython.void:
     """Add the change of the moment n (n . alpha) of each artificial inertia that is not compensated; n turns with its
     body.
     """

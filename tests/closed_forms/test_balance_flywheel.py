@@ -168,7 +168,7 @@ forces: {tool: LOAD}
 def test_a_load_that_takes_longer_than_the_cycle_is_told(load: str, turns: int, back: bool) -> None:
     """Where it comes back its orders are its own; else they are those of a law that jumps, and a note says so."""
     told = balance_of(GEARED.replace("LOAD", load), turns=turns)
-    notes = [note for note in told.notes if note.startswith("forces.tool is not after ")]
+    notes = [note for note in told.notes if note.startswith("forces.tool does not repeat after ")]
     assert len(notes) == (0 if back else 1)
     assert all(("--turns 2" in note) == (turns == 1) for note in notes)
     if back and "cos" in load:
@@ -181,4 +181,4 @@ def test_what_a_counterweight_costs_under_a_load_in_time(law: str, back: bool) -
     """The loads of joints are those of one cycle: of another law in time the next one has others."""
     scene = GEARED.replace("LOAD", f'{{type: torque, joint: sb, value: "{law}"}}')
     told = balance_of(scene, weights=(WeightRequest("a", "o", 0.03),))
-    assert any(note.startswith("forces.tool is not after a turn") for note in told.notes) != back
+    assert any(note.startswith("forces.tool does not repeat after a turn") for note in told.notes) != back

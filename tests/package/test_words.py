@@ -30,7 +30,7 @@ PARTICIPLES = {  # of functions also every other one in -ed
     "torn", "swept", "spun", "counted",
 }  # fmt: skip
 PRIVATE_WORDS = {
-    "told", "tell", "tells", "telling", "asked", "asker", "asking", "anew", "beside", "happening",
+    "told", "tell", "tells", "telling", "ask", "asked", "asker", "asking", "anew", "beside", "happening",
     "happenings", "said", "say", "says", "lent", "lend", "lends", "stands", "standing", "hang", "hangs", "hung",
     "rub", "rubs", "rubbing", "astray", "aside", "apart",
 }  # fmt: skip

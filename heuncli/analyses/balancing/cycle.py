@@ -133,12 +133,12 @@ def make_driven_mechanism(mechanism: Mechanism, plan: CyclePlan, rate: float, wi
         angle = compile_expression(f"{plan.begin!r} + ({rate!r})*t", Scope(in_time=True))
         drive = Drive(DRIVE, plan.joint, "angle", angle, zero_assembled=True)
         joints = tuple(replace(j, drive=drive if j.name == plan.joint else None) for j in joints)
-    couplings = tuple(keep_in_contact(own) for own in mechanism.couplings)
+    couplings = tuple(make_cam_two_sided(own) for own in mechanism.couplings)
     driven = replace(mechanism, joints=joints, couplings=couplings, impulses=(), conditions=())
     return driven if with_loads else replace(driven, loads=(), gravity=np.zeros(3), points={})
 
 
-def keep_in_contact(coupling: Coupling) -> Coupling:
+def make_cam_two_sided(coupling: Coupling) -> Coupling:
     """Return a cam that keeps its follower even under tension; any other coupling is returned unchanged."""
     if coupling.entry.type != "cam":
         return coupling

@@ -111,9 +111,9 @@ def describe_nonperiodic_loads(run: FollowedRun, nodes: PieceNodes) -> tuple[str
     differ.
     """
     next_cycle = NextCycle(run, nodes)
-    cycle, hint = ("a turn", ": --turns 2, if it takes two") if run.turns == 1 else ("two turns", "")
+    cycle, hint = ("a turn", "; try --turns 2") if run.turns == 1 else ("two turns", "")
     return tuple(
-        f"{load_path(load)} is not after {cycle} what it was before; it is told as if it began anew there{hint}"
+        f"{load_path(load)} does not repeat after {cycle}; its orders assume that it starts again there{hint}"
         for load in run.layout.mechanism.loads
         if not next_cycle.is_periodic(load)
     )

@@ -95,7 +95,7 @@ def parse_counts(request: FindRequest) -> tuple[int, int]:
 def make_sampler(evaluator: CachedEvaluator, interval: Interval, condition: FindCondition) -> Callable[[float], Sample]:
     """Make the function that samples the measure at a value of the unknown."""
 
-    def ask(x: float) -> Sample:
+    def sample_at(x: float) -> Sample:
         answer = evaluator.evaluate({interval.name: interval.format_value(x)})
         if answer.code:
             return Sample(x, None, why=(answer.code, answer.reason))
@@ -106,7 +106,7 @@ def make_sampler(evaluator: CachedEvaluator, interval: Interval, condition: Find
         error = max(found.error or 0.0, rounding)
         return Sample(x, found.value - condition.value, error, singular=answer.singular)
 
-    return ask
+    return sample_at
 
 
 def require_known_measure(findings: IntervalFindings) -> None:

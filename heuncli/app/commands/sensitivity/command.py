@@ -128,14 +128,14 @@ def make_evaluation(
     measure_key: its index and its unit; an empty unit means that it is a count
     """
 
-    def ask(distances: Mapping[str, float]) -> NoisyValue:
+    def evaluate_at(distances: Mapping[str, float]) -> NoisyValue:
         values = {name: numbers[name].format_value(numbers[name].value + x) for name, x in distances.items()}
         answer = evaluator.evaluate(values)
         if answer.code:
             return NoisyValue(None, why=(answer.code, answer.reason))
         return to_noisy_value(answer.measures[measure_key[0]], measure_key[1])
 
-    return ask
+    return evaluate_at
 
 
 def to_noisy_value(measure_value: MeasureValue, unit: str) -> NoisyValue:
