@@ -23,7 +23,6 @@ from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Block
 from heuncli.results.results_schema import SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, Stop
-from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
 from heuncli.study.model.error_places import attach_locations
@@ -32,6 +31,7 @@ from heuncli.study.model.method_choice import explain_restart
 from heuncli.study.model.options import Options, apply_options
 from heuncli.study.model.selection import select_for_conditions
 from heuncli.study.model.setup import Setup, set_up
+from heuncli.study.queries.study import Study
 from heuncli.study.solve.history import integrate
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def solve(spec: Spec, options: Options | None = None, stages: Stages = NO_CACHE)
             on_result = any(c.ends and isinstance(c, ResultCondition) for c in spec.analysis.conditions)
             if error.reached is None or not on_result:
                 raise
-            from heuncli.study.ask.events import solve_before_failure  # few scenes end so
+            from heuncli.study.queries.events import solve_before_failure  # few scenes end so
 
             return solve_before_failure(spec, make_solver(options, deadline), error)
 
@@ -103,7 +103,7 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
     study = Study(spec, options, setup, history, recovery if parts is None else None, results, impulses)
     if not (conditions or spec.latches):
         return study
-    from heuncli.study.ask.events import add_events  # few scenes have them
+    from heuncli.study.queries.events import add_events  # few scenes have them
 
     return add_events(study, whole, make_solver(options, deadline))
 

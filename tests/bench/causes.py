@@ -8,9 +8,9 @@ from functools import partial
 from typing import Any
 
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import recover
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 REPORTS = frozenset({"motion", "foundation", "joints", "sections", "forces", "energy"})

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError
 from heuncli.results.results import Results
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.scenes import ALL_KINDS, random_scene
 from tests.oracle.tellings import with_cuts
 from tests.oracle.transforms import turned

@@ -11,8 +11,8 @@ from heuncli.analyses.load_cases.assembly import assemble_load_cases
 from heuncli.output.fe_decks.naming import DeckNames
 from heuncli.output.fe_decks.registry import DECKS
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.at_option import parse
 from heuncli.study.model.options import Options
+from heuncli.study.queries.at_option import parse
 from heuncli.study.workflow import solve
 
 SPECS = Path(__file__).parents[2] / "specs"

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from heuncli.analyses.variants.variant_solver import VariantSolver
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import MeasureRequest, measure_value
 from heuncli.study.workflow import solve
 from tests.bench.finds import finds
 from tests.shared.folders import ROOT, SPECS

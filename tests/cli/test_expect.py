@@ -10,9 +10,9 @@ import pytest
 
 from heuncli.base.errors import Problem, SolveError, SourceLocation, SpecError
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask import expectations as expect
-from heuncli.study.ask.expectations import compare
 from heuncli.study.model.options import Options
+from heuncli.study.queries import expectations as expect
+from heuncli.study.queries.expectations import compare
 from heuncli.study.workflow import solve
 from tests.shared.fakes import ACCURATE, FakeStudy, pendulum
 

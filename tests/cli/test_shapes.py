@@ -22,10 +22,10 @@ from heuncli.output.tables.export import to_csv
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import CUT, IMPULSES, REPORTS, SHARES, find_quantity, independent_axes
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, measure_value
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.measure import MeasureRequest, NotOneNumber, measure_value
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 

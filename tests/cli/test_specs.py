@@ -19,11 +19,11 @@ from heuncli.app.cli.entry import enter
 from heuncli.output.tables.export import collect_blocks, to_csv, to_json
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.expectations import compare
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.series import iter_series
+from heuncli.study.queries.expectations import compare
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 FOLDER = Path(__file__).parents[2] / "specs"

@@ -15,8 +15,8 @@ from heuncli.motion.integration.check.changes import ConditionChanges
 from heuncli.motion.integration.conditions import Conditions, evaluate_coordinates
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.scenes import near
 

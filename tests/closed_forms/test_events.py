@@ -13,7 +13,7 @@ import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from heuncli.results.results import Array
-from heuncli.study.ask.measure import find_peak
+from heuncli.study.queries.measure import find_peak
 from tests.shared.one_freedom import Law, One, Passage, around, follows, moved, passes
 from tests.shared.scenes import near, solved, study
 

@@ -10,8 +10,8 @@ import pytest
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.page import make_page
 from heuncli.results.results_schema import REPORTS
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, study

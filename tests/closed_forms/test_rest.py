@@ -22,8 +22,8 @@ from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.load import load
 from heuncli.scene.shapes.rotations import rotation_from_vector
-from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import set_up
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study

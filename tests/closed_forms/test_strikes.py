@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 

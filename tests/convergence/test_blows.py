@@ -13,7 +13,7 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.output.snapshots import measure
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.blows import with_blows
 from tests.oracle.impulses import state_after, struck
 from tests.oracle.read import Placed, state_at

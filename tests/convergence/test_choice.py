@@ -7,8 +7,8 @@ import pytest
 
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import describe, solve
 from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study

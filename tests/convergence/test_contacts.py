@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.base import tolerances
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.bars import rods
 from tests.shared.scenes import near, solved, study
 from tests.shared.truth import KNOWN, SECOND, TRUTH, off

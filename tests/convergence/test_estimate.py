@@ -17,10 +17,10 @@ import pytest
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.oracle.values import to_yaml
 from tests.shared.bars import chain, double, rods, top

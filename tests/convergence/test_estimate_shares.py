@@ -14,8 +14,8 @@ import pytest
 
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 from tests.shared.scenes import study

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.scenes import near, study
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits

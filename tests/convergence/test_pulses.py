@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from heuncli.study.ask.measure import find_peak
+from heuncli.study.queries.measure import find_peak
 from tests.shared.pushed_block import pushed_block
 from tests.shared.scenes import near, study
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.command import Heun
 from tests.shared.scenes import near, study
 

@@ -15,8 +15,8 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.source import read_source
 from heuncli.scene.shapes.rotations import cross_vectors
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.oracle.turns import random_rotation
 from tests.oracle.values import to_yaml

@@ -19,8 +19,8 @@ from heuncli.results.results_schema import (
     Quantity,
     find_child,
 )
-from heuncli.study.ask.measure import find_peak
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import find_peak
+from heuncli.study.queries.study import Study
 
 TIMES = 10.0  # the stated errors
 SAME = 1e-9  # of the last instant

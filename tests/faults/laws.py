@@ -16,8 +16,8 @@ import numpy as np
 
 from heuncli.base.errors import HeunError
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.faults import mild, sources
 from tests.faults.agree import apart, beyond_peaks, growing, kept, measured_in, state_at, turning

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.honesty.near_redundant import Rng, body, flat, scene_of
 from tests.shared.scenes import study
 from tests.shared.seeds import spared

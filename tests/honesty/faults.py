@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.exact import Exact
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import HeunError
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.honesty.rest_poses import spread
 from tests.oracle.values import to_yaml
 from tests.shared.hunts import asked_of

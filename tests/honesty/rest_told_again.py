@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.base.errors import SolveError
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.honesty.rest_poses import doubtful, flown, spread
 from tests.oracle.values import to_yaml
 from tests.oracle.weld import SAW as SAWN

@@ -18,7 +18,7 @@ import numpy as np
 from heuncli.base.errors import HeunError
 from heuncli.results.results import Array
 from heuncli.results.results_schema import REPORTS, SPACE, TREE, Quantity
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.faults.sources import parsed
 from tests.honesty.rest_poses import spread
 from tests.oracle.values import to_yaml

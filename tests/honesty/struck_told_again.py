@@ -17,8 +17,8 @@ import numpy as np
 
 from heuncli.base.errors import HeunError
 from heuncli.results.results_schema import REPORTS, SHARES
-from heuncli.study.ask.measure import find_peak
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import find_peak
+from heuncli.study.queries.study import Study
 from tests.faults.sources import parsed
 from tests.honesty.rest_poses import spread
 from tests.oracle.blows import with_blows

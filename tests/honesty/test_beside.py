@@ -15,8 +15,8 @@ import pytest
 from heuncli.app.cli.entry import enter
 from heuncli.base import tolerances
 from heuncli.results.results import Array, Results
-from heuncli.study.ask.measure import MeasureRequest, measure_value
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import MeasureRequest, measure_value
+from heuncli.study.queries.study import Study
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import near, study
 

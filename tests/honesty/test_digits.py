@@ -11,9 +11,9 @@ import pytest
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.page import make_page
 from heuncli.output.tables.text_table import format_plain
-from heuncli.study.ask.expectations import compare
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.expectations import compare
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study

@@ -11,8 +11,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import MeasureRequest, measure_value
 from heuncli.study.workflow import solve
 
 G = 9.81

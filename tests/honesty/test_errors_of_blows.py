@@ -9,9 +9,9 @@ import pytest
 
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import stated_error
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 SCENE = """heun: 1

@@ -12,9 +12,9 @@ from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, measu
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, Peak, stated_error
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
+from heuncli.study.queries.measure import MeasureRequest, Peak, stated_error
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT, SPECS
 

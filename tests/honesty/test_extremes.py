@@ -10,9 +10,9 @@ import pytest
 from heuncli.base.errors import HeunError
 from heuncli.output.tables.page import TABLE_DEFAULT, make_page
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.bench.honesty import told

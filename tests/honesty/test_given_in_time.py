@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.ask.measure import Peak, find_peak
-from heuncli.study.ask.study import TOO_FEW, Study
+from heuncli.study.queries.measure import Peak, find_peak
+from heuncli.study.queries.study import TOO_FEW, Study
 from tests.shared.scenes import study
 
 TABLE = """\

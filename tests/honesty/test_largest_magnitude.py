@@ -6,8 +6,8 @@ import pytest
 
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import measure_value
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import measure_value
 from heuncli.study.workflow import solve
 
 HELD = """\

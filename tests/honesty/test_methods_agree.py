@@ -18,7 +18,7 @@ from heuncli.motion.integration.check.distance import MotionPoints
 from heuncli.motion.integration.check.matching_impulses import is_between_impulses
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.bench.honesty import told
 from tests.shared.event_scenes import EVENTS
 from tests.shared.folders import SPECS

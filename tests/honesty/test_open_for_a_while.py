@@ -9,9 +9,9 @@ import pytest
 from heuncli.analyses.variants.evaluation import measure_study
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import measure_value
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import measure_value
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 # A block slides until a stop and a rope hold it at the same instant: from then on both together bear the force.

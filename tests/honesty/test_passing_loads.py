@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import MeasureRequest, measure_value
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import MeasureRequest, measure_value
 from heuncli.study.workflow import solve
 
 AROUND = 1e-7  # s: so far before and behind a passage the loads are those of either side

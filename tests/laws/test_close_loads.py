@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.study.ask.measure import find_peak
+from heuncli.study.queries.measure import find_peak
 from tests.shared.scenes import study
 
 P, CLOSE = 1000.0, (1e-14, 1e-12, 2e-12, 3e-12, 5e-12, 1e-11, 3e-11, 1e-10, 3e-10, 1e-9, 1e-6)

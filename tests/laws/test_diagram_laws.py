@@ -8,7 +8,7 @@ import pytest
 from heuncli.output.figures.bars import WholeBar
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import rotation_matrix_about
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.drawn_bars import drawn, panels_of
 from tests.shared.drawn_panels import edges, heights
 from tests.shared.scenes import near, study

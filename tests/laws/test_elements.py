@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.base.errors import SolveError
 from heuncli.results.results import Array, Results
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.faults import laws, sources
 from tests.oracle.loads import pushes
 from tests.oracle.read import Model, model, placed, state_at

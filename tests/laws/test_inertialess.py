@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.read import Placed
 from tests.oracle.scenes import random_scene
 from tests.oracle.solve import solve

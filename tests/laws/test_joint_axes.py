@@ -11,9 +11,9 @@ import pytest
 from heuncli.app.cli.entry import enter
 from heuncli.results.results import Array, Block, Results
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 

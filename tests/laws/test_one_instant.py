@@ -10,9 +10,9 @@ import pytest
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.sharing import is_same
 from heuncli.scene.file_format.source import read_source
-from heuncli.study.ask.measure import find_peak, search_peaks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import find_peak, search_peaks
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT, SPECS
 

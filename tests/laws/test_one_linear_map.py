@@ -9,7 +9,7 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import GROUND
 from heuncli.multibody.response import Columns, solve_columns, solve_impulses
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.loops import loop
 from tests.shared.scenes import near
 from tests.shared.trees import tree

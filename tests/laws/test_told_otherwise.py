@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Results
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.read import state_at
 from tests.oracle.solve import solve
 from tests.oracle.tellings import EITHER_END, TELLINGS, Telling

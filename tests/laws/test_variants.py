@@ -14,8 +14,8 @@ from heuncli.analyses.variants.variant_solver import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.contacts import TOUCHES, Contact, contacts, rest, strike, values
 from tests.oracle.read import Placed, model, state_at
 from tests.oracle.turns import cross

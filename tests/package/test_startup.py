@@ -60,8 +60,8 @@ RARE = {
     "heuncli.scene.file_format.tables",
     "heuncli.loads.redundancy.advice",
     "heuncli.output.snapshots.measure",
-    "heuncli.study.ask.measure",
-    "heuncli.study.ask.expectations",
+    "heuncli.study.queries.measure",
+    "heuncli.study.queries.expectations",
     "heuncli.output.tables.export",
     "heuncli.app.cli.app",
 }

@@ -62,7 +62,7 @@ KEPT = {
     "scene/importers/mjcf/reader.py": {"described"},
     "scene/importers/urdf/reader.py": {"described"},
     **{f"output/fe_decks/{name}.py": {"written"} for name in DECKS},
-    "study/ask/curves.py": {"CurveComparison.at"},
+    "study/queries/curves.py": {"CurveComparison.at"},
     "study/compose/recovery.py": {"Recovery.decided"},
 }
 

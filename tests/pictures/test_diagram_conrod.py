@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.drawn_bars import CONROD, panels_of
 from tests.shared.drawn_panels import edges, heights
 from tests.shared.scenes import study

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.output.snapshots.measure import measure_number, parse_measure
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.drawn_bars import panels_of
 from tests.shared.drawn_panels import edges, heights, upright_at
 from tests.shared.scenes import study

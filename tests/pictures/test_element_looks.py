@@ -15,9 +15,9 @@ from heuncli.output.machine_geometry.ropes import iter_rope_lines
 from heuncli.output.web_page.moving_page import make_page_data
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import places

@@ -13,8 +13,8 @@ from heuncli.output.figures.courses import NumberCourse
 from heuncli.output.figures.histories import PanelCourse, _make_y_axis
 from heuncli.output.figures.thinning import N_INTERVALS, find_visible_points
 from heuncli.results.results import Array
-from heuncli.study.ask.measure import Peak
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.measure import Peak
 from tests.shared.command import Heun
 from tests.shared.drawn_panels import DrawnPanel, heights, read
 from tests.shared.folders import ROOT

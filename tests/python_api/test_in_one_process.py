@@ -94,7 +94,7 @@ def test_an_interrupt_leaves_nothing_broken(monkeypatch: pytest.MonkeyPatch) -> 
     before = study["energy.kinetic"].at(0.0123)
     with monkeypatch.context() as patch:
         patch.setattr(history, "resample", None)
-        patch.setattr("heuncli.study.ask.study.resample", interrupted)
+        patch.setattr("heuncli.study.queries.study.resample", interrupted)
         patch.setattr("heuncli.study.workflow.recover", interrupted)
         for ask in (lambda: heuncli.solve(path), lambda: study["energy.kinetic"].at(0.02)):
             with pytest.raises(KeyboardInterrupt):

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.published import bricard
 from tests.oracle.read import model
 from tests.oracle.solve import Solution, solve

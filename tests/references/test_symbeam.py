@@ -19,8 +19,8 @@ from heuncli.analyses.published.files import spec_of
 from heuncli.output.figures.bars import WholeBar
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 from tests.shared.drawn_panels import heights, panels, upright_at
 from tests.shared.scenes import near, study
 

@@ -14,11 +14,11 @@ from heuncli.output.tables.page import Page, make_page
 from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import find_peak
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.measure import find_peak
+from heuncli.study.queries.study import Study
 from heuncli.study.search import stretches
 from heuncli.study.workflow import solve
 

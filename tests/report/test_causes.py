@@ -14,9 +14,9 @@ from heuncli.output.tables.export import to_csv
 from heuncli.output.tables.page import Page, make_page
 from heuncli.output.tables.text_table import TextTable
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS

@@ -23,8 +23,8 @@ from heuncli.results.results import Block, Results
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Expect
 from heuncli.scene.file_format.rules import not_yet
-from heuncli.study.ask.expectations import compare
 from heuncli.study.quantities.labels import StopInfo
+from heuncli.study.queries.expectations import compare
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum
 
 T = np.linspace(0.0, 2.0, 5)

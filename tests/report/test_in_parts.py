@@ -20,10 +20,10 @@ from heuncli.results import stored_arrays
 from heuncli.results.stored_arrays import ArrayStore
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.study import Study
 from heuncli.study.compose import parts, recovery
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.study import Study
 from heuncli.study.solve import load_errors
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun

@@ -180,6 +180,6 @@ def test_few_samples_of_many_turns_hide_no_load(heun: Heun, monkeypatch: pytest.
     measured = float(heun(*words, "--measure", "max joints.wrist.force").stdout)
     told = heun(*words, "--only", "joints.wrist").stdout
     assert f"{measured:.1f}" in told and NOT_SEARCHED not in told
-    monkeypatch.setattr("heuncli.study.ask.study.MOST_SEARCHED", 0)
+    monkeypatch.setattr("heuncli.study.queries.study.MOST_SEARCHED", 0)
     told = heun(*words, "--only", "joints.wrist").stdout
     assert f"{measured:.1f}" not in told and told.index(NOT_SEARCHED) < told.index("JOINTS")

@@ -104,7 +104,7 @@ def test_strength_within_the_stated_error_is_no_comfort(heun: Heun, folder: Path
 def test_extremes_of_samples_alone_are_told_first(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     said = "extremes are those of 21 instants alone"
     assert said not in read_of(heun, folder, SWING).by_tag["header"][0]
-    monkeypatch.setattr("heuncli.study.ask.study.MOST_SEARCHED", 0)
+    monkeypatch.setattr("heuncli.study.queries.study.MOST_SEARCHED", 0)
     assert said in read_of(heun, folder, SWING).by_tag["header"][0]
 
 

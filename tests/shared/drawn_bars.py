@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 from tests.shared.drawn_panels import DrawnPanel, panels
 
 SI = Units({})

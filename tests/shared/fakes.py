@@ -15,8 +15,8 @@ from heuncli.output.tables.page import Page
 from heuncli.results.results import Array, Block, Extremes, Magnitudes, Results
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import REPORT_OF
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, SectionInfo
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch
 
 ACCURATE: Block = {

@@ -9,8 +9,8 @@ import numpy as np
 from heuncli.analyses.load_cases.assembly import assemble_load_cases
 from heuncli.analyses.load_cases.model import LoadCases, LoadedBody
 from heuncli.results.results import Array
-from heuncli.study.ask.at_option import parse
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.at_option import parse
+from heuncli.study.queries.study import Study
 
 
 def cases_of(run: Study, body: str, at: str) -> LoadCases:

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from heuncli.output.snapshots import measure
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 
 
 def measured(run: Study, words: str) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.shared.scenes import study
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)

@@ -12,8 +12,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.masses import Mass, mass_of
 from tests.oracle.read import state_at
 from tests.oracle.turns import random_rotation

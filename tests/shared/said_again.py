@@ -20,7 +20,7 @@ from heuncli.results.results_schema import (
     error_kind_of_path,
     find_child,
 )
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 
 Powers = tuple[int, int, int]
 POWERS: dict[str, Powers] = {  # of mass, length, time

@@ -9,8 +9,8 @@ import numpy as np
 
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.oracle.read import Placed, state_at
 from tests.oracle.values import to_yaml

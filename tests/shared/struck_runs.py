@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.impulses import struck
 from tests.oracle.read import Model, Placed, model, state_at
 from tests.oracle.solve import Solution

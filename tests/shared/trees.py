@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.results.results import Results
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from tests.oracle.masses import mass_of
 from tests.oracle.read import Model, Placed, model, state_at
 from tests.oracle.scenes import ALL_KINDS, random_scene

@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 
 TRUTH, SECOND = 3e-15, 1e-14  # local tolerances; the run judged has 3e-14 at best
 KNOWN = 0.3  # of what is stated: how well the truth must be known to judge by it

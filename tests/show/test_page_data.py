@@ -20,10 +20,10 @@ from heuncli.output.web_page.number_rows import ZERO_ROWS_PREFIX
 from heuncli.results.results import Array
 from heuncli.results.results_schema import split_leading_key
 from heuncli.scene.file_format.load import load
-from heuncli.study.ask.measure import find_peak
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.measure import find_peak
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import data_of, places, unpacked

@@ -127,7 +127,7 @@ def test_loads_that_were_not_sought_between_the_instants_are_told(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for most, told in ((10**6, False), (0, True)):
-        monkeypatch.setattr("heuncli.study.ask.study.MOST_SEARCHED", most)
+        monkeypatch.setattr("heuncli.study.queries.study.MOST_SEARCHED", most)
         assert heun("show", "swinging.yaml", "-o", "page.html").returncode == 0
         said = data_of((folder / "page.html").read_text())["told"]
         assert any("too many loads to seek" in text for text in said) == told, said

@@ -27,9 +27,9 @@ from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.measure import stated_error
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.study import Study
 from heuncli.study.solve.history import resample
 from heuncli.study.workflow import solve
 

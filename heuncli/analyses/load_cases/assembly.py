@@ -15,11 +15,11 @@ from heuncli.base.records import replace
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block, DeterminateSum
 from heuncli.results.results_schema import IMPULSES
-from heuncli.study.ask.at_option import InstantRequest, LoadCaseInstant, find_load_case_instants
-from heuncli.study.ask.study import Study
 from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import Recovery, find_determinate_sums
 from heuncli.study.model.selection import Selection
+from heuncli.study.queries.at_option import InstantRequest, LoadCaseInstant, find_load_case_instants
+from heuncli.study.queries.study import Study
 
 BALANCE_TOLERANCE = 1e-9  # of the largest: loads of one instant are solved together, and balance to rounding
 MAX_SUMS = 4  # named in an error message

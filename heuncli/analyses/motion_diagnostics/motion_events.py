@@ -24,7 +24,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.redundancy.neighbours import find_neighbour_poses
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Bracket, find_roots
 from heuncli.study.search.instants import choose_search_times
 from heuncli.study.solve.history import resample

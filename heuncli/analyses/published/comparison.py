@@ -17,12 +17,12 @@ from heuncli.results.results import Array
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.expectations import find_instant_index
-from heuncli.study.ask.measure import MeasureRequest, Peak
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import select_paths
 from heuncli.study.quantities.measure_uncertainty import find_measure_error
+from heuncli.study.queries.expectations import find_instant_index
+from heuncli.study.queries.measure import MeasureRequest, Peak
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 AGREES, DIFFERS, OPEN, COARSE = "agrees", "differs", "open", "too coarse"

@@ -17,10 +17,10 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFile, PreloadedFiles
-from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.measure_uncertainty import find_measure_error
+from heuncli.study.queries.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
+from heuncli.study.queries.study import Study
 
 EXTREME_REDUCERS = ("max", "min", "abs")
 SAMPLE_PLACES = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which its values are checked

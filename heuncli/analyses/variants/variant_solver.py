@@ -20,9 +20,9 @@ from heuncli.multibody.stage_cache import RecordingStages, ReusingStages
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.variants import SpecVariants
-from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options, apply_options
 from heuncli.study.model.selection import select_paths
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import set_up_requested, solve
 
 

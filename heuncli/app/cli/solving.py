@@ -11,14 +11,14 @@ from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.run_warnings import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.option_values import collect_results as collect_results  # re-exported for the commands
-from heuncli.study.ask.option_values import require_choice as require_choice
-from heuncli.study.ask.option_values import require_positive as require_positive
-from heuncli.study.ask.option_values import require_tolerance as require_tolerance
 from heuncli.study.model.options import Options
+from heuncli.study.queries.option_values import collect_results as collect_results  # re-exported for the commands
+from heuncli.study.queries.option_values import require_choice as require_choice
+from heuncli.study.queries.option_values import require_positive as require_positive
+from heuncli.study.queries.option_values import require_tolerance as require_tolerance
 
 if TYPE_CHECKING:
-    from heuncli.study.ask.study import Study
+    from heuncli.study.queries.study import Study
 
 
 class SolverRequest(Protocol):
@@ -81,7 +81,7 @@ def parse_instants(words: str, study: Study) -> Array:
 
     Raises UsageError, also for extremes, which tables show anyway.
     """
-    from heuncli.study.ask.at_option import (  # where they are asked for
+    from heuncli.study.queries.at_option import (  # where they are asked for
         find_requested_times,
         make_extreme_requests,
         parse,

@@ -47,7 +47,7 @@ PHASES = (
     ("heuncli.scene.expressions.discontinuities", "while jumps in time were searched"),
     ("heuncli.motion.integration.conditions", "while events were searched"),
     ("heuncli.motion.integration.check.changes", "while events were searched"),
-    ("heuncli.study.ask.events", "while events were searched"),
+    ("heuncli.study.queries.events", "while events were searched"),
     ("heuncli.motion.integration.check.estimate", "while the motion was integrated and checked"),
     ("heuncli.motion.integration.check.runs", "while the motion was integrated and checked"),
     ("heuncli.multibody.assembly", "while the scene was assembled"),

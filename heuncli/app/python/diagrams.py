@@ -15,8 +15,8 @@ from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.histories import make_history
 from heuncli.output.snapshots.display_units import read_display_units
 from heuncli.output.snapshots.measure import require_known_paths
-from heuncli.study.ask.measure import MeasureRequest
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import MeasureRequest
+from heuncli.study.queries.study import Study
 
 
 class Diagram:

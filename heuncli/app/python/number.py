@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from heuncli.output.snapshots import measure
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
+from heuncli.study.queries.study import Study
 
 COMMAND = "measure"
 

@@ -19,10 +19,10 @@ from heuncli.output.tables.page_width import split_to_width
 from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_plain
 from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
-from heuncli.study.ask.study import Study
 from heuncli.study.model.selection import Selection
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 
 # no colours, so that light and dark notebooks keep theirs; all rules apply within this class only
 STYLE = (

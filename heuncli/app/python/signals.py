@@ -18,9 +18,9 @@ from heuncli.base.text_safety import escape
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
-from heuncli.study.ask.measure import MeasureRequest, Peak, find_exceeded_horizon
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
 from heuncli.study.quantities.series import make_component_names
+from heuncli.study.queries.measure import MeasureRequest, Peak, find_exceeded_horizon
 
 if TYPE_CHECKING:
     from heuncli.app.python.number import Number

@@ -27,7 +27,7 @@ from heuncli.app.python.locked_run import LockedRun, find_distinct_instants
 from heuncli.app.python.python_warnings import emit_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 
 if TYPE_CHECKING:
     import os
@@ -203,8 +203,8 @@ class Solved(Mapping[str, "Signal"]):
         Raises HeunError for invalid instants, and for indeterminate loads.
         """
         from heuncli.analyses.load_cases.assembly import assemble_load_cases
-        from heuncli.study.ask.at_option import parse
-        from heuncli.study.ask.option_values import require_choice
+        from heuncli.study.queries.at_option import parse
+        from heuncli.study.queries.option_values import require_choice
 
         check_arguments(("body", body, TEXT), ("at", at, NUMBER_OR_TEXT), optional=False)
         require_choice("load_cases", body, list(self.spec.bodies))

@@ -24,8 +24,8 @@ from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array, Block
 from heuncli.results.results_schema import IMPULSE_UNITS
 from heuncli.scene.file_format.names import GROUND
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 
 JOINTS_PEN, APPLIED_PEN, COUPLED_PEN = 1, 3, 5
 JOINT_REPORTS = frozenset({"joints"})

@@ -30,10 +30,10 @@ from heuncli.output.figures.courses import choose_instants
 from heuncli.output.figures.summits import find_bounds, halve_steps
 from heuncli.results.results import Array, Block, Mask, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
-from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch, make_no_columns

@@ -15,10 +15,10 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array
-from heuncli.study.ask import curves
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, find_peak, make_several_error
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
+from heuncli.study.queries import curves
+from heuncli.study.queries.measure import MeasureRequest, NotOneNumber, Peak, find_peak, make_several_error
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 
 CASE_SUFFIX = " (case "  # at the end of a title

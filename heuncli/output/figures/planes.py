@@ -14,7 +14,7 @@ from heuncli.output.machine_geometry.poses import Poses, compute_poses
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 
 AXIS_LETTERS = ("x", "y", "z")
 JOINT_BLOCKS = ("joints", "coordinates")

@@ -17,9 +17,9 @@ from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run, list_angle_paths
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE
-from heuncli.study.ask.measure import stated_error
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.measure_uncertainty import find_unit
+from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 
 

@@ -17,8 +17,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
-from heuncli.study.ask.curves import sample_numbers
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.curves import sample_numbers
+from heuncli.study.queries.study import Study
 
 TURN = 2.0 * math.pi
 MIN_SPAN = 0.25 * TURN  # an angle that turns less is no crank angle

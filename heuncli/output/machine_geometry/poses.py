@@ -9,7 +9,7 @@ from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 
 MOTION = frozenset({"motion"})
 Y, Z = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])

@@ -9,11 +9,11 @@ import math
 from collections.abc import Sequence
 
 from heuncli.base.errors import Problem, SolveError, UsageError
-from heuncli.study.ask.histories import CODE, make_histories
-from heuncli.study.ask.measure import MeasureRequest, Peak
-from heuncli.study.ask.study import Study
 from heuncli.study.load_cycles.collective import Collective, Counting, LoadHistory, UnfitCounting, make_collective
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
+from heuncli.study.queries.histories import CODE, make_histories
+from heuncli.study.queries.measure import MeasureRequest, Peak
+from heuncli.study.queries.study import Study
 
 NO_PEAK = Peak(math.nan, None)
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
-from heuncli.study.ask.expectations import Case
 from heuncli.study.quantities.digits import OPEN
+from heuncli.study.queries.expectations import Case
 
 EMPTY_BLOCK: Mapping[str, Any] = {}  # a dict, which can be sent to another process
 EXPECTED, GOLDEN = "expect", "golden"

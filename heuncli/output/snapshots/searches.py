@@ -7,7 +7,7 @@ from heuncli.output.tables.page import Page
 from heuncli.output.tables.run_searches import RunExtremes, RunSearch, search_cuts, search_stresses
 from heuncli.results.results import Extremes
 from heuncli.results.results_schema import SHARES
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch, make_no_columns
 
 SECTIONS = frozenset({"sections"})

@@ -51,9 +51,9 @@ from heuncli.output.tables.page import Page, make_page
 from heuncli.output.tables.run_searches import search_stresses
 from heuncli.results.results import Array, CutPosition, Extremes, Results
 from heuncli.results.results_schema import SHARES, add_shared_reports
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch, find_jump_sides, make_no_columns, sort_distinct
 
 SI = Units({})

@@ -18,7 +18,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.segments import find_one_sided_limits
 from heuncli.results.results import Array, Indices, Results
 from heuncli.results.results_schema import REPORT_OF
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import sort_distinct
 from heuncli.study.search.instants import find_largest_turns
 

@@ -21,10 +21,10 @@ from heuncli.output.web_page.packing import pack_values
 from heuncli.output.web_page.page_assembly import assemble_page
 from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import Labels, make_labels
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 
 MAX_TIME_MARKS = 400  # events and impacts on the time line
 PEAKS_NOTE = "There are too many loads to seek the largest between the instants of the run: they may be larger there."

@@ -10,9 +10,9 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import ColumnSearch, sort_distinct
 
 REPORTS = frozenset({"joints", "foundation", "sections"})

@@ -10,12 +10,12 @@ from heuncli.base.records import replace
 from heuncli.results.path_words import split_path
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, MAGNITUDES, error_kind_of_path, find_quantity
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.measure import MeasureRequest, Peak
-from heuncli.study.ask.study import Study
 from heuncli.study.model.selection import list_entries, split_entry
 from heuncli.study.quantities.digits import find_load_error, find_stated_errors, is_load
 from heuncli.study.quantities.labels import make_unit_labels
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.measure import MeasureRequest, Peak
+from heuncli.study.queries.study import Study
 
 SI = Units({})
 SQUARE_ROUNDING = 4.0 * tolerances.EPS  # relative to the largest square along a run of cuts: rounding of its polynomial

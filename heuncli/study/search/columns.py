@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains
 
 
 class Sampleable(Protocol):
-    """The parts of a solved scene that a search uses (study/ask/study.py)."""
+    """The parts of a solved scene that a search uses (study/queries/study.py)."""
 
     @property
     def results(self) -> Results:

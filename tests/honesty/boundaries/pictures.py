@@ -18,8 +18,8 @@ from heuncli.output.figures.tips import LargestVector, TipCurve
 from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run
 from heuncli.output.web_page.frames import choose_frames
 from heuncli.results.results import Array
-from heuncli.study.ask.study import Study
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar
 from tests.shared.scenes import near, study

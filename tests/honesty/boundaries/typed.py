@@ -11,7 +11,7 @@ from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.rotations import rotation_from_matrix
-from heuncli.study.ask.expectations import compare
+from heuncli.study.queries.expectations import compare
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read
 from tests.shared.scenes import near, study

@@ -26,17 +26,17 @@ from heuncli.output.tables.plurals import format_count
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.ask.at_option import InstantRequest, make_extreme_requests, parse
-from heuncli.study.ask.option_values import require_positive
-from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.memory_estimate import MemoryBudget
 from heuncli.study.model.selection import select_paths
+from heuncli.study.queries.at_option import InstantRequest, make_extreme_requests, parse
+from heuncli.study.queries.option_values import require_positive
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
 if TYPE_CHECKING:
     from heuncli.analyses.load_cases.solid_mesh import SolidMesh
-    from heuncli.study.ask.measure import MeasureRequest
+    from heuncli.study.queries.measure import MeasureRequest
 
 ENDINGS = {".csv": "csv", ".json": "json", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".mac": "ansys"}
 AMBIGUOUS_ENDING = ".inp"  # the ending of both CalculiX and Abaqus

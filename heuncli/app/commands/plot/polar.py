@@ -20,7 +20,7 @@ from heuncli.results.results_schema import SPACE
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import NumberKind, resolve_path
-from heuncli.study.ask.measure import MeasureRequest
+from heuncli.study.queries.measure import MeasureRequest
 
 ENTRY_LENGTH = {"joints": 2, "sections": 2, "foundation": 1}  # number of words of a path to a whole entry
 FOUNDATION_PART_LENGTH = 3  # words of foundation.supports.NAME

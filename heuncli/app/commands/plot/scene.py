@@ -12,7 +12,7 @@ from heuncli.output.figures.courses import make_title
 from heuncli.output.figures.scenes import make_scene_figure
 from heuncli.output.figures.traces import CENTER
 from heuncli.output.snapshots import measure
-from heuncli.study.ask.measure import MeasureRequest
+from heuncli.study.queries.measure import MeasureRequest
 
 REPORTS = ("bodies", "joints", "impulses")  # positions and loads
 

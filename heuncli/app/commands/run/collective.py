@@ -20,10 +20,10 @@ from heuncli.output.tables.export import FORMAT, dump_json
 from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber
-from heuncli.study.ask.study import Study
 from heuncli.study.load_cycles.collective import BINS, Counting
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.measure import MeasureRequest, NotOneNumber
+from heuncli.study.queries.study import Study
 
 OPTION = "--collective"
 OPTIONS = {"slopes": "slope"}  # option of a field of Counting, if named differently

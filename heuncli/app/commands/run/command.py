@@ -24,7 +24,7 @@ from heuncli.study.model.selection import select_paths
 
 if TYPE_CHECKING:
     from heuncli.app.commands.run.collective import CollectiveTask
-    from heuncli.study.ask.measure import MeasureRequest
+    from heuncli.study.queries.measure import MeasureRequest
 
 
 def main(request: RunRequest) -> int:

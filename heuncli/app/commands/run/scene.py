@@ -21,16 +21,16 @@ from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_ma
 from heuncli.results.results import Results
 from heuncli.results.stored_arrays import StoredArray, iter_chunks
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
 from heuncli.study.quantities.labels import Labels, make_labels
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 
 if TYPE_CHECKING:
     from heuncli.app.commands.run.collective import CollectiveTask
-    from heuncli.study.ask.measure import MeasureRequest
+    from heuncli.study.queries.measure import MeasureRequest
 
 
 class RunTask(NamedTuple):

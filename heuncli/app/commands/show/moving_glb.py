@@ -9,7 +9,7 @@ from heuncli.output.figures.courses import choose_instants
 from heuncli.output.machine_geometry.gltf import encode_gltf
 from heuncli.output.machine_geometry.poses import compute_poses, find_up_direction
 from heuncli.output.web_page.geometry import make_page_machine
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from heuncli.study.search.instants import find_largest_turns
 
 WARNING = "--glb: between two of its instants a body turns up to {:.0f}°; what is shown between them is not the motion"

@@ -27,7 +27,7 @@ from heuncli.app.commands.sweep.workers import solve_variants
 from heuncli.base.errors import OutputError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.signals import GracefulStop
-from heuncli.study.ask.measure import NotOneNumber
+from heuncli.study.queries.measure import NotOneNumber
 
 REPORT_INTERVAL = 0.1  # seconds between progress reports
 NO_NUMBER = ("bad-option", "unknown-path")  # codes of a measure that is not a number of the scene

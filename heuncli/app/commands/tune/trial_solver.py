@@ -12,7 +12,7 @@ from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import UsageError, run_contained
 from heuncli.base.errors import HeunError, Problem
-from heuncli.study.ask.measure import NotOneNumber
+from heuncli.study.queries.measure import NotOneNumber
 
 NO_NUMBER = "bad-option"  # the code of a measure that is not one number
 MIN_REMAINING = 1e-9  # s; less than this left means that the limit is reached

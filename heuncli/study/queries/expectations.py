@@ -12,11 +12,11 @@ from heuncli.base.records import record, replace
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Expect
-from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, Peak, find_exceeded_horizon, find_peak
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import NOT_CLAIMED, MeasureRequest, Peak, find_exceeded_horizon, find_peak
+from heuncli.study.queries.study import Study
 
 if TYPE_CHECKING:
-    from heuncli.study.ask.curves import CurveComparison
+    from heuncli.study.queries.curves import CurveComparison
 
 
 @record
@@ -80,7 +80,7 @@ def compare(study: Study, item: Expect) -> Case:
 
 def _compare_bounds(case: Case, study: Study, item: Expect) -> Case:
     """Compare a number that is expected to stay below or above a bound."""
-    from heuncli.study.ask.bounds import check_bounds  # few specs have bounds
+    from heuncli.study.queries.bounds import check_bounds  # few specs have bounds
 
     extreme, failure = check_bounds(study, item)
     return replace(case, found_values=np.asarray(extreme.value), failure=failure, extreme=extreme)
@@ -88,7 +88,7 @@ def _compare_bounds(case: Case, study: Study, item: Expect) -> Case:
 
 def _compare_curve(case: Case, study: Study, item: Expect) -> Case:
     """Compare a number that is expected to follow a measured curve."""
-    from heuncli.study.ask.curves import NotComparable, compare_curve  # as for bounds
+    from heuncli.study.queries.curves import NotComparable, compare_curve  # as for bounds
 
     try:
         comparison = compare_curve(study, item, case.tolerance)

@@ -17,8 +17,8 @@ from heuncli.results.results import CutPosition
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import IMPULSES
 from heuncli.scene.file_format.models import Expect
-from heuncli.study.ask.measure import MeasureRequest, Peak, find_peak, measure_value
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import MeasureRequest, Peak, find_peak, measure_value
+from heuncli.study.queries.study import Study
 
 How = Literal["max", "min", "abs"]
 

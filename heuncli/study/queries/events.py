@@ -33,11 +33,11 @@ from heuncli.results.results_schema import (
 )
 from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
 from heuncli.scene.file_format.resolve_couplings import format_rounded_up
-from heuncli.study.ask.measure import find_reports, stated_error
-from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
 from heuncli.study.model.setup import Setup
+from heuncli.study.queries.measure import find_reports, stated_error
+from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Crossings, find_crossings
 from heuncli.study.search.extremes import search_extremes
 from heuncli.study.solve.history import History, resample

@@ -16,9 +16,9 @@ from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import IMPULSES, REPORTS, add_shared_reports
-from heuncli.study.ask.measure import NOT_CLAIMED, NotOneNumber, find_reports, is_magnitude, make_several_error
-from heuncli.study.ask.study import Study
 from heuncli.study.load_cycles.collective import LoadHistory
+from heuncli.study.queries.measure import NOT_CLAIMED, NotOneNumber, find_reports, is_magnitude, make_several_error
+from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, replace_non_finite, sort_distinct
 from heuncli.study.search.turnings import add_turning_points

@@ -16,8 +16,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Curve, Expect
-from heuncli.study.ask.measure import NOT_CLAIMED, find_reports, stated_error
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.measure import NOT_CLAIMED, find_reports, stated_error
+from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Bracket, find_roots
 from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from heuncli.study.ask.study import Study
 from heuncli.study.compose.smoothed_friction import (
     PartialFriction,
     depends_on_friction,
@@ -15,6 +14,7 @@ from heuncli.study.compose.smoothed_friction import (
     has_smoothed_friction,
     list_partial_friction,
 )
+from heuncli.study.queries.study import Study
 
 NONE: frozenset[str] = frozenset()
 

@@ -27,7 +27,7 @@ from heuncli.results.results_schema import (
     first_element_suffix,
     independent_axes,
 )  # fmt: skip
-from heuncli.study.ask.study import Study
+from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import BOTH_SIDES, ColumnSearch, make_no_columns
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
