@@ -318,6 +318,24 @@ def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: p
     assert not [path for path in folder.iterdir() if path.name.startswith(".heun-")]
 
 
+def test_text_for_a_pipe_counts_against_the_limit(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under a limit no half of a table reaches a pipe."""
+    monkeypatch.setattr("heuncli.output.tables.export._format_json", rung)
+    done = heun("run", "hanging.yaml", "--format", "json", "--time-limit", "60")
+    assert (done.returncode, done.stdout) == (4, "")
+    assert "while the results were written down" in done.stderr
+
+
+def test_long_text_under_a_limit_is_the_same_text(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kept in a temporary file or in memory, and read back in blocks."""
+    monkeypatch.setattr("heuncli.app.cli.output.BLOCK", 1000)
+    plain = heun("run", "hanging.yaml", "--format", "csv", "--all")
+    for memory in (1 << 24, 10):
+        monkeypatch.setattr("heuncli.app.cli.output.MEMORY", memory)
+        limited = heun("run", "hanging.yaml", "--format", "csv", "--all", "--time-limit", "60")
+        assert limited.returncode == 0 and limited.stdout == plain.stdout and len(plain.stdout) > 1000
+
+
 def test_a_fifo_without_a_writer_is_given_up(heun: Heun, folder: Path) -> None:
     os.mkfifo(folder / "pipe.yaml")
     done = heun("run", "pipe.yaml", "--time-limit", "0.2")

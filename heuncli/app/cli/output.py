@@ -10,7 +10,7 @@ import codecs
 import contextlib
 import sys
 from collections.abc import Iterable, Iterator
-from typing import TextIO
+from typing import IO, TextIO
 
 from heuncli.app.cli import timeout
 from heuncli.base import files
@@ -21,26 +21,25 @@ from heuncli.base.text_safety import escape_all, escape_lines
 DESCRIPTOR = 1  # of standard output
 ESCAPED = "heun.escaped"
 BLOCK = 1 << 18  # characters that are written together
+MEMORY = 1 << 24  # bytes of output that are kept in memory while a time limit runs
 
 
 def emit(text: str | Iterable[str], target: str | None = None, *, late: bool = False) -> None:
     """Write the text, or its pieces as they are made, to a file, or to standard output for None and `-`.
 
-    The time limit never interrupts writing. It applies until the first byte goes out, and for a file that is written
-    whole or not at all until the last piece is made.
+    The time limit covers the making of the text and never interrupts its writing: while a limit runs, pieces for a
+    pipe, a terminal or a device are collected first and written when all of them are made.
 
     late: write even after the time limit; otherwise LimitError is raised then, and nothing is written
     """
     pieces = [text] if isinstance(text, str) else text
     to_stdout = target is None or target == files.STDOUT
     if target is None or to_stdout or (place := files.find_target(target)).descriptor == DESCRIPTOR:  # /dev/stdout
-        timeout.disarm(late=late)
-        _write_stdout(pieces)
+        _write_stdout(_end_limit(pieces, late))
     elif place.is_replaceable:
         files.write(_disarm_after(encode_blocks(pieces), late), target)
     else:
-        timeout.disarm(late=late)
-        files.write(encode_blocks(pieces), target)
+        files.write(encode_blocks(_end_limit(pieces, late)), target)
 
 
 def _disarm_after(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
@@ -49,17 +48,58 @@ def _disarm_after(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
     timeout.disarm(late=late)
 
 
+def _end_limit(pieces: Iterable[str], late: bool) -> Iterable[str]:
+    """End the time limit and return the pieces; while a limit runs, all pieces are made first.
+
+    Raises LimitError if the limit has passed, unless `late`; OutputError if the pieces cannot be kept.
+    """
+    if timeout.remaining_time() is not None and not isinstance(pieces, list):
+        pieces = _collect(pieces)
+    timeout.disarm(late=late)
+    return pieces
+
+
+def _collect(pieces: Iterable[str]) -> Iterator[str]:
+    """Make all pieces, keep them in memory or, if they are long, in a temporary file, and return them in blocks."""
+    import tempfile  # 4 ms that only long output under a time limit needs
+
+    kept = tempfile.SpooledTemporaryFile(MEMORY, "w+", encoding="utf-8", errors="surrogatepass", newline="")  # noqa: SIM115 - _read_blocks closes it
+    try:
+        for block in _join_blocks(pieces):
+            kept.write(block)
+        kept.seek(0)
+    except OSError as reason:
+        kept.close()
+        raise OutputError(files.write_problem("temporary file", reason)) from None
+    except BaseException:
+        kept.close()
+        raise
+    return _read_blocks(kept)
+
+
+def _read_blocks(kept: IO[str]) -> Iterator[str]:
+    with kept:
+        while block := kept.read(BLOCK):
+            yield block
+
+
 def encode_blocks(pieces: Iterable[str], encoding: str = "utf-8") -> Iterator[bytes]:
-    """Encode the pieces as bytes, and join short ones, because each system call costs time."""
+    """Encode the pieces as bytes, short ones together, because each system call costs time."""
+    for block in _join_blocks(pieces):
+        yield encode_text(block, encoding)
+
+
+def _join_blocks(pieces: Iterable[str]) -> Iterator[str]:
+    """Join short pieces to blocks."""
     buffer: list[str] = []
     length = 0
     for piece in pieces:
         buffer.append(piece)
         length += len(piece)
         if length >= BLOCK:
-            yield encode_text("".join(buffer), encoding)
+            yield "".join(buffer)
             buffer, length = [], 0
-    yield encode_text("".join(buffer), encoding)
+    yield "".join(buffer)
 
 
 def encode_text(text: str, encoding: str = "utf-8") -> bytes:

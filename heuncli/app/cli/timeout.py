@@ -1,5 +1,4 @@
-"""Enforce the time limit of a command over all that it does: from before its spec is read until its first byte goes
-out.
+"""Enforce the time limit of a command over all that it does: from before its spec is read until its output is made.
 
 Loops that check the clock report by themselves how far they have come; this module catches everything else. It has two
 stages:
