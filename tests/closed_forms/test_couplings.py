@@ -290,6 +290,26 @@ def test_drives_that_fight_are_refused() -> None:
     assert problem.code == "rates-do-not-fit" and problem.entry_path == "couplings.mesh"
 
 
+def test_drives_that_fight_through_a_train_are_refused() -> None:
+    """The first and the last of three gears are driven: no coupling by itself holds both."""
+    scene = pair(teeth=[20, 60])
+    scene["joints"]["p"].pop("initial")
+    scene["bodies"]["third"] = dict(scene["bodies"]["wheel"])
+    scene["ground"]["points"]["T"] = [2, 0, 0]
+    scene["joints"]["x"] = {**scene["joints"]["w"], "from": "ground.T", "to": "third.c"}
+    scene["couplings"]["second"] = {"type": "gear", "of": ["w", "x"], "ratio": -2}
+    del scene["forces"]
+    for last, is_refused in (("2*t/3 + t**2", True), ("2*t/3", False)):
+        scene["drives"] = {"d": {"joint": "p", "angle": "4*t"}, "e": {"joint": "x", "angle": last}}
+        if not is_refused:
+            solved(scene)
+            continue
+        with pytest.raises(SolveError) as refused:
+            solved(scene)
+        (problem,) = refused.value.problems
+        assert problem.code == "rates-do-not-fit" and "mesh (gear) and second (gear)" in problem.message
+
+
 @pytest.mark.parametrize(
     ("scene", "code"),
     [

@@ -20,6 +20,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
+from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.diagnosis.fighting_drives import find_fighting_drives
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.methods.dop853 import DOP853
@@ -171,8 +172,9 @@ def make_problem(runner: Runner, good: TimedState, bad: float, last: float) -> P
     elif len(drives) == 1:
         hint = f"the drive {drives[0]} asks for more than the loop can do: keep it in range, or end the run before"
     else:
-        names = f"{', '.join(drives[:-1])} and {drives[-1]}"
-        hint = f"the drives {names} ask there for what does not go together, or for more than the loop can do"
+        hint = (
+            f"the drives {join_names(drives)} ask there for what does not go together, or for more than the loop can do"
+        )
     return Problem("closure-lost", message, hint=hint, entry_path=owner)
 
 
