@@ -34,8 +34,8 @@ def check_reserved_name(draft: DraftDocument) -> Iterator[Violation]:
                     if name == "ground"
                     else "a word of expressions"
                     if block != "forces"
-                    else "a cause of its own"
+                    else "a cause in the results"
                 )
                 yield Violation(
-                    (block, name), f"'{name}' is taken: it is {meaning}", f"call it {name}_1, say", key=True
+                    (block, name), f"'{name}' is reserved: it is {meaning}", f"call it {name}_1, for example", key=True
                 )
