@@ -318,13 +318,13 @@ def test_a_roller_beside_a_circle(normal: str, radius: float) -> None:
 
 
 @pytest.mark.parametrize(("keys", "message"), [
-    ("radius: 3.4, normal: [0, -1, 0]", "the path curves with 3.333 m at travel 0, where the roller has 3.4 m"),
+    ("radius: 3.4, normal: [0, -1, 0]", "the path has a radius of 3.333 m at travel 0, but the roller has 3.4 m"),
     ("radius: 3.3, normal: [0, -1, 0]", None),
     ("radius: 30, normal: [0, 1, 0]", None),
-    ("radius: 0.2", "a roller beside a path needs its 'normal'"),
+    ("radius: 0.2", "a roller on a path needs its 'normal'"),
     ("normal: [0, 1, 0]", "'normal' without 'radius'"),
-    ("radius: 0.2, normal: [0, 1, 0.01]", "does not lie in a plane across its normal"),
-    ("radius: 0.2, normal: [0, 0, 0]", "which is no direction"),
+    ("radius: 0.2, normal: [0, 1, 0.01]", "is not plane, or not perpendicular to its normal"),
+    ("radius: 0.2, normal: [0, 0, 0]", "which has no direction"),
     ("radius: 0, normal: [0, 1, 0]", "radius must be more than 0"),
 ])  # fmt: skip
 def test_what_no_roller_follows(keys: str, message: str | None) -> None:

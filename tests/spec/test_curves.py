@@ -73,9 +73,9 @@ def test_ends_of_a_cubic_table() -> None:
 
 
 @pytest.mark.parametrize(("more", "told"), [
-    ("", "a linear table has no condition at its ends"),
-    (", interpolation: pchip", "a pchip table has no condition at its ends"),
-    (", interpolation: cubic, period: 2", "a periodic table has no ends"),
+    ("", "a linear table takes no condition at its ends"),
+    (", interpolation: pchip", "a pchip table takes no condition at its ends"),
+    (", interpolation: cubic, period: 2", "a periodic table takes no ends"),
 ])  # fmt: skip
 def test_ends_are_of_cubic_tables_that_have_some(more: str, told: str) -> None:
     with pytest.raises(SpecError, match=told) as caught:

@@ -144,16 +144,16 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("type: pin", "type: revolute", "type: pin"),
         ("type: pin", "type: fixed", "type: weld"),
         ("radius: 10 mm", "raduis: 10 mm", "did you mean radius?"),
-        ("type: pin", "typ: pin", "did you mean type where 'typ' stands?"),
+        ("type: pin", "typ: pin", "did you mean type instead of 'typ'?"),
         ("from: ground.O", "from: O", "did you mean ground.O?"),
         ("from: ground.O", "from: origin", "did you mean ground.O?"),
         ("from: ground.O", "from: world.O", "the ground: ground.O"),
-        ("axis: [0, 1, 0]}", "axis: 90 deg}", "a direction, as [0, 0, 1]"),
+        ("axis: [0, 1, 0]}", "axis: 90 deg}", "a direction such as [0, 0, 1]"),
         ("type: pin", "type: motor", "drives: {motor: {joint: NAME, rate: 1500 rpm}}"),
         ("type: pin", "type: rzeppa", "a rzeppa is type: cv"),
         ("type: pin", "kind: pin", "'kind' is called type here"),
         ("density: 7850 kg/m^3", "density: 7.85 t/m3", "7.85 tonne/m^3"),
-        ("points: {top: [0, 0, 0], end: [0, 0, -1]}", "points: [top, end]", "by their names"),
+        ("points: {top: [0, 0, 0], end: [0, 0, -1]}", "points: [top, end]", "by name"),
         (ANALYSIS, ANALYSIS + "report: [stresses]\n", "did you mean sections?"),
         (
             ANALYSIS,
@@ -221,7 +221,7 @@ def test_an_expression_as_others_write_it(written: str, said: str) -> None:
 
 
 def test_a_list_in_place_of_the_bodies_is_told_once() -> None:
-    assert hint("heun: 1\nbodies:\n  - {name: bar, mass: 1}\n") == "each under a name of its own: bodies: {NAME: {...}}"
+    assert hint("heun: 1\nbodies:\n  - {name: bar, mass: 1}\n") == "write each under its name: bodies: {NAME: {...}}"
 
 
 def test_json_is_read() -> None:

@@ -69,7 +69,9 @@ def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) ->
         return
     normal = joint.normal or ((0.0, 0.0, 1.0) if planar else None)
     if normal is None:
-        hint = "normal of the path's plane, for example [0, 0, 1]; seen against it, the roller is on the left"
+        hint = (
+            "normal of the path's plane, as normal: [0, 0, 1]; with it pointing towards you, the roller is on the left"
+        )
         subject = "a roller on a path" if joint.radius is not None else "a path that pushes to one side"
         yield Violation((*joint_path, key), f"{subject} needs its 'normal'", hint, key=True)
         return
@@ -99,7 +101,8 @@ def check_roller(joint_path: Path_, joint: f.CurveJoint, path: Path, normal: Dir
         tightest_travel = (
             tightest_travel if abs(tightest_travel) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0
         )  # a smaller value is rounding error
-        curved = f"the path has a radius of {joint.radius / share:.4g} m at travel {tightest_travel:.6g}, but the roller has "
+        path_radius = joint.radius / share
+        curved = f"the path has a radius of {path_radius:.4g} m at travel {tightest_travel:.6g}, but the roller has "
         hint = "use a smaller roller, a path with less curvature, or the other side (the opposite normal)"
         yield Violation((*joint_path, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow the path", hint)
     elif (meeting := find_interference(roller)) is not None:
