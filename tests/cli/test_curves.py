@@ -85,7 +85,7 @@ def test_within_lets_so_many_lie_outside(check: Callable[..., tuple[int, str, st
 @pytest.mark.parametrize(
     ("rows", "extra", "place", "told"),
     [
-        ("t,F\n0.1,1\n", "abs: 1", "bench.csv:2:1", "one point alone"),
+        ("t,F\n0.1,1\n", "abs: 1", "bench.csv:2:1", "only one point"),
         ("t,F\n", "abs: 1", "bench.csv", ""),
         ("t,F\n0.1,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
         ("t,F\n0.2,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),

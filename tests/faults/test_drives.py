@@ -46,7 +46,7 @@ READING = {  # what is driven and held, the code, words of the refusal
                          "the joint j is already driven by motor"),
     "on a ball": (bars("angle: t", "ball"), "drive-form", "a ball has no angle"),
     "travel of a pin": (bars("travel: t"), "drive-form", "a pin has no travel"),
-    "not of time": (bars("angle: k.angle"), "drive-form", "follows time alone"),
+    "not of time": (bars("angle: k.angle"), "drive-form", "depend on time alone"),
 }  # fmt: skip
 
 

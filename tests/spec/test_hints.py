@@ -82,7 +82,7 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         (
             "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, radius: 0.1, length: 1, speed: 1}}",
             "forces.f.length [load-joint]",
-            "a pin rubs at its radius",
+            "a pin has a radius",
         ),
         (
             "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, radius: 0, speed: 1}}",
@@ -107,9 +107,17 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         ),
         ("latches: {l: {joint: pivot, at: 1}}", "latches.l.at [unknown-key]", "angle or travel"),
         ("latches: {l: {joint: pivot, until: t > 1}}", "latches.l.until [unknown-key]", "release: t > 1.5"),
-        ("forces: {f: {type: motor, joint: pivot, stall: 2, idle: 0}}", "forces.f.idle [motor]", "both have one sign"),
+        (
+            "forces: {f: {type: motor, joint: pivot, stall: 2, idle: 0}}",
+            "forces.f.idle [motor]",
+            "both must have the same sign",
+        ),
         ("forces: {f: {type: motor, joint: pivot, curve: 2, idle: 3}}", "forces.f.idle [motor]", "one of them out"),
-        ("forces: {f: {type: motor, joint: pivot, curve: 2, limit: 0}}", "forces.f.limit [motor]", "either way"),
+        (
+            "forces: {f: {type: motor, joint: pivot, curve: 2, limit: 0}}",
+            "forces.f.limit [motor]",
+            "in both directions",
+        ),
         (
             "forces: {f: {type: motor, joint: pivot, curve: 2, inertia: 1}}",
             "forces.f.inertia [unknown-key]",
@@ -136,7 +144,7 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
     ("given", "instead", "said"),
     [
         ("gravity: [0, 0, -9.81]", "gravity: -9.81", "[0, 0, -9.81]"),
-        ("from: [0, 0, 0]", "from: top", "three coordinates [x, y, z], as"),
+        ("from: [0, 0, 0]", "from: top", "three coordinates [x, y, z], for example"),
         ("axis: [0, 1, 0]}", "axis: y}", "the y axis is [0, 1, 0]"),
         ("axis: [0, 1, 0]}", "axis: -z}", "the z axis is [0, 0, -1]"),
         ("axis: [0, 1, 0]}", "axis: [0, 1, 0], angle: 60 deg}", "initial: {angle: ...}"),
@@ -147,7 +155,7 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("type: pin", "typ: pin", "did you mean type instead of 'typ'?"),
         ("from: ground.O", "from: O", "did you mean ground.O?"),
         ("from: ground.O", "from: origin", "did you mean ground.O?"),
-        ("from: ground.O", "from: world.O", "the ground: ground.O"),
+        ("from: ground.O", "from: world.O", "called ground: ground.O"),
         ("axis: [0, 1, 0]}", "axis: 90 deg}", "a direction such as [0, 0, 1]"),
         ("type: pin", "type: motor", "drives: {motor: {joint: NAME, rate: 1500 rpm}}"),
         ("type: pin", "type: rzeppa", "a rzeppa is type: cv"),
@@ -176,10 +184,10 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("inertia: [1, 1, 1]", "inertia: [1 kg*m2, 1, 1]", "write 1 kg*m^2"),
         ("inertia: [1, 1, 1]", "inertia: [1, 1, 1, 0, 0, 0]", "deviation"),
         ("inertia: [1, 1, 1]", "inertia: {xx: 1}", "[A1, A2, A3]"),
-        ("mass: 1 kg", "mass: 1,5 kg", "a decimal is written with a point"),
+        ("mass: 1 kg", "mass: 1,5 kg", "write decimals with a point"),
         ("bar:\n", "bar: &a\n", "JSON"),
         ("shapes: [{", "orientation: 60 deg\n    shapes: [{", "{axis: [0, 0, 1], angle: 60 deg}"),
-        ("radius: 10 mm", "radius: 10 mm, diameter: 20 mm", "half of it"),
+        ("radius: 10 mm", "radius: 10 mm, diameter: 20 mm", "half the diameter"),
     ],
 )
 def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> None:

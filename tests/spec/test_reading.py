@@ -89,8 +89,8 @@ def test_a_closed_standard_input_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("loop", "links lead in a circle"),
-        ("file/x", "no folder"),
+        ("loop", "links form a loop"),
+        ("file/x", "not a folder"),
         ("x" * 300, "too long"),
         ("a\0b", "cannot be the name"),
         ("\ud800", "cannot be the name"),
@@ -125,7 +125,7 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
     ("file", "code", "words"),
     [
         ("/dev/zero", "table-file", "a device"),
-        ("loop.csv", "table-file", "in a circle"),
+        ("loop.csv", "table-file", "form a loop"),
         ("large.csv", "too-large", "at most 200 MB"),
         ("'a\\0b'", "table-file", "no such file"),
         ('"a\\0b"', "table-file", "cannot be the name"),

@@ -102,7 +102,7 @@ def rotation_from_matrix(m: Matrix) -> Matrix:
     if deviation > tolerances.UNIT_TYPED or determinant < 0.0:
         is_skewed = deviation > tolerances.UNIT_TYPED
         reason = (
-            "its columns are not perpendicular and of length 1" if is_skewed else "it is a reflection, not a rotation"
+            "its columns are not perpendicular and of length 1" if is_skewed else "it is a reflection"
         )
         raise Finding(
             "orientation", f"the matrix is not a rotation: {reason}", "columns are the body's axes in world axes"
