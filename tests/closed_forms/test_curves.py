@@ -323,7 +323,7 @@ def test_a_roller_beside_a_circle(normal: str, radius: float) -> None:
     ("radius: 30, normal: [0, 1, 0]", None),
     ("radius: 0.2", "a roller on a path needs its 'normal'"),
     ("normal: [0, 1, 0]", "'normal' without 'radius'"),
-    ("radius: 0.2, normal: [0, 1, 0.01]", "is not plane, or not perpendicular to its normal"),
+    ("radius: 0.2, normal: [0, 1, 0.01]", "in a plane perpendicular to its normal"),
     ("radius: 0.2, normal: [0, 0, 0]", "which has no direction"),
     ("radius: 0, normal: [0, 1, 0]", "radius must be more than 0"),
 ])  # fmt: skip

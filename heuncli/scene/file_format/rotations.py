@@ -101,9 +101,7 @@ def rotation_from_matrix(m: Matrix) -> Matrix:
     determinant = sum(a * b for a, b in zip(cross_product(m[0], m[1]), m[2], strict=True))
     if deviation > tolerances.UNIT_TYPED or determinant < 0.0:
         is_skewed = deviation > tolerances.UNIT_TYPED
-        reason = (
-            "its columns are not perpendicular and of length 1" if is_skewed else "it is a reflection"
-        )
+        reason = "its columns are not perpendicular and of length 1" if is_skewed else "it is a reflection"
         raise Finding(
             "orientation", f"the matrix is not a rotation: {reason}", "columns are the body's axes in world axes"
         )

@@ -43,7 +43,9 @@ def check_event_name(draft: DraftDocument) -> Iterator[Violation]:
     for name in draft.document.analysis.events:
         path = ("analysis", "events", name)
         if not is_name(name):
-            yield Violation(path, f"'{name}' is not a name", "a name is a letter, then letters, digits and _", key=True)
+            yield Violation(
+                path, f"'{name}' is not a valid name", "a name is a letter, then letters, digits and _", key=True
+            )
         elif name == UNTIL:
             message = f"'{name}' is reserved: results use it for what ended the motion"
             yield Violation(path, message, f"call it {name}_1, for example", key=True)

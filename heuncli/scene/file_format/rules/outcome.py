@@ -244,7 +244,7 @@ def names_hint(path: list[str], unknown: UnknownWord, names: SceneNames) -> str:
         is_empty_block = block in names.entries and not names.entries[block]
         return f"the model has no {block}" if is_empty_block and further_words else "leave it out: the path ends here"
     if unknown.word.startswith("-"):
-        return f"places count from 0, the first: {', '.join(unknown.valid_words)}"
+        return f"places are numbered from 0: {', '.join(unknown.valid_words)}"
     if unknown.word == block and find_similar(block, unknown.valid_words) is None:
         kinds = [kind for kind, block_entries in names.entries.items() if kind in TREE and block in block_entries]
         if kinds:

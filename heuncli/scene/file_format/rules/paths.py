@@ -82,7 +82,7 @@ def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) ->
     if leaves_plane(path, normal):
         normal_path = (*joint_path, "normal" if joint.normal is not None else key)
         hint = "only a plane path has a left side: z: a number, and normal: [0, 0, 1]"
-        yield Violation(normal_path, "the path is not plane, or not perpendicular to its normal", hint)
+        yield Violation(normal_path, "the path does not lie in a plane perpendicular to its normal", hint)
     elif joint.radius is not None and joint.radius > 0.0:  # else reported by another rule
         yield from check_roller(joint_path, joint, path, normal)
 
