@@ -39,12 +39,12 @@ def check_mesh_mass(shape: MeshShape, surface: TriangleMesh) -> Iterator[TablePr
         return
     mass = mass_or_density if shape.mass is not None else mass_or_density * surface.volume * scale**3
     if not is_in_range(mass) or not mass:
-        yield TableProblem(("file",), range_error(mass, "the mass of this shape [kg](density times volume)"))
+        yield TableProblem(("file",), range_error(mass, "the mass of this shape [kg] (density times volume)"))
         return
     reach = scale * max(map(abs, (*surface.low.tolist(), *surface.high.tolist())))
     reach += max(map(abs, shape.at or (0.0,)))
     if not is_in_range(mass * reach**2):
-        description = f"the inertia of this shape [kg m^2]({mass:g} kg times the square of {reach:g} m)"
+        description = f"the inertia of this shape [kg m^2] ({mass:g} kg times the square of {reach:g} m)"
         yield TableProblem(("file",), range_error(mass * reach**2, description))
 
 

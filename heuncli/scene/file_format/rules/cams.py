@@ -58,9 +58,9 @@ def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
         elif shaft.to.body == follower.to.body:
             yield Violation(path, f"disc and follower are both {shaft.to.body}", "the follower must be another body")
         elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
-            relation = "along" if isinstance(follower, f.PinJoint) else "across"
-            message = f"the axis of {cam.of[1]} is not {relation} that of {cam.of[0]}"
-            yield Violation(path, message, "a follower must move across the disc's axis")
+            relation = "parallel" if isinstance(follower, f.PinJoint) else "perpendicular"
+            message = f"the axis of {cam.of[1]} is not {relation} to that of {cam.of[0]}"
+            yield Violation(path, message, "a follower must move perpendicular to the disc's axis")
         if cam.at.body != follower.to.body:
             message = f"the point is on {cam.at.body}, but the follower is {follower.to.body}"
             yield Violation(("couplings", name, "at"), message, "give the roller's centre, or a point of the face")

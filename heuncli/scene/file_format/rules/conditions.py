@@ -58,7 +58,7 @@ def check_event_motion(draft: DraftDocument) -> Iterator[Violation]:
     if kind == "motion" or "analysis" in draft.unread:
         return
     for path, _ in iter_conditions(draft):
-        message = f"{path[-1]}: type: {kind} is one instant, at which nothing changes"
+        message = f"{path[-1]} needs a motion, but type: {kind} is one instant"
         yield Violation(path, message, "give analysis a duration: the longest time to wait", key=True)
 
 

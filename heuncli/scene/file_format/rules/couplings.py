@@ -53,8 +53,12 @@ def check_coupling_count(draft: DraftDocument) -> Iterator[Violation]:
         counts, coupled_joints = COUNTS[coupling.type], coupling.of
         if len(coupled_joints) not in counts:
             counts_text = " or ".join(map(str, counts))
-            message = f"of gives {', '.join(coupled_joints) or 'no joint'}"
-            yield Violation(("couplings", name, "of"), message, f"a {coupling.type} needs {counts_text}")
+            message = f"of names {', '.join(coupled_joints) or 'no joint'}"
+            yield Violation(
+                ("couplings", name, "of"),
+                message,
+                f"a {coupling.type} needs {counts_text} joint{'s' if counts[-1] > 1 else ''}",
+            )
 
 
 @rule("gear-ratio")
@@ -142,7 +146,7 @@ def check_coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(coupling, RatioEntry):
             continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
-            message = f"{len(coupling.of)} joints with {len(coupling.factors)} factors"
+            message = f"number of joints {len(coupling.of)}, number of factors {len(coupling.factors)}"
             yield Violation(
                 ("couplings", name, "factors"), message, "give at least two joints, and one factor for each"
             )

@@ -38,7 +38,7 @@ def check_expected_curve(draft: DraftDocument) -> Iterator[Violation]:
             hint = "it is the fraction of the points that must lie within rel and abs: within: 0.95"
             yield Violation((*path, "within"), f"within {item.within:g} is not above 0 and at most 1", hint)
         if (kind := find_analysis_type(draft.document)) != "motion" and "analysis" not in draft.unread:
-            message = f"a curve needs a motion; type: {kind} is one instant"
+            message = f"a curve needs a motion, but type: {kind} is one instant"
             yield Violation(
                 (*path, "curve"), message, "give analysis a duration, or expect one number with is:", key=True
             )

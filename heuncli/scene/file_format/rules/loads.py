@@ -260,7 +260,7 @@ def check_impulse_form(draft: DraftDocument) -> Iterator[Violation]:
     for name, impulse in draft.document.impulses.items():
         given_keys = {key for key in ("on", "vector", "body", "couple") if getattr(impulse, key) is not None}
         if given_keys not in ({"on", "vector"}, {"on", "couple"}, {"body", "couple"}):
-            message = "an impulse is {on: body.point, vector}, {on: body.point, couple} or {body, couple}"
+            message = "expected {on: body.point, vector}, {on: body.point, couple} or {body, couple}"
             yield Violation(("impulses", name), message, "write two simultaneous impulses as two entries", key=True)
 
 
@@ -308,5 +308,5 @@ def check_impulse_when(draft: DraftDocument) -> Iterator[Violation]:
             hint = "leave one of them out; to act only after an instant: when: t > 0.1 and shaft.angle < 0"
             yield Violation((*path, "when"), "'time' and 'when' are both given", hint, key=True)
         elif kind != "motion" and "analysis" not in draft.unread:
-            message = f"when: type: {kind} is one instant, at which no condition can become true"
+            message = f"when needs a motion, but type: {kind} is one instant"
             yield Violation((*path, "when"), message, "give analysis a duration, or the impulse a time", key=True)
