@@ -171,7 +171,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["run", "swinging.yaml", "--at", "soon"], "expected a number, first, last"),
         (["run", "hanging.yaml", "--tolerance", "-1"], "between 1e-14 and 0.1"),
         (["run", "hanging.yaml", "--measure", "joints.pivt.force.z"], "'pivt' is not a result [unknown-path]"),
-        (["run", "hanging.yaml", "--method", "rk5"], "'rk5' is no method of integration [unknown-method]"),
+        (["run", "hanging.yaml", "--method", "rk5"], "'rk5' is not an integration method [unknown-method]"),
         (["run", "hanging.yaml", "-o", "hanging.yaml"], "the spec itself"),
         (["validate", "hanging.yaml", "wrong.yaml"], "wrong.yaml:9:"),
         (["model", "hanging.yaml", "--format", "csv"], "known: text, json"),

@@ -85,17 +85,17 @@ def test_within_lets_so_many_lie_outside(check: Callable[..., tuple[int, str, st
 @pytest.mark.parametrize(
     ("rows", "extra", "place", "told"),
     [
-        ("t,F\n0.1,1\n", "abs: 1", "bench.csv:2:1", "one point alone"),
+        ("t,F\n0.1,1\n", "abs: 1", "bench.csv:2:1", "only one point"),
         ("t,F\n", "abs: 1", "bench.csv", ""),
         ("t,F\n0.1,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
         ("t,F\n0.2,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
         ("t,F\n0.1,1\n0.2,nan\n", "abs: 1", "bench.csv:3", ""),
         ("t,F\n0.1,1\n0.2,two\n", "abs: 1", "bench.csv:3", ""),
-        ("t,F\n0.1,1\n2.5,2\n", "abs: 1", "bench.csv:3:1", "out of the run"),
+        ("t,F\n0.1,1\n2.5,2\n", "abs: 1", "bench.csv:3:1", "outside the run"),
         ("t,F\n0.1,1\n0.2,2\n", "y: Fy, abs: 1", "bar.yaml:8", "F"),
         ("t,F\n0.1,1\n0.2,2\n", "y_unit: m, abs: 1", "expect.0.y_unit", "expected"),
         ("t,F\n0.1,1\n0.2,2\n", "x_unit: kN, abs: 1", "expect.0.x_unit", "expected"),
-        ("t,F\n0.1,1\n0.2,2\n", "is: 3, abs: 1", "expect.0", "'is' beside 'curve'"),
+        ("t,F\n0.1,1\n0.2,2\n", "is: 3, abs: 1", "expect.0", "'is' given together with 'curve'"),
         ("t,F\n0.1,1\n0.2,2\n", "within: 0, abs: 1", "expect.0.within", "not above 0"),
     ],
 )

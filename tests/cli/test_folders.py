@@ -66,7 +66,7 @@ def test_links_in_a_circle_end(heun: Heun, specs: Path) -> None:
     done = heun("check", "specs")
     assert done.returncode == 2
     assert "specs/a/up passed by: it is the folder specs once more" in done.stderr
-    assert "specs/itself.yaml:1:1: its links lead in a circle [unreadable]" in done.stderr
+    assert "specs/itself.yaml:1:1: its links form a loop [unreadable]" in done.stderr
     assert "4 specs, 3 passed, 0 failed, 1 spec not solved" in done.stdout
 
 

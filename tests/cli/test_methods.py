@@ -49,18 +49,18 @@ def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
     ("words", "told"),
     [
         (["--method", "RK4"], "[fixed-step]"),
-        (["--step", "0.01"], "auto finds its own steps and takes none [fixed-step]"),
+        (["--step", "0.01"], "auto chooses its own steps and takes no step [fixed-step]"),
         (["--method", "DOP853", "--step", "0.01"], "[fixed-step]"),
-        (["--method", "ode45"], "here that is method: DOPRI5"),
+        (["--method", "ode45"], "it is called method: DOPRI5 here"),
         (["--method", "RK5"], "did you mean RK4? `heun methods` lists them"),
         (["--method", "gauss 4"], "did you mean Gauss4?"),
-        (["--method", ""], "'' is no method of integration [unknown-method]"),
-        (["--method", "auto", "--step", "0.01"], "auto finds its own steps and takes none [fixed-step]"),
+        (["--method", ""], "'' is not an integration method [unknown-method]"),
+        (["--method", "auto", "--step", "0.01"], "auto chooses its own steps and takes no step [fixed-step]"),
         (["--method", "RK4", "--step", "0"], "expected a positive number [bad-option]"),
         (["--method", "RK4", "--step", "nan"], "expected a positive number [bad-option]"),
-        (["--method", "RK4", "--step", "1e-300"], "steps of 2e-07 s and more"),
+        (["--method", "RK4", "--step", "1e-300"], "use steps of at least 2e-07 s"),
         (["--method", "RK4", "--step", "2"], "the step of 2 s is longer than the run of 1 s [step]"),
-        (["--method", "RK4", "--step", "1e-8"], "steps of 2e-07 s and more"),
+        (["--method", "RK4", "--step", "1e-8"], "use steps of at least 2e-07 s"),
         (["--method", "RK4", "--step", "-1"], "expected a positive number"),
     ],
 )
@@ -90,7 +90,7 @@ def test_words_of_other_programs_lead_to_methods() -> None:
     known = {row.name for row in METHODS} | {"auto"}
     for word, name in METHOD_WORDS.items():
         assert word == word.lower() and name in known, word
-        assert method_hint(word) == f"here that is method: {name}"
+        assert method_hint(word) == f"it is called method: {name} here"
         assert [one.code for one in iter_method_problems(word, None, 1.0)] == ["unknown-method"]
 
 
@@ -99,11 +99,11 @@ def test_words_of_other_programs_lead_to_methods() -> None:
     [
         ("method: [RK4]", ["analysis.method: expected a text, found a list [wrong-kind]"]),
         ("method: 5", ["analysis.method: expected a text, found a number [wrong-kind]"]),
-        ("method: ''", ["analysis.method: '' is no method of integration [unknown-method]"]),
+        ("method: ''", ["analysis.method: '' is not an integration method [unknown-method]"]),
         ("method: RK4, step: 0", ["analysis.step: step must be more than 0, not 0 [not-positive]"]),
         ("method: RK4, step: .nan", ["analysis.step: nan is not a finite number [not-finite]"]),
         ("method: RK4, step: 1 mm", ["analysis.step: '1 mm' is a length, expected a time [dimension]"]),
-        ("method: auto, step: 0.1", ["analysis.step: auto finds its own steps and takes none [fixed-step]"]),
+        ("method: auto, step: 0.1", ["analysis.step: auto chooses its own steps and takes no step [fixed-step]"]),
     ],
 )
 def test_a_spec_is_told_each_error_once_and_where(heun: Heun, given: str, told: list[str]) -> None:

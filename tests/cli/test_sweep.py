@@ -59,8 +59,8 @@ def rows(done: Done) -> list[dict[str, str]]:
 REFUSED = {
     "nn=1,2": "nn=1,2: there is no parameter 'nn' to set [no-such-key]\n  hint: did you mean n?",
     "m=1:2/3 qq": "m=1:2/3 qq: 'qq' is not a unit [bad-option]",
-    "m=1:2/3m": "m=1:2/3m: at scene.yaml:7:15: bodies.bar.mass: m is a length (1.0 m), a mass is wanted here",
-    "m=1kg,2mm": "m=1kg,2mm: at scene.yaml:7:15: bodies.bar.mass: m is a length (2mm), a mass is wanted here",
+    "m=1:2/3m": "m=1:2/3m: at scene.yaml:7:15: bodies.bar.mass: m is a length (1.0 m), expected a mass",
+    "m=1kg,2mm": "m=1kg,2mm: at scene.yaml:7:15: bodies.bar.mass: m is a length (2mm), expected a mass",
     "m=1,2*k": "m=1,2*k: 'k' is not a parameter [unknown-name]",
     "n=1,[1": "n=1,[1: ",
     "case=calm,strom": "case=calm,strom: there is no load case 'strom' [unknown-case]\n  hint: did you mean storm?",
@@ -136,7 +136,7 @@ def test_warnings_of_axes_and_of_variants(heun: Heun, scene: Path) -> None:
     done = sweep(heun, "n=1:5/4", "idle=1,2", "L=1m")
     assert done.returncode == 0
     assert done.stderr.splitlines() == [
-        "warning: n=1:5/4: 1 is taken in rad/s; the file gives it in rpm [set-in-si]",
+        "warning: n=1:5/4: 1 is read in rad/s; the file gives it in rpm [set-in-si]",
         "  hint: with the unit: n=1:5/4rpm",
         "warning: idle=1,2: nothing hangs on idle",
     ]

@@ -235,7 +235,7 @@ def test_a_start_where_a_path_meets_itself() -> None:
 
 
 @pytest.mark.parametrize(("head", "message"), [
-    ("forces: {f: {type: damper, joint: wire, force: '-3*rate'}}", "by a law of its rate acts in a pin or slide"),
+    ("forces: {f: {type: damper, joint: wire, force: '-3*rate'}}", "with a law in its rate acts in a pin or slide"),
     ("forces: {f: {type: friction, joint: wire, coefficient: 0.3, speed: 0.01}}", "with a coefficient acts in a pin"),
     ("forces: {f: {type: torque, joint: wire, value: 3}}", "a torque acts about a pin or along a slide"),
     ("couplings: {c: {type: ratio, of: [wire, wire], factors: [1, 2]}}", "the travel of a curve cannot be coupled"),
@@ -318,13 +318,13 @@ def test_a_roller_beside_a_circle(normal: str, radius: float) -> None:
 
 
 @pytest.mark.parametrize(("keys", "message"), [
-    ("radius: 3.4, normal: [0, -1, 0]", "the path curves with 3.333 m at travel 0, where the roller has 3.4 m"),
+    ("radius: 3.4, normal: [0, -1, 0]", "the path has a radius of 3.333 m at travel 0, but the roller has 3.4 m"),
     ("radius: 3.3, normal: [0, -1, 0]", None),
     ("radius: 30, normal: [0, 1, 0]", None),
-    ("radius: 0.2", "a roller beside a path needs its 'normal'"),
+    ("radius: 0.2", "a roller on a path needs its 'normal'"),
     ("normal: [0, 1, 0]", "'normal' without 'radius'"),
-    ("radius: 0.2, normal: [0, 1, 0.01]", "does not lie in a plane across its normal"),
-    ("radius: 0.2, normal: [0, 0, 0]", "which is no direction"),
+    ("radius: 0.2, normal: [0, 1, 0.01]", "in a plane perpendicular to its normal"),
+    ("radius: 0.2, normal: [0, 0, 0]", "which has no direction"),
     ("radius: 0, normal: [0, 1, 0]", "radius must be more than 0"),
 ])  # fmt: skip
 def test_what_no_roller_follows(keys: str, message: str | None) -> None:
@@ -370,10 +370,10 @@ def test_the_end_of_a_path(down: int, end: str, head: str) -> None:
 
 
 @pytest.mark.parametrize(("x", "z", "start", "message"), [
-    ("0", "1", "travel: 0", "a path without a table"),
-    ("{x: [0, 1, 2], y: [0, 1, 2], interpolation: linear}", "0", "travel: 0", "it does not bend evenly"),
-    ("{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}", "0", "travel: 4", "travel 4 is off the path"),
-    ("{x: [-1, 0, 1], y: [1, 0, 1], interpolation: cubic}", "0", "travel: 0.5", "stands still at travel 0"),
+    ("0", "1", "travel: 0", "a path needs at least one table"),
+    ("{x: [0, 1, 2], y: [0, 1, 2], interpolation: linear}", "0", "travel: 0", "so it is not smooth"),
+    ("{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}", "0", "travel: 4", "travel 4 is outside the path"),
+    ("{x: [-1, 0, 1], y: [1, 0, 1], interpolation: cubic}", "0", "travel: 0.5", "no direction at travel 0"),
     ("{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}", "{x: [5, 6, 7], y: [0, 1, 2], interpolation: cubic}",
      "travel: 1", "no travel in common"),
     ("{x: [0, 1, 2, 3], y: [0, 1, 0.5, 1], interpolation: cubic, period: 3}", "0", "travel: 1", "must agree"),

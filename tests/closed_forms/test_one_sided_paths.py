@@ -121,5 +121,5 @@ def test_a_roller_that_would_meet_its_path_elsewhere() -> None:
     outside, inside = (text.replace("NORMAL", f"[0, 0, {k}]") for k in (-1, 1))
     solved(outside.replace("0.19,", "0.3,"))
     solved(inside)
-    with pytest.raises(SpecError, match="at travel -4 the roller would meet the path at travel 4, too"):
+    with pytest.raises(SpecError, match="at travel -4 the roller would also touch the path at travel 4"):
         solved(inside.replace("0.19,", "0.21,"))

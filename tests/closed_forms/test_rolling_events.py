@@ -34,7 +34,7 @@ analysis: {duration: 1, samples: 3}
 """
 
 
-LIFTS = "the wheel rear_tyre lifts: it would have to be pulled onto its plane"
+LIFTS = "the wheel rear_tyre lifts off: its plane would have to pull it"
 
 
 def slowed(torque: float) -> tuple[float, float, float]:

@@ -133,5 +133,5 @@ def test_errors(spec: str, code: str) -> None:
 
 
 def test_other_joints_have_no_axis_for_it() -> None:
-    with pytest.raises(SpecError, match="a turn_spring acts about a pin, cylinder or universal, not in a ball"):
+    with pytest.raises(SpecError, match="a turn_spring acts in a pin, cylinder or universal, not in a ball"):
         solved(pendulum("ball").replace(", axis: [0, 0, 1]", ""))

@@ -38,15 +38,15 @@ READING = {  # what is driven and held, the code, words of the refusal
     "jumps": (bars("angle: 0.3*step(t - 0.5)"), "drive-jumps",
               "drives.motor.angle: the drive jumps from 0 to 0.3 at t = 0.5"),
     "held angle": (bars("angle: 0.3 + t", initial="angle: 0.4"), "drive-contradicts",
-                   "angle is held at 0.4, but the drive motor prescribes 0.3 at t = 0"),
+                   "angle starts at 0.4, but the drive motor prescribes 0.3 at t = 0"),
     "held rate": (bars("angle: 0.3 + t", initial="rate: 0.4"), "drive-contradicts", "prescribes 1 at t = 0"),
     "held travel": (bars("travel: 0.3 + t", "slide, axis: [1, 0, 0]", "travel: 0.4"), "drive-contradicts",
-                    "travel is held at 0.4"),
+                    "travel starts at 0.4"),
     "two on one joint": (bars("angle: t", more=", other: {joint: j, angle: 2*t}"), "drive-form",
-                         "the joint j is driven by motor already"),
+                         "the joint j is already driven by motor"),
     "on a ball": (bars("angle: t", "ball"), "drive-form", "a ball has no angle"),
     "travel of a pin": (bars("travel: t"), "drive-form", "a pin has no travel"),
-    "not of time": (bars("angle: k.angle"), "drive-form", "follows time alone"),
+    "not of time": (bars("angle: k.angle"), "drive-form", "depend on time alone"),
 }  # fmt: skip
 
 

@@ -35,7 +35,7 @@ REFUSED = [
     (("hanging.yaml", "scen"), "did you mean scene?"),
     (("hanging.yaml", "model.freedoms"), "has no instants"),
     (("hanging.yaml", "bodies.bar.rotation"), "9 numbers"),
-    (("hanging.yaml", "title"), "is words, not a number"),
+    (("hanging.yaml", "title"), "is text, not a number"),
     (("hanging.yaml", PATH, "scene"), "one kind of picture at a time"),
     (("hanging.yaml", "sweep.csv", PATH), "specs and sweeps in one picture"),
     (("sectioned.yaml", "sections.along", PATH), "one kind of picture at a time"),
@@ -58,7 +58,7 @@ REFUSED = [
     (("hanging.yaml", PATH, "--with", "bench.csv:t:G"), "there is no column 'G'"),
     (("hanging.yaml", PATH, "--with", "bench.csv:F:t"), "is a force, and what is drawn there is a time"),
     (("hanging.yaml", PATH, "--with", "bench.csv:t:w"), "'late' in column 3 is not a number"),
-    (("hanging.yaml", PATH, "--with", "bench.csv:1:9"), "columns are counted from 1 to 3"),
+    (("hanging.yaml", PATH, "--with", "bench.csv:1:9"), "give a number from 1 to 3"),
 ]
 
 

@@ -82,7 +82,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: heuncli.solve({**REST, "gravty": [0, 0, 1]}), "<mapping>: gravty: "),
     (lambda: heuncli.solve(REST, k=2), "k=2: there is no parameter 'k' to set [no-such-key]"),
     (lambda: heuncli.solve(REST, tolerence=1e-6), "hint: did you mean the option tolerance?"),
-    (lambda: heuncli.solve(REST, m="1 m"), "<mapping>: bodies.bar.mass: m is a length (1 m), a mass is wanted here"),
+    (lambda: heuncli.solve(REST, m="1 m"), "<mapping>: bodies.bar.mass: m is a length (1 m), expected a mass"),
     (lambda: heuncli.solve(REST, m="1 kgg"), "m='1 kgg': parameters.m: "),
     (lambda: heuncli.solve(REST, m=object()), "object is no value of a spec [wrong-kind]"),
     (lambda: heuncli.solve(REST, m=float("nan")), "m=nan: "),

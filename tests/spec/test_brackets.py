@@ -38,7 +38,7 @@ def places(text: str) -> list[tuple[int, int]]:
     return [(p.location.line, p.location.column) for p in found if p.location]
 
 
-UNCLOSED, CROSSED, EXTRA, BEHIND = "is not closed", "is needed, for the", "closes nothing", "stands after the closing"
+UNCLOSED, CROSSED, EXTRA, BEHIND = "is not closed", "is needed to close", "without an opening", "after the closing"
 
 
 @pytest.mark.parametrize(("old", "new", "line", "column", "words"), [
@@ -52,8 +52,8 @@ UNCLOSED, CROSSED, EXTRA, BEHIND = "is not closed", "is needed, for the", "close
     ("[0, 0, -9.81]", "[0,\n  0,\n  -9.81", 2, 10, UNCLOSED),
     ("[0, 0, -9.81]", "\n  - 0\n  - [0\n  - 1", 4, 5, UNCLOSED),
     ("[0, 0, 0]}}", "[0, 0, 0]}", 3, 9, UNCLOSED),
-    ("[0, 0, 0]}}", "[0, 0, 0]", 3, 18, "within 1 more that is open, is not closed before line 4"),
-    ("[0, 0, 0]}}", "[0, 0, 0", 3, 22, "within 2 more that are open, is not closed before line 4"),
+    ("[0, 0, 0]}}", "[0, 0, 0]", 3, 18, "inside 1 more open bracket, is not closed before line 4"),
+    ("[0, 0, 0]}}", "[0, 0, 0", 3, 22, "inside 2 more open brackets, is not closed before line 4"),
     ("[0, 0, 0]}}", "[0, 0, 0]]}", 3, 31, CROSSED),
     ("[0, 0, 0]}}", "[0, 0, 0]}}}", 3, 33, EXTRA),
     ("{points: {O: [0, 0, 0]}}", "{\n points: {\n  O: [0, 0, 0]\n }\n", 3, 9, UNCLOSED),

@@ -63,13 +63,13 @@ FIRST = [  # a text; the first column by number, or what is said
     ("t,1000,1500\n0,1,2\n1,3,4\n", [0, 1]),
     (",0,1\n0,1.5,2.5\n1,2,3\n", [0, 1]),
     ("0,NaN\n1,2\n2,3\n", "'NaN' in column 2 is not a number"),
-    ("0 s,1 N\n1,2\n2,3\n", "what stands in column 1 is not a number"),
-    ("12:00,1\n13,2\n", "what stands in column 1 is not a number"),
+    ("0 s,1 N\n1,2\n2,3\n", "the cell in column 1 is not a number"),
+    ("12:00,1\n13,2\n", "the cell in column 1 is not a number"),
     ("1st,force\n1,2\n", [1]),
     ("0,--\n1,2\n2,3\n", "'--' in column 2 is not a number"),
     ("1e400,2\n3,4\n5,6\n", "'1e400' in column 1 is not a number"),
     ("0 1 #a\n1 2\n", [0, 1]),
-    ("0,1 # a\n1,2\n2,3\n", "what stands in column 2 is not a number"),
+    ("0,1 # a\n1,2\n2,3\n", "the cell in column 2 is not a number"),
 ]
 
 
@@ -133,7 +133,7 @@ def test_a_column_that_is_there_twice_is_named_by_its_number() -> None:
     assert [*map(list, read_column_numbers(text, "b", 3))] == [[2.0, 5.0], [3.0, 6.0]]
     with pytest.raises(MissingColumnError) as caught:
         read_column_numbers(text, "a", "b")
-    assert caught.value.finding.hint == "name it by its number: 1 or 3"
+    assert caught.value.finding.hint == "give its number: 1 or 3"
     assert list(read_column_numbers("²,b\n1,2\n", "²")[0]) == [1.0]
 
 
@@ -179,7 +179,7 @@ def test_a_wrong_cell_among_numbers_is_told() -> None:
     assert (caught.value.line, caught.value.finding.message) == (3, "'four' in column 2 is not a number")
     with pytest.raises(MissingColumnError) as other:
         read_column_numbers("a,b\n1,2\n", "d")
-    assert other.value.finding.hint == "columns are: a, b; columns may be named by 1, 2, ..., too"
+    assert other.value.finding.hint == "columns: a, b; columns may also be given by number: 1, 2, ..."
 
 
 def test_a_file_that_is_no_spec_is_not_told_either() -> None:

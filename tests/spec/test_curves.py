@@ -73,9 +73,9 @@ def test_ends_of_a_cubic_table() -> None:
 
 
 @pytest.mark.parametrize(("more", "told"), [
-    ("", "a linear table has no condition at its ends"),
-    (", interpolation: pchip", "a pchip table has no condition at its ends"),
-    (", interpolation: cubic, period: 2", "a periodic table has no ends"),
+    ("", "a linear table takes no condition at its ends"),
+    (", interpolation: pchip", "a pchip table takes no condition at its ends"),
+    (", interpolation: cubic, period: 2", "a periodic table takes no ends"),
 ])  # fmt: skip
 def test_ends_are_of_cubic_tables_that_have_some(more: str, told: str) -> None:
     with pytest.raises(SpecError, match=told) as caught:
@@ -165,9 +165,9 @@ def test_files_with_accidents(text: str, line: int, words: str) -> None:
 
 
 @pytest.mark.parametrize(("text", "wanted", "number", "words", "hint"), [
-    ("a,c\n1,2\n", ("a", "b"), 1, "no column 'b'", "columns are: a, c"),
-    ("angle,pressure\n1,2\n", ("angel", "pressure"), 0, "no column 'angel'", "did you mean angle? columns are"),
-    ("1,2\n", ("a", 2), 0, "no column 'a'", "the first row holds numbers"),
+    ("a,c\n1,2\n", ("a", "b"), 1, "no column 'b'", "columns: a, c"),
+    ("angle,pressure\n1,2\n", ("angel", "pressure"), 0, "no column 'angel'", "did you mean angle? columns: "),
+    ("1,2\n", ("a", 2), 0, "no column 'a'", "the first row contains numbers"),
     ("1,2\n", (1, 3), 1, "no column 3", "from 1 to 2"),
     ("1,2\n", (0, 1), 0, "no column 0", "from 1 to 2"),
 ])  # fmt: skip
@@ -190,7 +190,7 @@ def test_a_column_that_is_not_there_is_told_where_it_is_asked_for(tmp_path: Path
         assert problem.location is not None
         assert (problem.location.file, problem.location.path) == (str(spec), f"tables.f.{key}")
         assert "gas.csv" in problem.message
-        assert "columns are: angle, pressure" in (problem.hint or "")
+        assert "columns: angle, pressure" in (problem.hint or "")
 
 
 def test_a_table_from_a_file(tmp_path: Path) -> None:

@@ -244,12 +244,12 @@ def test_what_fits_a_key(place: str) -> None:
 @pytest.mark.parametrize(
     ("place", "said"),
     [
-        ("c", "c is a mass (0.45 kg), a length is wanted here"),
-        ("2*c", "'2*c' is a mass, a length is wanted here"),
-        ("c*2 + 0.1", "'c*2 + 0.1' is a mass, a length is wanted here"),
-        ("phi", "phi is an angle or a plain number (30 deg), a length is wanted here"),
-        ("A", "A is an area (pi*r**2), a length is wanted here"),
-        ("rho*A", "'rho*A' is a mass per length, a length is wanted here"),
+        ("c", "c is a mass (0.45 kg), expected a length"),
+        ("2*c", "'2*c' is a mass, expected a length"),
+        ("c*2 + 0.1", "'c*2 + 0.1' is a mass, expected a length"),
+        ("phi", "phi is an angle or a plain number (30 deg), expected a length"),
+        ("A", "A is an area (pi*r**2), expected a length"),
+        ("rho*A", "'rho*A' is a mass per length, expected a length"),
     ],
 )
 def test_what_does_not_fit_a_key(place: str, said: str) -> None:
@@ -263,7 +263,7 @@ def test_a_direction_may_be_given_by_lengths() -> None:
 
 def test_a_number_set_without_a_unit_is_free_and_one_with_a_unit_is_not() -> None:
     assert codes("c", c="0.5") == []
-    assert codes("L", L="3 kg") == ["wrong-dimension: L is a mass (3 kg), a length is wanted here"]
+    assert codes("L", L="3 kg") == ["wrong-dimension: L is a mass (3 kg), expected a length"]
 
 
 @pytest.mark.parametrize(

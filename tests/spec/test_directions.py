@@ -60,8 +60,8 @@ def test_rodrigues_numbers_come_to_half_a_turn(large: str) -> None:
 
 @pytest.mark.parametrize(("turn", "words"), [
     ("{matrix: [[1e60, 0, 0], [0, 1, 0], [0, 0, 1]]}", "not perpendicular and of length 1"),
-    ("{quaternion: [1e60, 0, 0, 0]}", "has the length 1e+60"),
-    ("{quaternion: [1e-60, 0, 0, 0]}", "has the length 1e-60"),
+    ("{quaternion: [1e60, 0, 0, 0]}", "has length 1e+60"),
+    ("{quaternion: [1e-60, 0, 0, 0]}", "has length 1e-60"),
 ])  # fmt: skip
 def test_what_has_a_length_of_its_own(turn: str, words: str) -> None:
     with pytest.raises(SpecError) as caught:

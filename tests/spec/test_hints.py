@@ -82,7 +82,7 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         (
             "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, radius: 0.1, length: 1, speed: 1}}",
             "forces.f.length [load-joint]",
-            "a pin rubs at its radius",
+            "a pin has a radius",
         ),
         (
             "forces: {f: {type: friction, joint: pivot, coefficient: 0.1, radius: 0, speed: 1}}",
@@ -107,9 +107,17 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         ),
         ("latches: {l: {joint: pivot, at: 1}}", "latches.l.at [unknown-key]", "angle or travel"),
         ("latches: {l: {joint: pivot, until: t > 1}}", "latches.l.until [unknown-key]", "release: t > 1.5"),
-        ("forces: {f: {type: motor, joint: pivot, stall: 2, idle: 0}}", "forces.f.idle [motor]", "both have one sign"),
+        (
+            "forces: {f: {type: motor, joint: pivot, stall: 2, idle: 0}}",
+            "forces.f.idle [motor]",
+            "both must have the same sign",
+        ),
         ("forces: {f: {type: motor, joint: pivot, curve: 2, idle: 3}}", "forces.f.idle [motor]", "one of them out"),
-        ("forces: {f: {type: motor, joint: pivot, curve: 2, limit: 0}}", "forces.f.limit [motor]", "either way"),
+        (
+            "forces: {f: {type: motor, joint: pivot, curve: 2, limit: 0}}",
+            "forces.f.limit [motor]",
+            "in both directions",
+        ),
         (
             "forces: {f: {type: motor, joint: pivot, curve: 2, inertia: 1}}",
             "forces.f.inertia [unknown-key]",
@@ -136,7 +144,7 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
     ("given", "instead", "said"),
     [
         ("gravity: [0, 0, -9.81]", "gravity: -9.81", "[0, 0, -9.81]"),
-        ("from: [0, 0, 0]", "from: top", "three coordinates [x, y, z], as"),
+        ("from: [0, 0, 0]", "from: top", "three coordinates [x, y, z], for example"),
         ("axis: [0, 1, 0]}", "axis: y}", "the y axis is [0, 1, 0]"),
         ("axis: [0, 1, 0]}", "axis: -z}", "the z axis is [0, 0, -1]"),
         ("axis: [0, 1, 0]}", "axis: [0, 1, 0], angle: 60 deg}", "initial: {angle: ...}"),
@@ -144,16 +152,16 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("type: pin", "type: revolute", "type: pin"),
         ("type: pin", "type: fixed", "type: weld"),
         ("radius: 10 mm", "raduis: 10 mm", "did you mean radius?"),
-        ("type: pin", "typ: pin", "did you mean type where 'typ' stands?"),
+        ("type: pin", "typ: pin", "did you mean type instead of 'typ'?"),
         ("from: ground.O", "from: O", "did you mean ground.O?"),
         ("from: ground.O", "from: origin", "did you mean ground.O?"),
-        ("from: ground.O", "from: world.O", "the ground: ground.O"),
-        ("axis: [0, 1, 0]}", "axis: 90 deg}", "a direction, as [0, 0, 1]"),
+        ("from: ground.O", "from: world.O", "called ground: ground.O"),
+        ("axis: [0, 1, 0]}", "axis: 90 deg}", "a direction such as [0, 0, 1]"),
         ("type: pin", "type: motor", "drives: {motor: {joint: NAME, rate: 1500 rpm}}"),
         ("type: pin", "type: rzeppa", "a rzeppa is type: cv"),
         ("type: pin", "kind: pin", "'kind' is called type here"),
         ("density: 7850 kg/m^3", "density: 7.85 t/m3", "7.85 tonne/m^3"),
-        ("points: {top: [0, 0, 0], end: [0, 0, -1]}", "points: [top, end]", "by their names"),
+        ("points: {top: [0, 0, 0], end: [0, 0, -1]}", "points: [top, end]", "by name"),
         (ANALYSIS, ANALYSIS + "report: [stresses]\n", "did you mean sections?"),
         (
             ANALYSIS,
@@ -176,10 +184,10 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("inertia: [1, 1, 1]", "inertia: [1 kg*m2, 1, 1]", "write 1 kg*m^2"),
         ("inertia: [1, 1, 1]", "inertia: [1, 1, 1, 0, 0, 0]", "deviation"),
         ("inertia: [1, 1, 1]", "inertia: {xx: 1}", "[A1, A2, A3]"),
-        ("mass: 1 kg", "mass: 1,5 kg", "a decimal is written with a point"),
+        ("mass: 1 kg", "mass: 1,5 kg", "write decimals with a point"),
         ("bar:\n", "bar: &a\n", "JSON"),
         ("shapes: [{", "orientation: 60 deg\n    shapes: [{", "{axis: [0, 0, 1], angle: 60 deg}"),
-        ("radius: 10 mm", "radius: 10 mm, diameter: 20 mm", "half of it"),
+        ("radius: 10 mm", "radius: 10 mm, diameter: 20 mm", "half the diameter"),
     ],
 )
 def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> None:
@@ -221,7 +229,7 @@ def test_an_expression_as_others_write_it(written: str, said: str) -> None:
 
 
 def test_a_list_in_place_of_the_bodies_is_told_once() -> None:
-    assert hint("heun: 1\nbodies:\n  - {name: bar, mass: 1}\n") == "each under a name of its own: bodies: {NAME: {...}}"
+    assert hint("heun: 1\nbodies:\n  - {name: bar, mass: 1}\n") == "write each under its name: bodies: {NAME: {...}}"
 
 
 def test_json_is_read() -> None:

@@ -139,7 +139,7 @@ def test_rodrigues_is_the_axis_times_the_tangent_of_half_the_angle() -> None:
     ("{euler: [1, 2, 3], sequence: ZYX}", "'ZYX'"),
     ("{quaternion: [1, 1, 0, 0]}", "length 1.41421"),
     ("{quaternion: [0, 0, 0, 0]}", "length 0"),
-    ("{matrix: [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}", "mirror"),
+    ("{matrix: [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}", "reflection"),
     ("{matrix: [[1, 0, 0], [0, 1, 1], [0, 0, 1]]}", "perpendicular"),
     ("{axis: [0, 0, 1], angle: 1, rodrigues: [0, 0, 0]}", "axis and rodrigues"),
 ])  # fmt: skip

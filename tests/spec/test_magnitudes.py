@@ -26,13 +26,13 @@ LARGE = "radius: 1e25, density: 1e10"
 
 
 @pytest.mark.parametrize(("body", "path", "words"), [
-    (f"shapes: [{{type: sphere, center: [0, 0, 0], {LARGE}}}]", "shapes.0", "its density times its volume, is 4.18"),
+    (f"shapes: [{{type: sphere, center: [0, 0, 0], {LARGE}}}]", "shapes.0", "(density times volume) is 4.18"),
     ("shapes: [{type: sphere, center: [0, 0, 0], radius: 1e-25, density: 1}]", "shapes.0", "too small"),
     (f"shapes: [{{type: cylinder, from: [0, 0, 0], to: [0, 0, 1e25], {LARGE}}}]", "shapes.0", "too large"),
     (f"shapes: [{{type: cone, from: [0, 0, 0], to: [0, 0, 1e25], to_radius: 0, {LARGE}}}]", "shapes.0", "too large"),
     ("shapes: [{type: box, center: [0, 0, 0], size: [1e-20, 1e-20, 1e-20], density: 0.1}]", "shapes.0", "too small"),
     ("shapes: [{type: rod, from: [0, 0, 0], to: [1e40, 0, 0], line_density: 1e40}]", "shapes.0", "is 1e+80"),
-    ("shapes: [{type: point, at: [1e20, 0, 0], mass: 1e30}]", "", "1e+30 kg times the square of 1e+20 m, is 1e+70"),
+    ("shapes: [{type: point, at: [1e20, 0, 0], mass: 1e30}]", "", "(1e+30 kg times the square of 1e+20 m) is 1e+70"),
     ("shapes: [{type: box, center: [0, 0, 0], size: [1, 1, 1e40], mass: 1}]", "", "the inertia of this body"),
     ("mass: 1, center: [0, 1e31, 0], inertia: [0, 0, 0]", "", "1e+62"),
     ("mass: 1e-50, center: [0, 1e-6, 0], inertia: [0, 0, 0]", "", "1e-62, too small"),

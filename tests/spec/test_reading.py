@@ -39,7 +39,7 @@ def test_a_file_beyond_the_limit_is_refused_by_its_size(tmp_path: Path, monkeypa
         file.truncate(1_000_000_000)
     monkeypatch.setattr("heuncli.scene.file_format.reading._read_limited", None)  # it is not read
     code, message = refusal(str(tmp_path / "large"), 64_000_000)
-    assert (code, message) == ("too-large", "this has 1000 MB; at most 64 MB are read")
+    assert (code, message) == ("too-large", "the file has 1000 MB; at most 64 MB are read")
 
 
 @pytest.mark.parametrize(("size", "fits"), [(MOST, True), (MOST + 1, False)])
@@ -63,7 +63,7 @@ def test_pipes_are_read_to_their_end_or_to_the_limit(tmp_path: Path) -> None:
     write(b"abc" * 100).join(0.0)
     assert read_bytes(str(pipe), MOST) == b"abc" * 100
     writer = write(b"abc" * 1000)
-    assert refusal(str(pipe)) == ("too-large", "this has more than 0.001 MB; at most 0.001 MB are read")
+    assert refusal(str(pipe)) == ("too-large", "the file has more than 0.001 MB; at most 0.001 MB are read")
     writer.join(10.0)
 
 
@@ -89,8 +89,8 @@ def test_a_closed_standard_input_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("loop", "links lead in a circle"),
-        ("file/x", "no folder"),
+        ("loop", "links form a loop"),
+        ("file/x", "not a folder"),
         ("x" * 300, "too long"),
         ("a\0b", "cannot be the name"),
         ("\ud800", "cannot be the name"),
@@ -125,7 +125,7 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
     ("file", "code", "words"),
     [
         ("/dev/zero", "table-file", "a device"),
-        ("loop.csv", "table-file", "in a circle"),
+        ("loop.csv", "table-file", "form a loop"),
         ("large.csv", "too-large", "at most 200 MB"),
         ("'a\\0b'", "table-file", "no such file"),
         ('"a\\0b"', "table-file", "cannot be the name"),

@@ -37,8 +37,8 @@ def test_by_its_pin_or_by_its_point(joint: str, axis: str) -> None:
 @pytest.mark.parametrize(
     ("wheel", "joint", "place", "words"),
     [
-        ("axle: turns", PIN, "rolling.rim", "'body' is missing beside 'axle'"),
-        ("body: disc", PIN, "rolling.rim", "'axle' is missing beside 'body'"),
+        ("axle: turns", PIN, "rolling.rim", "'body' is missing, but 'axle' is given"),
+        ("body: disc", PIN, "rolling.rim", "'axle' is missing, but 'body' is given"),
         ("friction: 0.5", PIN, "rolling.rim", "'wheel' is missing"),
         ("body: disc, axle: turn", PIN, "rolling.rim.axle", "'turn' is not a joint"),
         ("body: disk, axle: turns", PIN, "rolling.rim.body", "'disk' is not a body"),

@@ -122,15 +122,15 @@ def scan_after_value(text: str, index: int, opening: str, margin: int) -> int:
     rest = text[index : find_next_line(text, index)].strip()
     if text[index] in CLOSING.values():
         message, hint = (
-            f"'{text[index]}' closes nothing: no bracket is open here",
-            "delete it, or open the bracket before",
+            f"closing '{text[index]}' without an opening bracket",
+            "delete it, or add the opening bracket before it",
         )
     elif opening in CLOSING:
-        message = f"'{shorten(rest)}' stands after the closing '{CLOSING[opening]}'"
-        hint = f"a text that starts with {opening} is written in quotes"
+        message = f"unexpected '{shorten(rest)}' after the closing '{CLOSING[opening]}'"
+        hint = f"put a text that starts with {opening} in quotes"
     else:
-        message = f"'{shorten(rest)}' stands after the closing quote"
-        hint = "an apostrophe within '...' is written twice, or the text stands in \"...\""
+        message = f"unexpected '{shorten(rest)}' after the closing quote"
+        hint = "double an apostrophe within '...', or put the text in \"...\""
     raise MismatchError(Mismatch(index, message, hint), find_next_key(text, index, margin))
 
 
@@ -194,7 +194,7 @@ def unclosed_error(text: str, open_brackets: list[int], index: int) -> MismatchE
     """Make the error for brackets still open at an index where they must be closed."""
     missing = "".join(CLOSING[text[i]] for i in reversed(open_brackets))
     outer_count = len(open_brackets) - 1
-    within = f", within {outer_count} more that {'is' if outer_count == 1 else 'are'} open," if outer_count else ""
+    within = f", inside {outer_count} more open bracket{'' if outer_count == 1 else 's'}," if outer_count else ""
     where = f" before line {line_number(text, index)}, which begins with a key" if index < len(text) else ""
     message = f"the '{text[open_brackets[-1]]}' opened here{within} is not closed{where}"
     return MismatchError(Mismatch(open_brackets[-1], message, f"close it with '{missing}'"), index)
@@ -204,10 +204,10 @@ def wrong_closing_error(text: str, open_index: int, index: int, margin: int) -> 
     """Make the error for a closing bracket of the wrong kind."""
     closing = CLOSING[text[open_index]]
     message = (
-        f"found '{text[index]}' where '{closing}' is needed, for the '{text[open_index]}' of "
+        f"found '{text[index]}' where '{closing}' is needed to close the '{text[open_index]}' at "
         f"{format_position(text, open_index)}"
     )
-    hint = f"write '{closing}', or close the '{text[open_index]}' before"
+    hint = f"write '{closing}', or close the '{text[open_index]}' earlier"
     return MismatchError(Mismatch(index, message, hint), find_next_key(text, index, margin))
 
 
@@ -224,6 +224,6 @@ def scan_quoted(text: str, begin: int, margin: int) -> int:
         line = find_next_line(text, line)
     if whole:
         return end
-    hint = f"close it with {quote}" + ("; an apostrophe within it is written twice" if quote == "'" else "")
+    hint = f"close it with {quote}" + ("; double an apostrophe within it" if quote == "'" else "")
     where = f" before line {line_number(text, end)}, which begins with a key" if end < len(text) else ""
-    raise MismatchError(Mismatch(begin, f"the text that {quote} opens here is not closed{where}", hint), end)
+    raise MismatchError(Mismatch(begin, f"the {quote} opened here is not closed{where}", hint), end)

@@ -12,7 +12,7 @@ from heuncli.scene.file_format.overrides import Setting, apply_settings
 from heuncli.scene.file_format.source import SourceFile
 
 CASES = "cases"
-NESTED_CASE_HINT = "a case sets values of the scene; another case stands beside it"
+NESTED_CASE_HINT = "a case sets values of the model; write another case next to it"
 
 
 def get_case_values(data: Mapping[str, Any]) -> dict[str, dict[str, Any]]:

@@ -32,11 +32,11 @@ NUMERIC_CHARACTERS = frozenset("0123456789+-.,eE_% ")
 NOT_FINITE = frozenset({"nan", "inf", "infinity"})
 BEGINS_AS_NUMBER = re.compile(r"[-+]?[.,]?[0-9]")
 # hints
-ROWS_HINT = "each row has its numbers between commas, as 0.5, 12"
-FEWER_ROWS_HINT = "keep the points that matter: between them the table interpolates"
-NUMBERS_HINT = "one number a cell, with a point; lines of words begin with #"
-QUOTES_HINT = "quotes come in pairs; plain numbers need none"
-ONE_MARK_HINT = "write all numbers of the file with one decimal mark, and thousands without any"
+ROWS_HINT = "separate the numbers of a row by commas: 0.5, 12"
+FEWER_ROWS_HINT = "keep only the points needed: the table interpolates between them"
+NUMBERS_HINT = "one number per cell, with a decimal point; start lines of text with #"
+QUOTES_HINT = "close each quote; plain numbers need none"
+ONE_MARK_HINT = "use one decimal mark in the whole file, and no thousands separators"
 
 Columns = list["array[float]"]
 
@@ -100,7 +100,7 @@ def read_columns(text: str, *keys: object) -> tuple[Columns, list[Heading | None
             read_rows(lines, line, layout.separator, indices, columns)
         if len(columns[0]) > MOST_ROWS:
             raise CsvError(
-                1, 1, Finding("too-large", f"more than {MOST_ROWS} rows; at most so many are read", FEWER_ROWS_HINT)
+                1, 1, Finding("too-large", f"more than {MOST_ROWS} rows, the maximum that is read", FEWER_ROWS_HINT)
             )
     if layout.separator == ";" and "," in text and "." in text:
         require_one_decimal_mark(text, layout, indices)
@@ -123,9 +123,7 @@ def require_one_decimal_mark(text: str, layout: ColumnLayout, indices: Sequence[
                     continue
                 first = first or (mark, cell, n)
                 if mark != first[0]:
-                    message = (
-                        f"'{cell}' in column {index + 1} beside '{first[1]}' on line {first[2]}: two decimal marks"
-                    )
+                    message = f"'{cell}' in column {index + 1}, but '{first[1]}' on line {first[2]}: two decimal marks"
                     raise CsvError(n, 1, Finding("table-file", message, ONE_MARK_HINT))
 
 
@@ -156,7 +154,7 @@ def detect_layout(text: str) -> ColumnLayout:
     """Detect the layout of a text from its first row. Raises CsvError."""
     n, line = next(iter_rows(text), (0, ""))
     if not n:
-        raise CsvError(1, 1, Finding("table-file", "the file holds no rows", ROWS_HINT))
+        raise CsvError(1, 1, Finding("table-file", "the file has no rows", ROWS_HINT))
     separator = next((m for m in (";", "\t", ",") if m in line), None)
     first = [cell.strip() for cell in split_cells(n, line, separator)]
     if all(parse_number(cell, separator) is not None for cell in first):
@@ -263,13 +261,13 @@ def quote_cell(cell: str, among_numbers: bool) -> str:
     is_numeric = set(cell) <= NUMERIC_CHARACTERS or cell.lower().lstrip("+-") in NOT_FINITE
     if (is_numeric or among_numbers) and len(cell) <= MAX_NUMBER_LENGTH:
         return f"'{cell}'"
-    return "what stands"
+    return "the cell"
 
 
 def cell_hint(cell: str, separator: str | None) -> str:
     """Return a hint on what a cell should hold."""
     if separator != ";" and "," in cell:
-        return "a decimal is written with a point, as 1.5; with commas where semicolons separate"
+        return "write decimals with a point: 1.5; decimal commas need semicolons as separators"
     return NUMBERS_HINT
 
 
@@ -287,26 +285,26 @@ def find_column(number: int, key: object, layout: ColumnLayout, text: str) -> in
         if matches:
             number_list = " or ".join(str(i + 1) for i in matches)
             message = f"there are {len(matches)} columns '{key}'"
-            raise MissingColumnError(number, Finding("table-file", message, f"name it by its number: {number_list}"))
+            raise MissingColumnError(number, Finding("table-file", message, f"give its number: {number_list}"))
         raise MissingColumnError(
             number, Finding("table-file", f"there is no column '{key}'", known_columns_hint(key, layout, text))
         )
     if column_number is None or not 1 <= column_number <= layout.width:
-        finding = Finding("table-file", f"there is no column {key}", f"columns are counted from 1 to {layout.width}")
+        finding = Finding("table-file", f"there is no column {key}", f"give a number from 1 to {layout.width}")
         raise MissingColumnError(number, finding)
     return column_number - 1
 
 
 def known_columns_hint(key: str, layout: ColumnLayout, text: str) -> str:
     """Return a hint for a missing column."""
-    by_number = "columns may be named by 1, 2, ..., too"
+    by_number = "columns may also be given by number: 1, 2, ..."
     if not layout.names:
-        return f"the first row holds numbers; {by_number}"
+        return f"the first row contains numbers, not names; {by_number}"
     names = find_numeric_columns(layout, text)
     if not names:
-        return f"its rows are no numbers under names; {by_number}"
+        return f"it has no names above rows of numbers; {by_number}"
     near = find_similar(key, names)
-    hint = f"columns are: {list_words(names)}"
+    hint = f"columns: {list_words(names)}"
     return f"did you mean {near}? {hint}" if near else f"{hint}; {by_number}"
 
 

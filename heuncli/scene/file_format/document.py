@@ -97,7 +97,7 @@ class DocumentReader:
         """Read a block of named entries; wrong entries are left out."""
         entries = self.data.get(block, {})
         if type(entries) is not dict:
-            hint = f"each under a name of its own: {block}: {{NAME: {{...}}}}"
+            hint = f"write each under its name: {block}: {{NAME: {{...}}}}"
             self.report("wrong-kind", Violation((block,), f"expected a mapping, found {describe_kind(entries)}", hint))
             return {}
         read_by_name = {name: self.read_entry(block, name, data, models) for name, data in entries.items()}

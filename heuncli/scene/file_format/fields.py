@@ -136,7 +136,7 @@ class ImpulseCondition(ValueReader):
 
     def read(self, value: Any, info: Any) -> Expression:
         if type(value) is dict:
-            message = "a blow strikes at a condition in time and coordinates, not at a number of the results"
+            message = "an impulse needs a condition in time and coordinates, not one on a number of the results"
             raise Finding("condition", message, "such as guide.travel > 0.2, or shaft.rate < 0 and t > 1")
         return read_condition(value, info.context.time)
 
@@ -166,7 +166,7 @@ class WholeNumber(ValueReader):
     def read(self, value: Any, info: Any) -> int:
         count = read_number(value, u.NUMBER, info.context.load)
         if count != int(count):
-            raise Finding("wrong-kind", f"expected a whole number, found {count:g}", f"{math.floor(count)}, say")
+            raise Finding("wrong-kind", f"expected a whole number, found {count:g}", f"for example {math.floor(count)}")
         return int(count)
 
 
@@ -175,9 +175,7 @@ class VersionNumber(ValueReader):
 
     def read(self, value: Any, info: Any) -> int:
         if type(value) is bool or value != 1:
-            message = (
-                f"this is heun's format version 1, found {describe_kind(value) if type(value) is not int else value}"
-            )
+            message = f"expected format version 1, found {describe_kind(value) if type(value) is not int else value}"
             raise Finding("version", message, "write 'heun: 1', or use a newer heun")
         return 1
 
@@ -211,7 +209,7 @@ class SmoothTable(ValueReader):
         tables = info.context.time.tables
         if type(value) is str and value in tables:
             if tables[value] is None:
-                raise Finding("table-curve", f"the table {value} could not be read", "what is wrong with it is told")
+                raise Finding("table-curve", f"the table {value} could not be read", "its own error is reported")
             return self.require_smooth(tables[value])
         if self.constant and not is_bare_name(value, info.context.load.parameters):
             return read_number(value, self.dimension, info.context.load)
@@ -221,10 +219,10 @@ class SmoothTable(ValueReader):
     def require_smooth(self, table: TableFunction) -> TableFunction:
         """Return the table. Raises Finding if it is not smooth or has other dimensions."""
         if table.interpolation not in ("cubic", "natural"):
-            message = f"the table {table.name} is {table.interpolation}: it does not bend evenly"
-            raise Finding("table-curve", message, "interpolation: cubic")
+            message = f"the table {table.name} is {table.interpolation}, so it is not smooth"
+            raise Finding("table-curve", message, "write interpolation: cubic")
         if table.kind == HELD_TABLE:
-            raise Finding("table-curve", f"the table {table.name} has a corner at its ends", "leave outside: hold out")
+            raise Finding("table-curve", f"the table {table.name} has a kink at its ends", "remove outside: hold")
         for table_dimension, expected, axis in zip(
             table.dimensions, (self.over, self.dimension), ("x", "y"), strict=True
         ):
@@ -233,7 +231,7 @@ class SmoothTable(ValueReader):
                     f"the {axis} of table {table.name} is {u.describe(table_dimension)}, expected "
                     f"{u.describe(expected)}"
                 )
-                raise Finding("dimension", message, f"{axis}_unit: {u.si_unit(expected)}, say")
+                raise Finding("dimension", message, f"for example {axis}_unit: {u.si_unit(expected)}")
         return table
 
 
@@ -248,7 +246,7 @@ class ExpectedValue(ValueReader):
         if type(value) is list:
             if not value:
                 raise Finding("wrong-kind", "expected a number, a list of numbers, or null, found an empty list",
-                              "null is for what must be open")  # fmt: skip
+                              "null is for a result that must be open")  # fmt: skip
             return tuple(self.read(member, info) for member in value)
         return read_function(value, None, info.context.load)
 
@@ -341,8 +339,8 @@ class EndEntry(Entry):
 def parse_end(value: Any, info: Any) -> Any:
     """Convert 'crank.pin' to {body: crank, at: pin}. Raises Finding."""
     if type(value) is list:
-        hint = f"a point of the ground is {{body: ground, at: {format_list(value)}}}"
-        raise Finding("end", "an end is no list", hint)
+        hint = f"for a point of the ground write {{body: ground, at: {format_list(value)}}}"
+        raise Finding("end", "an end cannot be a list", hint)
     if type(value) is not str:
         return value
     body, dot, point = value.partition(".")
@@ -363,7 +361,7 @@ def end_hint(word: str, points: Mapping[str, Collection[str]]) -> str:
     if spend_effort(len(points)) and (candidates := [*islice(chain(of_body, of_ground, of_point), 4)]):
         return f"did you mean {', or '.join(candidates)}?"
     if word in points:
-        return f"name a point under {'ground' if word == 'ground' else f'bodies: {word}'}: points: {{top: [0, 0, 0]}}"
+        return f"define a point under {'ground' if word == 'ground' else f'bodies: {word}'}: points: {{top: [0, 0, 0]}}"
     return "an end is body.point, ground.point or {body: name, at: [x, y, z]}"
 
 
@@ -378,7 +376,7 @@ def require_two_limits(value: Any, info: Any) -> Any:
     """Require a list [low, high]; either may be null. Raises Finding."""
     if type(value) is not list or len(value) != 2:
         found = f"{len(value)} values" if type(value) is list else describe_kind(value)
-        raise Finding("wrong-kind", f"expected [low, high], found {found}", "null is no limit: [null, 0.2]")
+        raise Finding("wrong-kind", f"expected [low, high], found {found}", "null means no limit: [null, 0.2]")
     return value
 
 

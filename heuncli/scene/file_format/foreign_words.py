@@ -89,45 +89,50 @@ METHOD_WORDS = {  # names of integration methods, in lower case, without hyphens
     "odeint": "SciPy-LSODA", "vode": "SciPy-BDF", "default": "auto", "automatic": "auto", "adaptive": "auto",
 }  # fmt: skip
 FORM_HINTS = {  # what the values of some keys look like
-    "rotor": "what turns in the motor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
-    "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
-    "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
-    "report": "as [joints, energy]", "expect": "as [{of: joints.NAME.force.z, is: 9.81}]",
-    "shapes": "one shape is a list, too: [{type: cylinder, ...}]", "times": "as [0, 0.5, 1]",
-    "points": "by their names: {top: [0, 0, 0]}", "events": "by their names: {falls: pivot.angle > 1}",
-    "rectangle": "as {width: 0.1, height: 0.2}", "circle": "as {radius: 0.1}",
-    "tube": "as {radius: 0.1, inner_radius: 0.09}", "ground": "as {points: {O: [0, 0, 0]}}",
-    "analysis": "as {duration: 2, samples: 201}", "initial": "as {angle: 30 deg, rate: 0}",
-    "stiffness": "one number, or {force: 2e8, moment: 1e5}; of a bushing [x, y, z], or {x: table, y: 2e5}",
-    "near": "as {position: [0, 0, 1]}",
-    "foundation": "as {about: [0, 0, 0]}", "properties": "auto, or as {circle: {radius: 0.01}}",
-    "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
-    "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
+    "rotor": "the rotating part of the motor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "gravity": "a vector: [0, 0, -9.81]", "orientation": "for example {axis: [0, 0, 1], angle: 60 deg}",
+    "inertia": "the moments of inertia [A1, A2, A3], or a 3x3 tensor in rows",
+    "report": "for example [joints, energy]", "expect": "for example [{of: joints.NAME.force.z, is: 9.81}]",
+    "shapes": "write a list even for one shape: [{type: cylinder, ...}]", "times": "for example [0, 0.5, 1]",
+    "points": "by name: {top: [0, 0, 0]}", "events": "by name: {falls: pivot.angle > 1}",
+    "rectangle": "for example {width: 0.1, height: 0.2}", "circle": "for example {radius: 0.1}",
+    "tube": "for example {radius: 0.1, inner_radius: 0.09}", "ground": "for example {points: {O: [0, 0, 0]}}",
+    "analysis": "for example {duration: 2, samples: 201}", "initial": "for example {angle: 30 deg, rate: 0}",
+    "stiffness": "one number, or {force: 2e8, moment: 1e5}; for a bushing [x, y, z], or {x: table, y: 2e5}",
+    "near": "for example {position: [0, 0, 1]}",
+    "foundation": "for example {about: [0, 0, 0]}", "properties": "auto, or for example {circle: {radius: 0.01}}",
+    "piece": "for example {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}",
+    "title": "write a text, in quotes if it contains :",
+    "of": "the path of a result: joints.NAME.force.z", "until": "a condition such as guide.travel > 0.2",
 }  # fmt: skip
 JOINT_LIST_HINT = "a list of joints: [first, second]"  # hint for `of` of a coupling
 COORDINATE_KEYS = frozenset({"from", "to", "center", "position", "at"})  # keys of coordinates, in body or world axes
 KIND_HINTS = {  # hints by the kind of value that is expected
-    "a mapping": "keys with their values, as {key: value}", "a text": "write a name, or a text in quotes",
-    "true or false": "true or false, without quotes", "a number": "as 0.5, \"12 mm\" or \"2*L\"",
+    "a mapping": "keys with their values: {key: value}", "a text": "write a name, or a text in quotes",
+    "true or false": "true or false, without quotes", "a number": "for example 0.5, \"12 mm\" or \"2*L\"",
 }  # fmt: skip
 MISSING_KEY_HINTS = {  # explanation of required keys
-    "length": "the length at which it exerts no force", "vector": "three components, as [0, 0, -10]",
-    "on": "the point at which it acts: body.point", "speed": "the rate at which friction is nearly full, as 0.01",
-    "axis": "a direction, as [0, 0, 1]", "joint": "the name of the joint in which it acts",
+    "length": "the free length, without force", "vector": "three components, for example [0, 0, -10]",
+    "on": "the point at which it acts: body.point",
+    "speed": "the rate at which friction is nearly full, for example 0.01",
+    "axis": "a direction such as [0, 0, 1]", "joint": "the name of the joint in which it acts",
     "of": "the path of a result: joints.NAME.force.z", "body": "the name of the body",
     "from": "one end: body.point, ground.point", "to": "the other end: body.point, ground.point",
-    "mass": "in kg, as 1.5", "center": "its centre: [x, y, z]", "inertia": "about its centre of mass: [A1, A2, A3]",
+    "mass": "in kg, for example 1.5", "center": "its centre: [x, y, z]",
+    "inertia": "about its centre of mass: [A1, A2, A3]",
     "radius": "in m, or with a unit: 10 mm", "to_radius": "the radius at its other end, 0 for a tip",
     "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
     "curve": "its torque over its speed: a table, or an expression of rate",
-    "radii": "of both pulleys: [50 mm, 100 mm]", "pretension": "the pull of each strand at rest, in N",
+    "radii": "of both pulleys: [50 mm, 100 mm]", "pretension": "the tension of each strand at rest, in N",
     "lift": "the name of a table: the lift over the disc's angle", "contact": "roller, flat or point",
-    "set": "as {n: 1500 rpm}", "file": "the file with its triangles: rod.stl", "diameter": "in m, or with a unit",
-    "factors": "a number for each joint of of, as [1, 2]", "lead": "the travel for a turn, as 5 mm",
+    "set": "for example {n: 1500 rpm}", "file": "the file with its triangles: rod.stl",
+    "diameter": "in m, or with a unit",
+    "factors": "one number for each joint in of: [1, 2]", "lead": "the travel per revolution, for example 5 mm",
     "through": "points and sheaves in order: [ground.A, cage.top]",
-    "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
-    "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
-    "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
+    "stiffness": "in N/m, for a turn_spring in N*m/rad",
+    "value": "a number or an expression in time, for example 5*sin(t)",
+    "to_axis": "the axis fixed in the to body, for example [0, 1, 0]", "normal": "a direction such as [0, 0, 1]",
+    "angle": "the free angle, without torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
 THREAD_FRICTION_KEYS = (
     "efficiency",
@@ -139,53 +144,53 @@ THREAD_FRICTION_KEYS = (
 )  # keys of a screw's friction
 MOTOR_HINTS = {  # terms of a motor's data sheet, and how the format expresses them
     "stall_torque": "it is called stall here", "no_load_speed": "it is called idle here",
-    "idle_speed": "it is called idle here", "speed": "its speed without load is idle",
-    "torque": "its torque at standstill is stall",
-    "gear": "it is called ratio here: turns of the motor for one of the joint",
+    "idle_speed": "it is called idle here", "speed": "its no-load speed is called idle here",
+    "torque": "its torque at standstill is called stall here",
+    "gear": "it is called ratio here: motor revolutions per revolution of the joint",
     "max_torque": "it is called limit here", "torque_limit": "it is called limit here",
     "peak_torque": "it is called limit here", "duty": "it is called value here",
-    "max_speed": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
-    "speed_limit": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
-    "inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
-    "rotor_inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
-    "armature": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
-    "damping": "a load beside it: forces: {drag: {type: damper, joint: NAME, coefficient: 0.01}}",
-    "friction": "a load beside it: forces: {rubs: {type: friction, joint: NAME, torque: 0.3 N m}}",
-    "voltage": "currents and voltages are not computed: stall and idle are those at its voltage",
-    "current": "currents and voltages are not computed: limit is the torque at the largest current",
+    "max_speed": "to end the run at a maximum speed: analysis: {until: shaft.rate > 300}",
+    "speed_limit": "to end the run at a maximum speed: analysis: {until: shaft.rate > 300}",
+    "inertia": "give it for the rotating part: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "rotor_inertia": "give it for the rotating part: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "armature": "give it for the rotating part: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "damping": "add a separate load: forces: {drag: {type: damper, joint: NAME, coefficient: 0.01}}",
+    "friction": "add a separate load: forces: {rubs: {type: friction, joint: NAME, torque: 0.3 N m}}",
+    "voltage": "currents and voltages are not computed: give stall and idle at its voltage",
+    "current": "currents and voltages are not computed: give as limit the torque at the maximum current",
 }  # fmt: skip
 BRAKE_HINTS = dict.fromkeys(
-    ("ramp", "rise", "delay"), 'its size may follow time: torque: "8*min(t/0.2, 1)"'
-) | dict.fromkeys(("size", "value"), "of a given size it has a torque, in a slide a force")
+    ("ramp", "rise", "delay"), 'its size may vary in time: torque: "8*min(t/0.2, 1)"'
+) | dict.fromkeys(("size", "value"), "give its size as torque, in a slide as force")
 LATCH_HINTS = dict.fromkeys(
-    ("until", "opens", "off"), "it lets go where release becomes true: release: t > 1.5"
+    ("until", "opens", "off"), "it releases when release becomes true: release: t > 1.5"
 ) | dict.fromkeys(
-    ("at", "time", "from", "position"), "where it catches is angle or travel, from what on is when: t > 0.1"
+    ("at", "time", "from", "position"), "give where it catches as angle or travel, and from when on as when: t > 0.1"
 )
 HINTS_BY_KEYS = (
     (("stall", "ratio"), MOTOR_HINTS),
     (("joint", "speed", "radius"), BRAKE_HINTS),
     (("release", "every"), LATCH_HINTS),
 )
-CV_HINT = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
+CV_HINT = "write a constant-velocity joint under joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
 MISPLACED_KEYS = {  # keys that belong somewhere else, or are expressed differently
-    "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
-    "restitution": "it stands at a rod with tension_only, or at a stop",
-    "tension_only": "it stands at a joint of type rod",
-    "diameter": "write the radius, half of it",
-    "length": "its ends are from and to",
-    "height": "its ends are from and to",
-    "torque": "a torque is a force of type torque; a drive prescribes the motion, and its torque comes out",
-    "on": "a torque acts in a joint; what acts on a body is a couple, type: couple",
-    "dt": "steps are chosen by the tolerance; samples is the number of instants told, times lists them",
-    "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
-    "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
-    "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
-    "efficiency": "what gears lose is a load beside them: forces: {rubs: {type: friction, joint: spin, "
-    "torque: 0.3 N m}}; a thread has a friction of its own",
-    "material": "a shape takes density: 7850 kg/m^3",
-    "color": "shapes have no looks",
-    "colour": "shapes have no looks",
+    "stops": "limits of coordinates have their own block: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
+    "restitution": "it belongs to a rod with tension_only, or to a stop",
+    "tension_only": "it belongs to a joint of type rod",
+    "diameter": "give the radius instead, half the diameter",
+    "length": "give its two ends, from and to",
+    "height": "give its two ends, from and to",
+    "torque": "write a torque as a force of type torque; a drive prescribes the motion, and its torque is a result",
+    "on": "a torque acts in a joint; on a body write a couple, type: couple",
+    "dt": "the tolerance sets the steps; samples is the number of output times, times lists them",
+    "units": "write units with the numbers: 12 mm; plain numbers are SI; for tables: --units",
+    "mu": "coefficient refers to the joint's own force; for friction of a given size use torque or force",
+    "motor": "for a driven pin or slide: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
+    "efficiency": "give gear losses as a separate load: forces: {rubs: {type: friction, joint: spin, "
+    "torque: 0.3 N m}}; a thread has its own friction",
+    "material": "give the density of the shape: 7850 kg/m^3",
+    "color": "shapes have no colour",
+    "colour": "shapes have no colour",
     "cv": CV_HINT,
     "constant_velocity": CV_HINT,
     "homokinetic": CV_HINT,

@@ -466,8 +466,8 @@ class ExpectEntry(Entry):
             synonym = next(
                 (key for key in data if {"is", "below", "above"} & {*AMBIGUOUS_WORDS.get(str(key), ())}), None
             )
-            hint = "is: a number, a list or null; below: and above: bounds; or curve: a file"
-            raise Finding("missing-key", "'is' is missing", f"{hint} ('{synonym}' means nothing)" if synonym else hint)
+            hint = "give is: (a number, a list or null), below: or above: (bounds), or curve: (a file)"
+            raise Finding("missing-key", "'is' is missing", f"{hint} ('{synonym}' is not a key)" if synonym else hint)
         return data
 
 

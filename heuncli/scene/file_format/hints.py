@@ -37,9 +37,9 @@ def find_native_key(key: str, known_keys: Collection[str]) -> str | None:
 def unknown_key_hint(key: str, known_keys: Collection[str]) -> str:
     """Return a hint on what to write instead of an unknown key."""
     if key[:1].isdigit():
-        return "a decimal is written with a point, as 1.5; a comma ends the value"
+        return "write decimals with a point: 1.5; a comma ends the value"
     if key.count(")") > key.count("("):
-        return "inside { } an expression with a comma is written in quotes"
+        return "inside { } put an expression with a comma in quotes"
     word = find_native_key(key, known_keys)
     if word is not None:
         return f"it is called {word} here"
@@ -64,19 +64,19 @@ def misplaced_key_hint(key: str, known_keys: Collection[str]) -> str | None:
         if key in keys_of(f.BodyEntry):
             return f"it belongs to a body: bodies: {{NAME: {{{key}: ...}}}}"
     if key in COORDINATES and "initial" in known_keys:
-        return f"the start of a coordinate is initial: {{{key}: ...}}"
+        return f"give the start of a coordinate as initial: {{{key}: ...}}"
     if "lead" in known_keys and key in THREAD_FRICTION_KEYS:
         return (
-            "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
+            "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of coefficient"
         )
     for keys, words in HINTS_BY_KEYS:
         if key.lower() in words and set(keys) <= set(known_keys):
             return words[key.lower()]
     if key == "initial" and "length" in known_keys:
-        return "a rod starts as it is assembled, or with its length: ..."
+        return "a rod starts as assembled, or with a given length: ..."
     if key == "initial" and {"from", "to"} <= set(known_keys):
         return (
-            "only a pin, slide or cylinder has coordinates; else the start is the body's: "
+            "only a pin, slide or cylinder has coordinates; otherwise give the start of the body: "
             "bodies: {NAME: {orientation: ..., angular_velocity: [0, 0, 1]}}"
         )
     return None
@@ -107,14 +107,16 @@ def form_hint(key: str, value: Any, expected_kind: str) -> str:
         axis = AXES[value.strip()[-1].lower()]
         return f"the {value.strip()[-1].lower()} axis is {axis.replace('1', '-1') if value.strip()[0] == '-' else axis}"
     if key in DIRECTIONS:
-        return "a direction, as [0, 0, 1]"
+        return "a direction such as [0, 0, 1]"
     if expected_kind == "a list" and isinstance(value, dict):
-        return "a list has a dash before each of its entries, or [ ] around them"
+        return "write a list with a dash before each entry, or in [ ]"
     if expected_kind == "a list" and key in COORDINATE_KEYS:
-        return "three coordinates [x, y, z], as [0.5, 0, 0]"
+        return "three coordinates [x, y, z], for example [0.5, 0, 0]"
     if expected_kind == "a list":
-        return "three components, as [0, 0, 1]" if not isinstance(value, str) else f"a list is [{value}, ...]"
-    return FORM_HINTS.get(key) or KIND_HINTS.get(expected_kind) or f"write {expected_kind} behind {key or 'it'}:"
+        return (
+            "three components, for example [0, 0, 1]" if not isinstance(value, str) else f"write a list: [{value}, ...]"
+        )
+    return FORM_HINTS.get(key) or KIND_HINTS.get(expected_kind) or f"write {expected_kind} after {key or 'it'}:"
 
 
 def word_hint(word: str, allowed: Collection[str]) -> str:
@@ -122,4 +124,8 @@ def word_hint(word: str, allowed: Collection[str]) -> str:
     suggestion = next((name for name in VALUE_WORDS.get(word.lower(), ()) if name in allowed), None) or find_similar(
         word, allowed
     )
-    return f"did you mean {suggestion}?" if suggestion is not None else f"write one of them, as {next(iter(allowed))}"
+    return (
+        f"did you mean {suggestion}?"
+        if suggestion is not None
+        else f"write one of them, for example {next(iter(allowed))}"
+    )

@@ -52,7 +52,7 @@ def make_spec_schema() -> dict[str, Any]:
     head = definitions.pop("HeadEntry")
     top_level = head["properties"] | dict(_iter_blocks())
     schema = {
-        "$schema": DRAFT, "title": "A scene of heun", "type": "object", "properties": top_level,
+        "$schema": DRAFT, "title": "heun spec", "type": "object", "properties": top_level,
         "required": head["required"], "additionalProperties": False, "definitions": definitions,
         "if": {"properties": {"space": {"const": "planar"}}, "required": ["space"]},
         "else": {"properties": {"joints": {"additionalProperties": {"allOf": spatial_conditions}}}},

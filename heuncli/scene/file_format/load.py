@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from heuncli.scene.file_format.tables import TableProblem
     from heuncli.scene.meshes.model import TriangleMesh
 
-IMPORT_HINT = "heun import makes a spec of a robot in URDF, or a model of MuJoCo's"
+IMPORT_HINT = "heun import converts a URDF robot or a MuJoCo model to a spec"
 LOCATED_BLOCKS = (
     "analysis",
     "couplings",
@@ -123,9 +123,9 @@ class SpecLoader:
         if type(source.data) is not dict:
             # do not quote an unknown file
             kind = describe_kind(source.data) if type(source.data) is not str else "a text"
-            message = f"a spec is a mapping, this is {kind}"
+            message = f"a spec must be a mapping, this is {kind}"
             is_xml = type(source.data) is str and source.data.startswith("<")
-            hint = IMPORT_HINT if is_xml else "it starts with 'heun: 1'"
+            hint = IMPORT_HINT if is_xml else "start it with 'heun: 1'"
             raise SpecError(*self.problems, Problem("not-a-scene", message, source.location(()), hint))
         without_empty = {k: {} if v is None and k in (*NAMED_BLOCKS, "ground") else v for k, v in source.data.items()}
         settings, problems = parse_settings(overrides) if isinstance(overrides, Mapping) else ([*overrides], [])
@@ -357,7 +357,7 @@ class SpecLoader:
         if type(value) is not dict:
             self.report(
                 "wrong-kind",
-                Violation((name,), f"expected a mapping, found {describe_kind(value)}", "its keys are names"),
+                Violation((name,), f"expected a mapping, found {describe_kind(value)}", "write names as its keys"),
             )
         return as_mapping(value)
 

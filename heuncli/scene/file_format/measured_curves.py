@@ -18,8 +18,8 @@ from heuncli.scene.file_format.models import Curve
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.tables import ColumnUnit, TableProblem, has_error, read_file_columns
 
-ONE_POINT_HINT = "a curve has two points at least; one number is expected by at: and is:"
-ASCENDING_HINT = "sort the rows by x, and keep one of each"
+ONE_POINT_HINT = "a curve needs at least two points; for one number use at: and is:"
+ASCENDING_HINT = "sort the rows by x, with one row for each x"
 
 
 def build_curve(
@@ -42,8 +42,9 @@ def build_curve(
     for unit, dimensions in zip(units, column_dimensions, strict=False):
         if unit.heading is not None and unit.dimension is not None and dimensions and unit.dimension not in dimensions:
             expected = " or ".join(describe(one) for one in dimensions)
-            message = f"column {unit.heading.number} is {describe(unit.dimension)} by its heading, expected {expected}"
-            finding = Finding("wrong-dimension", message, "name another column, or say its unit: x_unit, y_unit")
+            kind = describe(unit.dimension)
+            message = f"column {unit.heading.number} is {kind} according to its heading, expected {expected}"
+            finding = Finding("wrong-dimension", message, "choose another column, or give its unit: x_unit, y_unit")
             problems.append(TableProblem((), finding, SourceLocation(file, unit.heading.line, 1)))
     if columns is None or has_error(problems):
         return None, problems
@@ -94,7 +95,7 @@ def check_curve_points(
             i = int(is_outside.argmax())
             yield i, range_error(float(values[i]), f"{name} (SI)")
     if len(x) < 2:
-        yield len(x) - 1, Finding("curve-points", f"{'one point' if len(x) else 'no point'} alone", ONE_POINT_HINT)
+        yield len(x) - 1, Finding("curve-points", f"{'only one point' if len(x) else 'no points'}", ONE_POINT_HINT)
         return
     is_falling = x[1:] <= x[:-1]
     if is_falling.any():
@@ -106,8 +107,8 @@ def check_curve_points(
         outside = (x < run[0] - slack) | (x > run[1] + slack)
         if outside.any():
             i = int(outside.argmax())
-            message = f"{x[i]:.9g} s is out of the run, which goes from {run[0]:.9g} to {run[1]:.9g} s"
+            message = f"{x[i]:.9g} s is outside the run, which lasts from {run[0]:.9g} to {run[1]:.9g} s"
             yield (
                 i,
-                Finding("curve-points", message, "leave these rows out, or run longer; of ms say x_unit: ms"),
+                Finding("curve-points", message, "remove these rows, or run longer; for milliseconds give x_unit: ms"),
             )

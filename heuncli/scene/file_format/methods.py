@@ -24,20 +24,18 @@ def iter_method_problems(method: str, step: float | None, end_time: float | None
     """Yield what is wrong with a method and a step in a run until `end_time`; None: not given, or no motion."""
     method_row = find_method(method)
     if method_row is None and method.lower() != AUTO:
-        yield MethodProblem("unknown-method", "method", f"'{method}' is no method of integration", method_hint(method))
+        yield MethodProblem("unknown-method", "method", f"'{method}' is not an integration method", method_hint(method))
         return
     if step is not None and step <= 0.0:
         return  # reported by the rule on positive numbers
     has_fixed_step = method_row is not None and method_row.steps == "fixed"
     if has_fixed_step and step is None:
-        hint = f"analysis: {{method: {method}, step: 0.001}}, or --step 0.001; method: {AUTO} finds its own steps"
-        yield MethodProblem(
-            "fixed-step", "method", f"{method} goes in steps of a given length, and none is given", hint
-        )
+        hint = f"analysis: {{method: {method}, step: 0.001}}, or --step 0.001; method: {AUTO} chooses its own steps"
+        yield MethodProblem("fixed-step", "method", f"{method} needs a fixed step, and none is given", hint)
     if not has_fixed_step and step is not None:
         listed = ", ".join(method_row.name for method_row in METHODS if method_row.steps == "fixed")
-        hint = f"a step goes with {listed}; here tolerance: 1e-9 tells how exactly"
-        yield MethodProblem("fixed-step", "step", f"{method} finds its own steps and takes none", hint)
+        hint = f"a step is for {listed}; here give a tolerance, as tolerance: 1e-9"
+        yield MethodProblem("fixed-step", "step", f"{method} chooses its own steps and takes no step", hint)
     elif step is not None:
         yield from iter_step_problems(step, end_time)
 
@@ -51,7 +49,7 @@ def find_tolerance_problem(tolerance: float) -> MethodProblem | None:
     if tolerance > high:
         hint += "; for a quick look 1e-3 is coarse enough"
     elif tolerance > 0.0:
-        hint += "; beyond that rounding is all that is left"
+        hint += "; below this range rounding errors dominate"
     return MethodProblem("tolerance", "tolerance", f"tolerance {tolerance:g} is not between {low:g} and {high:g}", hint)
 
 
@@ -60,17 +58,17 @@ def iter_step_problems(step: float, end_time: float | None) -> Iterator[MethodPr
     max_steps, check_factor = tolerances.MOST_STEPS, tolerances.CHECK_STEPS
     if end_time is not None and step > end_time:
         yield MethodProblem(
-            "step", "step", f"the step of {step:g} s is longer than the run of {end_time:g} s", "a shorter one"
+            "step", "step", f"the step of {step:g} s is longer than the run of {end_time:g} s", "give a shorter step"
         )
     elif end_time is not None and check_factor * end_time > max_steps * step:
         message = (
-            f"steps of {step:g} s are too many: {end_time / step:.3g} to {end_time:g} s, "
+            f"steps of {step:g} s are too short: {end_time / step:.3g} to {end_time:g} s and "
             f"{check_factor} times as many in the check "
-            f"run, and {max_steps:,} is the most"
+            f"run; the limit is {max_steps:,}"
         )
         smallest_step = check_factor * end_time / max_steps
         yield MethodProblem(
-            "step", "step", message, f"steps of {smallest_step:.2g} s and more, or a method of higher order"
+            "step", "step", message, f"use steps of at least {smallest_step:.2g} s, or a method of higher order"
         )
 
 
@@ -78,7 +76,7 @@ def method_hint(method: str) -> str:
     """Return a hint on which method an unknown word may mean."""
     word = METHOD_WORDS.get(normalize_name(method))
     if word is not None and (word == AUTO or find_method(word) is not None):
-        return f"here that is method: {word}"
+        return f"it is called method: {word} here"
     same_name = next((name for name in NAMES if normalize_name(name) == normalize_name(method)), method)
     hint = suggest(same_name, NAMES, "methods") or ""
     return f"{hint}{'' if hint.endswith('?') else ';'} `heun methods` lists them"

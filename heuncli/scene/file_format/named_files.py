@@ -72,7 +72,7 @@ class NamedFiles:
         if Path(real_path).is_relative_to(real_folder):
             return None
         link_note = f", which is {real_path}" if Path(absolute_path).is_relative_to(real_folder) else ""
-        hint = "copy it beside the spec: whoever runs that then knows what is read"
+        hint = "copy it to the spec's folder, so that others can run the spec and see what it reads"
         return Finding("outside-folder", f"reads a file outside the spec's folder: {name}{link_note}", hint)
 
     def read_text(self, name: str) -> str:
@@ -84,7 +84,7 @@ class NamedFiles:
         except Finding as refused:
             is_large = refused.code == "too-large"
             reason, code = refused.message, refused.code if is_large else "table-file"
-            hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE_PATH_HINT
+            hint = "use a table of fewer points, or with these two columns only" if is_large else RELATIVE_PATH_HINT
         raise Finding(code, f"the file '{self.path(name)}' cannot be read: {reason}", hint)
 
     def get_file(self, name: str) -> NamedFile:

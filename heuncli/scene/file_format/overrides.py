@@ -86,8 +86,8 @@ def iter_si_warnings(
         except Finding:
             continue
         if size != 1.0:
-            message = f"{new:.9g} is taken in {si_unit(dimension)}; the file gives it in {unit}"
-            yield Problem("set-in-si", message, location, f"with the unit: --set {location.path}='{new:.9g} {unit}'")
+            message = f"{new:.9g} is read in {si_unit(dimension)}; the file gives it in {unit}"
+            yield Problem("set-in-si", message, location, f"give the unit: --set {location.path}='{new:.9g} {unit}'")
 
 
 def get_value(data: Any, path: Path_) -> Any:
@@ -135,7 +135,7 @@ def set_value(data: dict[str, Any], path: Path_, value: Any) -> tuple[str, str] 
             if not is_list_index(node, part):
                 return (
                     f"'{'.'.join(map(str, path[:depth]))}' has no entry {part}",
-                    f"entries are counted from 0 to {len(node) - 1}",
+                    f"entries are numbered from 0 to {len(node) - 1}",
                 )
         elif type(node) is not dict:
             parent_path = ".".join(map(str, path[:depth]))

@@ -48,7 +48,7 @@ def translate_errors(error: ValidationError, data: Any, model: type[Entry]) -> I
                 count = required_length(item["loc"])
                 message, hint = f"{len(value)} values instead of {count}", list_hint(path, count)
                 if (len(value), count) == (2, 3):
-                    hint = "two components are for a scene in the xy plane: space: planar"
+                    hint = "two components need a model in the xy plane: space: planar"
                 yield "wrong-length", Violation(path, message, hint)
         elif kind == "missing" and is_given_under_synonym(str(item["loc"][-1]), get_value(data, path), model, path):
             continue  # reported for the synonym that was written instead
@@ -59,10 +59,10 @@ def translate_errors(error: ValidationError, data: Any, model: type[Entry]) -> I
         elif kind == "too_long":
             message = f"{context['actual_length']} values instead of {context['max_length']}"
             is_split = any(isinstance(part, str) and part.count("(") > part.count(")") for part in item["input"])
-            hint = "inside [ ] an expression with a comma is written in quotes"
+            hint = "inside [ ] put an expression with a comma in quotes"
             hint = hint if is_split else list_hint(path, context["max_length"])
             if path[-1:] == ("inertia",):
-                hint = "the products of inertia stand beside it: deviation: [D1, D2, D3], D1 = sum of m*a2*a3"
+                hint = "give the products of inertia separately: deviation: [D1, D2, D3], D1 = sum of m*a2*a3"
             yield "wrong-length", Violation(path, message, hint)
         elif kind in ("union_tag_invalid", "union_tag_not_found"):
             yield "wrong-kind", wrong_form(path, context, data)
@@ -137,7 +137,7 @@ def unknown_key_error(path: Path_, known_keys: list[str]) -> tuple[str, Violatio
     """Make the error for a key that means nothing here."""
     key = str(path[-1])
     if ("keys", key) in PLANNED_WORDS:
-        return "not-yet", Violation(path, f"not yet: {key}", "leave it out: a later version has it", key=True)
+        return "not-yet", Violation(path, f"not yet: {key}", "leave it out: planned for a later version", key=True)
     return "unknown-key", Violation(path, f"'{key}' is not known here", unknown_key_hint(key, known_keys), key=True)
 
 
@@ -153,7 +153,7 @@ def unknown_type_error(entry: Any, block: str, known_types: list[str]) -> tuple[
         synonym_key = next((name for name in entry if find_native_key(name, ["type"])), None)
         hint = f"'{synonym_key}' is called type here" if synonym_key is not None else f"known: {listed}"
         if synonym_key is None and (similar_key := find_similar("type", [str(name) for name in entry])) is not None:
-            hint = f"did you mean type where '{similar_key}' stands? {hint}"
+            hint = f"did you mean type instead of '{similar_key}'? {hint}"
         return "missing-key", Violation((), "'type' is missing", hint, key=True)
     tag = entry["type"]
     if type(tag) is not str:
@@ -162,7 +162,7 @@ def unknown_type_error(entry: Any, block: str, known_types: list[str]) -> tuple[
         )
     if (block, tag) in PLANNED_WORDS:
         return "not-yet", Violation(
-            ("type",), f"not yet: {description.removeprefix('a ')} {tag}", f"there are: {listed}"
+            ("type",), f"not yet: {description.removeprefix('a ')} {tag}", f"available: {listed}"
         )
     word = synonyms.get(tag.lower().replace("-", "_"))
     hint = (
@@ -190,7 +190,7 @@ def wrong_word_error(path: Path_, word: Any, choices: str) -> tuple[str, Violati
     allowed = [word.strip(" '") for word in choices.replace(" or ", ", ").split(",")]
     if not isinstance(word, str):
         message = f"expected one of {', '.join(allowed)}, found {describe_kind(word)}"
-        return "wrong-kind", Violation(path, message, f"as {path[-1]}: {allowed[0]}")
+        return "wrong-kind", Violation(path, message, f"for example {path[-1]}: {allowed[0]}")
     message = f"'{word}' is not known here; known: {', '.join(allowed)}"
     return "unknown-word", Violation(path, message, word_hint(word, allowed))
 

@@ -68,7 +68,7 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
     if dimension is not None and unit_dimension != dimension:
         hint = (
             product_hint(with_unit[1], with_unit[2].strip(), scope)
-            or f"a number without a unit is taken in {si_unit(dimension)}"
+            or f"a number without a unit is read in {si_unit(dimension)}"
         )
         raise Finding(
             "dimension", f"'{value.strip()}' is {describe(unit_dimension)}, expected {describe(dimension)}", hint
@@ -89,7 +89,7 @@ def compile_text(text: str, scope: Scope) -> Expression:
             parse_unit(unit)
         except Finding:
             raise finding from None
-        raise Finding(finding.code, finding.message, f"with a unit: {division[1].strip()} {unit}") from None
+        raise Finding(finding.code, finding.message, f"give it with a unit: {division[1].strip()} {unit}") from None
 
 
 def match_quantity(text: str) -> re.Match[str] | None:
@@ -103,17 +103,17 @@ def require_dimension(expression: Expression, dimension: Dimension | None, scope
     own_dimension = expression.dimension
     if dimension is None or own_dimension is None or own_dimension == dimension:
         return expression
-    text, hint = expression.source.strip(), "without a unit a parameter fits anywhere"
+    text, hint = expression.source.strip(), "a parameter without a unit fits any dimension"
     description = f"'{text}' is {describe(own_dimension)}"
     if text in scope.given:
         description = f"{text} is {describe(own_dimension)} ({scope.given[text].text})"
     else:
         hint = f"{describe_dimensions(text, scope)}; {hint}"
         if WHOLE_NUMBER.search(text):
-            hint += "; a whole number is a plain factor: write 3.0 for one that has a unit"
+            hint += "; whole numbers are plain factors: write 3.0 for one with a unit"
         if USES_TIME.search(text):
-            hint += "; t beside it is a time: for a ramp divide by one, as in F*t/T"
-    raise Finding("wrong-dimension", f"{description}, {describe(dimension)} is wanted here", hint)
+            hint += "; t is a time: for a ramp divide by a time, as in F*t/T"
+    raise Finding("wrong-dimension", f"{description}, expected {describe(dimension)}", hint)
 
 
 def read_condition(value: Any, scope: Scope) -> Expression:
@@ -124,15 +124,15 @@ def read_condition(value: Any, scope: Scope) -> Expression:
     expression = compile_expression(value, replace(scope, with_units=True))
     text = value.strip()
     if not expression.is_truth and expression.constant is None:
-        hint = f"compare it: {text.removesuffix(' == 0')} > 0, say"
+        hint = f"compare it, for example {text.removesuffix(' == 0')} > 0"
         raise Finding("condition", f"'{text}' is a number, not a condition", hint)
     if expression.constant is not None:
         raise Finding(
             "condition", f"'{text}' never changes: it uses neither the time nor a coordinate", CONDITIONS_HINT
         )
     if equality := re.search("[=!]=", text):
-        message = f"'{text}': a motion passes through an equality ({equality[0]}) in no time"
-        raise Finding("condition", message, "compare by > or <: an event tells the instants of both directions")
+        message = f"'{text}': a motion meets an equality ({equality[0]}) for an instant only"
+        raise Finding("condition", message, "compare with > or <: an event reports the instants of both directions")
     return expression
 
 
@@ -153,11 +153,9 @@ def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
     name = re.split(r"\W", unit, maxsplit=1)[0]
     if name == "t" and re.fullmatch(r"t\s*/\s*m(\^|\*\*)?[3³]", unit):
         unit_text = f"tonne{unit[1:]}"
-        return (
-            f"t is the time; a thousand kilograms are a tonne: {figure.strip()} {correct_unit(unit_text) or unit_text}"
-        )
+        return f"t is the time; for 1000 kg write tonne: {figure.strip()} {correct_unit(unit_text) or unit_text}"
     if re.search(r"[+-]\s*+(?:\d++\s*+)?[^\W\d]", unit):
-        return "units do not stand inside expressions: give the quantity a name under parameters, or write it in SI"
+        return "units are not allowed inside expressions: name the quantity under parameters, or write it in SI"
     if name in scope.parameters or name in RESERVED:
         return f"for a product write {figure.strip()}*{unit}"
     return None
@@ -202,14 +200,14 @@ def describe_kind(value: Any) -> str:
 def number_hint(value: Any) -> str:
     """Return a hint on how to write a number instead of this value."""
     if type(value) is dict and len(value) == 1 and next(iter(value.values())) is None:
-        return "an expression with { } is written without them"
+        return "write the expression without { }"
     if value is None:
-        return "write a number behind the colon, or leave the key out"
+        return "write a number after the colon, or leave the key out"
     if type(value) is list and len(value) == 1:
-        return "one number stands without [ ]"
+        return "write a single number without [ ]"
     return 'as 0.5, "12 mm" or "2*L"'
 
 
-FINITE_HINT = "where there is no limit leave the key out; in [low, high] write null"
+FINITE_HINT = "for no limit leave the key out; in [low, high] write null"
 
 __all__ = ["DependentError", "Scope", "describe_kind", "read_function", "read_number"]

@@ -28,11 +28,11 @@ FILE_KINDS = (
 )
 REASONS = {  # why a file cannot be opened, and what to do
     errno.ENOENT: ("there is no such file", None),
-    errno.ENOTDIR: ("there is no such file: what stands before the last / is no folder", None),
-    errno.EACCES: ("the file may not be read", "look at its permissions"),
-    errno.EPERM: ("the file may not be read", "look at its permissions"),
-    errno.ELOOP: ("its links lead in a circle", "look where they lead: ls -l"),
-    errno.ENAMETOOLONG: ("the name is too long for a file", None),
+    errno.ENOTDIR: ("there is no such file: the part before the last / is not a folder", None),
+    errno.EACCES: ("no permission to read the file", "check its permissions"),
+    errno.EPERM: ("no permission to read the file", "check its permissions"),
+    errno.ELOOP: ("its links form a loop", "check where they lead: ls -l"),
+    errno.ENAMETOOLONG: ("the file name is too long", None),
     errno.ENXIO: ("this is a socket, not a file", INPUT_HINT),
 }
 _NAMES_READ: dict[tuple[int, int], str] = {}  # device and number of each file -> the name it was read by
@@ -66,13 +66,13 @@ def read_bytes(path: str, max_size: int) -> bytearray:
     except ValueError as error:
         if isinstance(error, Finding):
             raise
-        hint = "a name holds no NUL and no half of a character"
+        hint = "a file name cannot contain NUL or half a character"
         raise Finding("unreadable", "this cannot be the name of a file", hint) from None
 
 
 def _read_standard_input(max_size: int) -> bytearray:
     if sys.stdin is None:
-        raise Finding("unreadable", "standard input is closed", "name a file, or send a spec: heun ... - < FILE")
+        raise Finding("unreadable", "standard input is closed", "give a file, or pipe a spec in: heun ... - < FILE")
     try:
         descriptor = sys.stdin.buffer.fileno()
     except (OSError, ValueError):  # a stream without a file descriptor
@@ -88,7 +88,7 @@ def _require_readable(descriptor: int, path: str, max_size: int) -> None:
         _NAMES_READ.setdefault((state.st_dev, state.st_ino), path)
     kind = next((words for is_kind, words in FILE_KINDS if is_kind(state.st_mode)), None)
     if kind is not None and not (stat.S_ISCHR(state.st_mode) and _is_finite_device(descriptor)):
-        hint = "for folders of specs: heun check" if kind == "a folder" else INPUT_HINT
+        hint = "for folders of specs use heun check" if kind == "a folder" else INPUT_HINT
         raise Finding("unreadable", f"this is {kind}, not a file", hint)
     if stat.S_ISREG(state.st_mode) and state.st_size > max_size:
         raise _too_large_finding(_format_megabytes(state.st_size), max_size)
@@ -112,14 +112,14 @@ def _read_limited(file: BinaryIO, max_size: int) -> bytearray:
 def _unreadable_finding(error: OSError) -> Finding:
     """Explain an OSError in words."""
     message, hint = REASONS.get(error.errno or 0, (None, None))
-    hint = hint or "paths are relative to where heun was started"
+    hint = hint or "paths are relative to the folder where heun was started"
     return Finding("unreadable", message or f"it cannot be read: {error.strerror or error}", hint)
 
 
 def _too_large_finding(size_text: str, max_size: int) -> Finding:
     """Make the finding for a file above the limit."""
-    hint = "is it the right file? What is generated may be split, or thinned"
-    return Finding("too-large", f"this has {size_text}; at most {_format_megabytes(max_size)} are read", hint)
+    hint = "is it the right file? Generated data may be split or thinned"
+    return Finding("too-large", f"the file has {size_text}; at most {_format_megabytes(max_size)} are read", hint)
 
 
 def _format_megabytes(size: int) -> str:

@@ -71,10 +71,10 @@ def iter_wheel_conditions(rolling: Mapping[str, RollingEntry]) -> Iterator[Resul
     """Yield the conditions of wheels: one that lifts off its plane ends the motion, one that slips is reported."""
     for name, entry in rolling.items():
         if not entry.held:
-            why = f"the wheel {name} lifts: it would have to be pulled onto its plane"
+            why = f"the wheel {name} lifts off: its plane would have to pull it"
             yield make_below_zero_condition(f"{name}_lifts", f"couplings.{name}.normal", why, ends=True)
         if entry.friction is not None:
-            why = f"the wheel {name} slips: it would take more friction than there is"
+            why = f"the wheel {name} slips: rolling would need more friction than available"
             yield make_below_zero_condition(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
 
 

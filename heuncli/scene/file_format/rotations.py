@@ -63,7 +63,7 @@ def rotation_from_unit_quaternion(q: tuple[float, float, float, float]) -> Matri
     """Return the rotation of a quaternion that should have unit length. Raises Finding [orientation] if it has not."""
     n = math.hypot(*q)
     if abs(n - 1.0) > tolerances.UNIT_TYPED:
-        raise Finding("orientation", f"the quaternion has the length {n:.6g} instead of 1", "its order is w, x, y, z")
+        raise Finding("orientation", f"the quaternion has length {n:.6g} instead of 1", "its order is w, x, y, z")
     return rotation_from_quaternion(q)
 
 
@@ -82,7 +82,7 @@ def rotation_from_euler(angles: Vec, sequence: str) -> Matrix:
         or sequence[0] == sequence[1]
         or sequence[1] == sequence[2]
     ):
-        hint = "three of the letters x, y, z, no two neighbours alike: zyx (yaw, pitch, roll), zxz, ..."
+        hint = "three of the letters x, y, z, no two neighbours equal: zyx (yaw, pitch, roll), zxz, ..."
         raise Finding("orientation", f"'{sequence}' is not a sequence of axes", hint)
     R = IDENTITY
     for letter, angle in zip(sequence, angles, strict=True):
@@ -101,7 +101,7 @@ def rotation_from_matrix(m: Matrix) -> Matrix:
     determinant = sum(a * b for a, b in zip(cross_product(m[0], m[1]), m[2], strict=True))
     if deviation > tolerances.UNIT_TYPED or determinant < 0.0:
         is_skewed = deviation > tolerances.UNIT_TYPED
-        reason = "its columns are not perpendicular and of length 1" if is_skewed else "it is a mirror, not a turn"
+        reason = "its columns are not perpendicular and of length 1" if is_skewed else "it is a reflection"
         raise Finding(
             "orientation", f"the matrix is not a rotation: {reason}", "columns are the body's axes in world axes"
         )

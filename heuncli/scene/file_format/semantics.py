@@ -40,19 +40,19 @@ def orientation_matrix(value: fs.Orientation) -> m.Matrix:
     forms = [name for name, keys in ORIENTATIONS.items() if given_keys & set(keys)]
     known = "{axis, angle}, {quaternion}, {rodrigues}, {euler, sequence} or {matrix}"
     if len(forms) != 1:
-        description = f"an orientation by {' and '.join(forms)}" if forms else "an empty orientation"
-        raise Finding("orientation", description, f"one of {known}")
+        description = f"an orientation given by {' and '.join(forms)}" if forms else "an empty orientation"
+        raise Finding("orientation", description, f"give one of {known}")
     missing = [key for key in ORIENTATIONS[forms[0]] if key not in given_keys]
     if missing:
         hint = (
-            "sequence: zyx turns about z, then the new y, then the new x"
+            "sequence: zyx rotates about z, then the new y, then the new x"
             if missing == ["sequence"]
-            else f"one of {known}"
+            else f"give one of {known}"
         )
         raise Finding("orientation", f"an orientation without {missing[0]}", hint)
     if value.axis is not None and value.angle is not None:
         if not any(value.axis):
-            raise Finding("orientation", "the axis is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
+            raise Finding("orientation", "the axis is [0, 0, 0], which has no direction", "[0, 0, 1] is the z axis")
         return rotations.rotation_about(value.axis, value.angle)
     if value.quaternion is not None:
         return rotations.rotation_from_unit_quaternion(value.quaternion)

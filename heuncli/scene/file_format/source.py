@@ -22,7 +22,7 @@ from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 MAX_SIZE = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
 MAX_DEPTH = 64
 TOO_DEEP = f"nested more than {MAX_DEPTH} levels deep"
-TOO_DEEP_HINT = "no value of a spec is: is a bracket too many open?"
+TOO_DEEP_HINT = "no spec needs that: is a bracket not closed?"
 
 SMALLEST_SPEC = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
 
@@ -119,13 +119,13 @@ def parse_source(file: str, text: str, sha256: str) -> SourceFile:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     if len(text) > MAX_SIZE:
         message = f"{len(text)} characters; at most {MAX_SIZE} are read"
-        hint = "put lists of numbers into files of their own: tables: {NAME: {file: NAME.csv}}"
+        hint = "put lists of numbers into separate files: tables: {NAME: {file: NAME.csv}}"
         raise SpecError(Problem("too-large", message, SourceLocation(file, 1, 1), hint))
     if invisible := re.search(INVISIBLE if text.isascii() else f"{INVISIBLE}|{INVISIBLE_NON_ASCII}", text):
         name = f"U+{ord(invisible[0]):04X}" + (
             f" ({INVISIBLE_NAMES[invisible[0]]})" if invisible[0] in INVISIBLE_NAMES else ""
         )
-        message = f"the character {name} may not stand in a spec"
+        message = f"the character {name} is not allowed in a spec"
         raise SpecError(
             Problem(
                 "bad-character", message, SourceLocation(file, *line_and_column(text, invisible.start())), "delete it"
@@ -142,7 +142,7 @@ def parse_source(file: str, text: str, sha256: str) -> SourceFile:
         earlier = [p for p in builder.problems if p.location and p.location.line < first]
         raise SpecError(*earlier, *problems) from None
     if builder.documents == 0 or builder.root is None:
-        hint = f"write the scene into it; the smallest is: {SMALLEST_SPEC}"
+        hint = f"write a model into it; the smallest is: {SMALLEST_SPEC}"
         raise SpecError(*builder.problems, Problem("empty", "the file is empty", SourceLocation(file, 1, 1), hint))
     return SourceFile(file, sha256, builder.root, builder.values, builder.keys, tuple(builder.problems))
 
@@ -205,27 +205,27 @@ def suggest_syntax_fix(text: str, line: int, parser_message: str) -> str:
     ):
         return "indent with spaces, not tabs"
     if "mapping values are not allowed" in parser_message:
-        return "write a text that contains ': ' in quotes, or look at the indentation"
+        return "put a text that contains ': ' in quotes, or check the indentation"
     if "could not find expected ':'" in parser_message:
         return "a key needs a colon and a space after it"
     if "cannot start any token" in parser_message:
-        return "a text that starts with % or @ or a backquote is written in quotes"
+        return "put a text that starts with %, @ or a backquote in quotes"
     if "unknown escape" in parser_message:
-        return "a backslash within double quotes is written twice, or the text stands in single quotes"
+        return "double the backslash within double quotes, or use single quotes"
     if "did not find expected key" in parser_message:
-        return "look at the indentation: the keys of one mapping begin in one column"
+        return "check the indentation: the keys of one mapping begin in one column"
     if "expected ',' or" in parser_message:
-        return "look for a comma that is missing before this place"
+        return "check for a missing comma before this place"
     if "expected node content" in parser_message:
-        return "look for a comma or a colon too many before this place"
+        return "check for an extra comma or colon before this place"
     if "alphabetic or numeric" in parser_message or "alias" in parser_message or "anchor" in parser_message:
-        return "a text that starts with * or & is written in quotes"
-    return "look at this line and the one before it: brackets, colons, quotes, indentation"
+        return "put a text that starts with * or & in quotes"
+    return "check this line and the one before it: brackets, colons, quotes, indentation"
 
 
 ALIAS_HINT = (
-    "name the value once under parameters and use the name; a program writes the spec as JSON, which is read, too, "
-    "or tells its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
+    "name the value once under parameters and use the name; a program should write the spec as JSON, which heun reads, "
+    "or tell its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
 )
 
 
@@ -274,7 +274,7 @@ class SourceBuilder:
             self.stack.pop()
         elif kind is events.AliasEvent:
             self.problems.append(
-                self.problem("alias", f"aliases (*{event.anchor}) are not read", event, hint=ALIAS_HINT)
+                self.problem("alias", f"aliases (*{event.anchor}) are not allowed", event, hint=ALIAS_HINT)
             )
             top = self.stack[-1] if self.stack else None
             if top is not None and top.key is None and type(top.container) is dict:  # the alias stands for a key
@@ -288,19 +288,19 @@ class SourceBuilder:
 
     def make_several_documents_problem(self, event: Any) -> Problem:
         """Make the problem that reports a second document."""
-        hint = "what stands behind the line --- belongs into a file of its own"
-        return self.problem("several-documents", "a file holds one spec only", event, hint=hint)
+        hint = "move what follows the line --- to a separate file"
+        return self.problem("several-documents", "only one spec is allowed in a file", event, hint=hint)
 
     def refuse_anchor_and_tag(self, event: Any) -> None:
         """Report an anchor or a tag as a problem."""
         if event.anchor is not None:
             self.problems.append(
-                self.problem("alias", f"anchors (&{event.anchor}) are not read", event, hint=ALIAS_HINT)
+                self.problem("alias", f"anchors (&{event.anchor}) are not allowed", event, hint=ALIAS_HINT)
             )
         if event.tag is not None and event.tag != "!":
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            hint = "values are plain numbers and texts; a value used often belongs into parameters"
-            self.problems.append(self.problem("tag", f"tags ({tag}) are not read", event, hint=hint))
+            hint = "values are plain numbers and texts; put a value used often under parameters"
+            self.problems.append(self.problem("tag", f"tags ({tag}) are not allowed", event, hint=hint))
 
     def add_scalar(self, event: Any) -> None:
         if event.anchor is not None or event.tag is not None:
@@ -317,12 +317,12 @@ class SourceBuilder:
         path = (*top.path, key)
         if key == "<<" and event.implicit[0]:
             hint = "write the keys out, with their common values under parameters"
-            self.problems.append(self.problem("alias", "merge keys (<<) are not read", event, path, hint=hint))
+            self.problems.append(self.problem("alias", "merge keys (<<) are not allowed", event, path, hint=hint))
             top.skipped = True
         elif key in top.container:
             line, _ = self.keys[path]
             message = f"'{key}' is given twice, first in line {line + 1}"
-            hint = "give the two names of their own, or keep one"
+            hint = "give the two different names, or keep one"
             self.problems.append(self.problem("duplicate-key", message, event, path, hint=hint))
             top.skipped = True
         else:
@@ -337,8 +337,8 @@ class SourceBuilder:
             self.refuse_anchor_and_tag(event)
         top = self.stack[-1] if self.stack else None
         if top is not None and top.key is None and type(top.container) is dict:
-            hint = "an expression or a text that starts with { or [ is written in quotes"
-            message = "not YAML as specs use it: a key is a plain word"
+            hint = "put an expression or a text that starts with { or [ in quotes"
+            message = "not a valid key: a key must be a plain word"
             problem = self.problem("not-yaml", message, event, top.path, hint=hint)
             raise SpecError(*self.problems, problem)
         path = self.store(container, event)

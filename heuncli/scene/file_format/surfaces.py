@@ -22,12 +22,12 @@ def read_mesh(file: str, files: NamedFiles) -> tuple[TriangleMesh | None, list[T
     except Finding as error:
         message = f"the file '{files.path(file)}' cannot be read: {error.message}"
         is_large = error.code == "too-large"
-        hint = "a coarser mesh will do" if is_large else RELATIVE_PATH_HINT
+        hint = "use a coarser mesh" if is_large else RELATIVE_PATH_HINT
         return None, [TableProblem(("file",), Finding(error.code if is_large else "mesh-file", message, hint))]
     try:
         return read_closed_mesh(content, file), []
     except Finding as error:
-        message = f"the mesh '{files.path(file)}' cannot be a body: {error.message}"
+        message = f"the mesh '{files.path(file)}' cannot be used as a body: {error.message}"
         return None, [TableProblem(("file",), Finding(error.code, message, error.hint))]
 
 
@@ -39,12 +39,12 @@ def check_mesh_mass(shape: MeshShape, surface: TriangleMesh) -> Iterator[TablePr
         return
     mass = mass_or_density if shape.mass is not None else mass_or_density * surface.volume * scale**3
     if not is_in_range(mass) or not mass:
-        yield TableProblem(("file",), range_error(mass, "the mass of this shape [kg], its density times its volume,"))
+        yield TableProblem(("file",), range_error(mass, "the mass of this shape [kg] (density times volume)"))
         return
     reach = scale * max(map(abs, (*surface.low.tolist(), *surface.high.tolist())))
     reach += max(map(abs, shape.at or (0.0,)))
     if not is_in_range(mass * reach**2):
-        description = f"the inertia of this shape [kg m^2], {mass:g} kg times the square of {reach:g} m,"
+        description = f"the inertia of this shape [kg m^2] ({mass:g} kg times the square of {reach:g} m)"
         yield TableProblem(("file",), range_error(mass * reach**2, description))
 
 
@@ -56,8 +56,8 @@ def iter_mesh_warnings(shape: MeshShape, surface: TriangleMesh | None, files: Na
     if surface is None:
         return
     for note in surface.notes:
-        yield Finding("mesh-mended", f"the mesh '{shape.file}': {note}", "export it again, if it is not meant so")
+        yield Finding("mesh-mended", f"the mesh '{shape.file}': {note}", "export it again if this is not intended")
     size = float((surface.high - surface.low).max())
     if shape.scale is None and size > LARGE_SIZE:
-        message = f"the mesh '{shape.file}' is {size:.4g} m long, for without a scale its unit is the metre"
-        yield Finding("mesh-size", message, "scale: 1 mm, if it was drawn in millimetres, or scale: 1 m")
+        message = f"the mesh '{shape.file}' is {size:.4g} m long: without a scale its unit is the metre"
+        yield Finding("mesh-size", message, "give scale: 1 mm if it was drawn in millimetres, otherwise scale: 1 m")

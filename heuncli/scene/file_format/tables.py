@@ -32,9 +32,9 @@ from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.quantity import Scope, read_number
 
 # hints
-SLOPES_HINT = "keep x and y within some ten powers of ten, in units of their own: x_unit, y_unit"
-CONSTANT_HINT = "a value that does not change is a parameter"
-UNIT_CONFLICT_HINT = "say the unit of the heading, or correct the heading"
+SLOPES_HINT = "keep x and y within about ten powers of ten; x_unit and y_unit set their units"
+CONSTANT_HINT = "use a parameter for a constant value"
+UNIT_CONFLICT_HINT = "give the unit of the heading, or correct the heading"
 UNIT_KEYS = ("x_unit", "y_unit")
 UNIT_CODE = "column-unit"
 EXAMPLE_UNITS = {  # one meaning of each ambiguous unit
@@ -85,7 +85,7 @@ def build_table(
     table = interpolate_points(name, x, y, curve, entry.outside, entry.period)
     table = replace(table, dimensions=(units[0].dimension, units[1].dimension))
     if not np.isfinite(np.frombuffer(table.numbers)).all():
-        message = "its points lie too close together or too far apart for a slope"
+        message = "its points are too close together or too far apart to compute a slope"
         return None, [*problems, TableProblem((), Finding("table-shape", message, SLOPES_HINT))]
     return table, problems
 
@@ -95,11 +95,11 @@ def check_ends(entry: TableEntry) -> Iterator[Finding]:
     if entry.ends is None:
         return
     if entry.interpolation != "cubic":
-        hint = "interpolation: cubic, or leave ends out"
-        yield Finding("table-form", f"a {entry.interpolation} table has no condition at its ends", hint)
+        hint = "write interpolation: cubic, or leave ends out"
+        yield Finding("table-form", f"a {entry.interpolation} table takes no condition at its ends", hint)
     elif entry.period is not None:
         yield Finding(
-            "table-form", "a periodic table has no ends: it goes on smoothly there", "leave ends or period out"
+            "table-form", "a periodic table takes no ends: it continues smoothly there", "leave ends or period out"
         )
 
 
@@ -156,7 +156,7 @@ def choose_column_unit(
             if heading_unit.dimension != unit.dimension or not has_same_size:
                 finding = Finding(
                     UNIT_CODE,
-                    f"{column} says {unit_text}, {key} says '{given_text}', which is taken",
+                    f"{column} says {unit_text}, {key} says '{given_text}', which is used",
                     UNIT_CONFLICT_HINT,
                 )
                 problems.append(TableProblem((key,), finding, location, is_warning=True))
@@ -165,16 +165,16 @@ def choose_column_unit(
         return ColumnUnit(heading_unit.size, heading_unit.dimension, heading)
     if heading_unit.meanings:
         message = f"{column} says {unit_text}, which may be {heading_unit.meanings}"
-        consequence = "" if heading_unit.is_certain else "; the numbers are taken in SI"
+        consequence = "" if heading_unit.is_certain else "; the numbers are read as SI"
         finding = Finding(
             UNIT_CODE,
             message + consequence,
-            f"say which: {key}: {EXAMPLE_UNITS.get(heading_unit.text, heading_unit.text)}",
+            f"give the unit: {key}: {EXAMPLE_UNITS.get(heading_unit.text, heading_unit.text)}",
         )
         problems.append(TableProblem((key,), finding, location, is_warning=not heading_unit.is_certain))
     else:
-        message = f"{column} says {unit_text}, which is no unit that heun knows; the numbers are taken in SI"
-        hint = f"say their unit: {key}: N, for example; '1' takes them as they stand"
+        message = f"{column} says {unit_text}, which is not a unit known to heun; the numbers are read as SI"
+        hint = f"give their unit, for example {key}: N; '1' uses them as they are"
         problems.append(TableProblem((key,), Finding(UNIT_CODE, message, hint), location, is_warning=True))
     return ColumnUnit(1.0, None)
 
@@ -208,11 +208,11 @@ def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterato
     file_path = () if entry.file is None else ("file",)
     if len(x) != len(y):
         yield TableProblem(
-            file_path, Finding("table-shape", f"{len(x)} values of x and {len(y)} of y", "each x has its y")
+            file_path, Finding("table-shape", f"{len(x)} values of x and {len(y)} of y", "each x needs one y")
         )
         return
     if len(x) < 2:
-        yield TableProblem(file_path, Finding("table-shape", "a table needs two points at least", CONSTANT_HINT))
+        yield TableProblem(file_path, Finding("table-shape", "a table needs at least two points", CONSTANT_HINT))
         return
     points = np.frombuffer(x)
     is_falling = points[1:] <= points[:-1]
@@ -220,26 +220,27 @@ def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterato
         i = int(is_falling.argmax()) + 1
         message = f"x must ascend, but {x[i]:.9g} follows {x[i - 1]:.9g} (SI)"
         keys = ("x", i) if entry.file is None else file_path
-        hint = "for a jump let x grow by a little" if x[i] == x[i - 1] else "sort the points by x"
+        hint = "for a jump increase x slightly" if x[i] == x[i - 1] else "sort the points by x"
         yield TableProblem(keys, Finding("table-shape", message, hint))
         return
     if entry.period is None:
         return
     if entry.outside is not None:
         yield TableProblem(
-            ("outside",), Finding("table-form", "both period and outside", "a periodic table has no outside")
+            ("outside",), Finding("table-form", "both period and outside", "a periodic table takes no outside")
         )
     span = x[-1] - x[0]
     if abs(entry.period - span) > tolerances.TABLE_ENDS * span:
         message = f"the period is {entry.period:.9g}, but x spans {span:.9g} (SI)"
-        unit = f"a period has its own unit: '{entry.period:g} {entry.x_unit}'" if entry.x_unit else None
+        unit = f"give the period its own unit: '{entry.period:g} {entry.x_unit}'" if entry.x_unit else None
         yield TableProblem(
-            ("period",), Finding("table-period", message, unit or "the last point repeats the first, one period on")
+            ("period",),
+            Finding("table-period", message, unit or "the last point must repeat the first, one period later"),
         )
     elif abs(y[-1] - y[0]) > tolerances.TABLE_ENDS * (max(y) - min(y)):
         message = f"the ends of a periodic table must agree, but y is {y[0]:.9g} and {y[-1]:.9g} (SI)"
         yield TableProblem(
-            ("period",), Finding("table-period", message, "the last point repeats the first, one period on")
+            ("period",), Finding("table-period", message, "the last point must repeat the first, one period later")
         )
 
 

@@ -14,17 +14,21 @@ from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Viola
 from heuncli.scene.file_format.semantics import inertia_tensor, orientation_matrix
 
 # hints for numbers that are too small
-SIZES_HINT = "give it above 0, in SI or with its unit"
+SIZES_HINT = "give a value above 0, in SI or with its unit"
 EDGES_HINT = "its three edges, in m"
-FULL_FRICTION_HINT = "the rate at which friction is nearly full, small beside those of the motion: 0.01"
+FULL_FRICTION_HINT = "the rate at which friction is nearly full, small compared with those of the motion: 0.01"
 POSITIVE_HINTS = {
-    "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
-    "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
-    "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
+    "mass": "a body needs a mass: for a massless bar use a joint of type rod, between points a spring",
+    "duration": "for one instant leave duration and samples out", "step": "in s, or with a unit: 1 ms",
+    "inner_radius": "a solid one has no inner_radius",
+    "length": "leave it out for the length as assembled; for 0 use a ball",
     "scale": "the length of one unit of the file: 1 mm",
-    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+    "strength": "in Pa, or with a unit: 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
-NEGATIVE_HINTS = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
+NEGATIVE_HINTS = {
+    "torque": "it resists in both directions: give its size",
+    "force": "it resists in both directions: give its size",
+}
 
 
 @rule("no-bodies")
@@ -32,7 +36,7 @@ def check_has_bodies(draft: DraftDocument) -> Iterator[Violation]:
     """A scene has bodies."""
     if not draft.names.entries["bodies"] and "bodies" not in draft.unread:
         yield Violation(
-            (), "the scene has no bodies", "bodies: {bar: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}"
+            (), "the model has no bodies", "bodies: {bar: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}"
         )
 
 
@@ -46,7 +50,10 @@ def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
             extra = [*given_keys, *(["deviation"] if body.deviation is not None else [])]
             if extra:
                 yield Violation(
-                    (*path, extra[0]), f"{' and '.join(extra)} beside shapes", "shapes give all of them", key=True
+                    (*path, extra[0]),
+                    f"{' and '.join(extra)} given together with shapes",
+                    "shapes define all of them",
+                    key=True,
                 )
             if not body.shapes:
                 yield Violation(
@@ -85,12 +92,14 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield from require_positive((*path, "bearing"), joint.bearing, "diameter", "width")
         if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
             message = f"a stiffness must be more than 0, not {joint.stiffness:g}"
-            yield Violation((*path, "stiffness"), message, "{moment: 0} gives way to what others hold; {force: 0}, too")
+            yield Violation(
+                (*path, "stiffness"), message, "with {moment: 0} or {force: 0} the other joints carry the load"
+            )
         parts = [getattr(joint.stiffness, key, None) for key in ("force", "moment")]
         numbers = [n for part in parts for n in (part if isinstance(part, tuple) else (part,)) if isinstance(n, float)]
         if any(n < 0.0 for n in numbers):
             message = f"a stiffness must not be negative, as {min(numbers):g} is"
-            yield Violation((*path, "stiffness"), message, "0: the joint gives way there to what others hold")
+            yield Violation((*path, "stiffness"), message, "with 0 the other joints carry the load there")
     for name, load in draft.document.forces.items():
         path = ("forces", name)
         if isinstance(load, f.FrictionEntry):
@@ -134,7 +143,7 @@ def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
         for key, value in iter_resistances(load):
             if isinstance(value, float) and value < 0.0:
                 hint = NEGATIVE_HINTS.get(
-                    key, "it resists with a number above 0; what drives is a torque, force or drive"
+                    key, "a resistance is a number above 0; to drive, use a torque, force or drive"
                 )
                 yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
     for i, item in draft.document.expect.items():
@@ -142,7 +151,7 @@ def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
             value = getattr(item, key)
             value = getattr(value, "constant", value)
             if value is not None and value < 0.0:
-                hint = "it is how far what is found may be off, to either side"
+                hint = "it is the allowed deviation in both directions"
                 yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
 
 
@@ -172,14 +181,14 @@ def check_shape_form(draft: DraftDocument) -> Iterator[Violation]:
                     description = "both mass and" if given_keys else "neither mass nor"
                     yield Violation(path, f"{description} {density}", "give one of the two")
             if isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape) and shape.from_ == shape.to:
-                yield Violation((*path, "to"), "from and to are the same point", "without a length it is type: point")
+                yield Violation((*path, "to"), "from and to are the same point", "for a point mass use type: point")
             if (
                 isinstance(shape, fs.CylinderShape)
                 and shape.inner_radius is not None
                 and shape.inner_radius >= shape.radius
             ):
                 message = f"inner_radius {shape.inner_radius:g} is not less than radius {shape.radius:g}"
-                yield Violation((*path, "inner_radius"), message, "a full one has no inner_radius")
+                yield Violation((*path, "inner_radius"), message, "a solid one has no inner_radius")
 
 
 def iter_inertia_owners(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.PieceEntry]]:
@@ -202,20 +211,27 @@ def check_inertia_form(draft: DraftDocument) -> Iterator[Violation]:
         inertia = owner.inertia
         if isinstance(inertia, float) and not planar:
             yield Violation(
-                (*path, "inertia"), "one number instead of three", "one number is for space: planar; else [A1, A2, A3]"
+                (*path, "inertia"),
+                "one number instead of three",
+                "one number needs space: planar; otherwise give [A1, A2, A3]",
             )
         if owner.deviation is not None and not isinstance(inertia, tuple | list):
-            yield Violation((*path, "deviation"), "deviation beside one number", "it goes with [A1, A2, A3]", key=True)
+            yield Violation(
+                (*path, "deviation"), "deviation given with one number", "use it with [A1, A2, A3]", key=True
+            )
         elif owner.deviation is not None and isinstance(inertia[0], tuple):  # type: ignore[index]
             yield Violation(
-                (*path, "deviation"), "deviation beside a full tensor", "the tensor holds them: element = -D", key=True
+                (*path, "deviation"),
+                "deviation given with a full tensor",
+                "the tensor contains them: element = -D",
+                key=True,
             )
         if isinstance(inertia, tuple) and isinstance(inertia[0], tuple):
             size = max(abs(x) for row in inertia for x in row)
             for i, j in ((0, 1), (0, 2), (1, 2)):
                 if abs(inertia[i][j] - inertia[j][i]) > tolerances.INERTIA_TYPED * size:
                     message = f"the tensor is not symmetric: {inertia[i][j]:g} and {inertia[j][i]:g}"
-                    hint = "give both the same; or the moments and deviation: [D1, D2, D3]"
+                    hint = "make both equal, or give the moments and deviation: [D1, D2, D3]"
                     yield Violation((*path, "inertia"), message, hint)
                     break
 
@@ -250,7 +266,7 @@ def check_inertia_physical(draft: DraftDocument) -> Iterator[Violation]:
     """No principal moment is negative, or greater than the sum of the others."""
     for path, moments, excess in iter_impossible_moments(draft):
         if excess > tolerances.INERTIA_REFUSED:
-            message = f"no body has the principal moments {moments}: each is at most the sum of the other two"
+            message = f"the principal moments {moments} are impossible: each is at most the sum of the other two"
             yield Violation(
                 path, message, "is it about the centre of mass? is the sign of the deviation right (element = -D)?"
             )
@@ -262,7 +278,7 @@ def check_inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
     for path, moments, excess in iter_impossible_moments(draft):
         if excess <= tolerances.INERTIA_REFUSED:
             yield Violation(
-                path, f"the principal moments {moments} break A1 + A2 >= A3 by {excess:.1e}; taken as they are",
+                path, f"the principal moments {moments} break A1 + A2 >= A3 by {excess:.1e}; used as given",
                 "give them with more digits",
             )  # fmt: skip
 
@@ -302,14 +318,20 @@ def check_piece_form(draft: DraftDocument) -> Iterator[Violation]:
         body = draft.document.bodies.get(section.body)
         if section.piece is not None and body is not None and body.shapes is not None:
             yield Violation(
-                ("sections", name, "piece"), "a piece of a body with shapes", "shapes are cut by themselves", key=True
+                ("sections", name, "piece"),
+                "a piece given for a body with shapes",
+                "leave it out: heun cuts the shapes",
+                key=True,
             )
     for name, body in draft.document.bodies.items():
         if body.piece is None:
             continue
         if body.shapes is not None:
             yield Violation(
-                ("bodies", name, "piece"), "a piece beside shapes", "shapes are cut by themselves", key=True
+                ("bodies", name, "piece"),
+                "a piece given together with shapes",
+                "leave it out: heun cuts the shapes",
+                key=True,
             )
         elif len(cuts.get(name, ())) > 1:
             message = f"one piece for {len(cuts[name])} sections ({', '.join(cuts[name])})"

@@ -34,30 +34,36 @@ def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
     for name, cam in iter_cams(draft):
         path = ("couplings", name, "of")
         if len(cam.of) != 2:
-            yield Violation(path, f"{len(cam.of)} joints", "of: [the disc's pin, the follower's slide or pin]")
+            yield Violation(
+                path, f"expected two joints, found {len(cam.of)}", "of: [the disc's pin, the follower's slide or pin]"
+            )
             continue
         joints = [draft.document.joints.get(joint) for joint in cam.of]
         shaft, follower = joints
         if shaft is not None and not isinstance(shaft, f.PinJoint):
-            yield Violation((*path, 0), f"{cam.of[0]} is no pin", "the disc turns on a pin: of: [shaft, follower]")
+            yield Violation((*path, 0), f"{cam.of[0]} is not a pin", "the disc rotates on a pin: of: [shaft, follower]")
         if follower is not None and not isinstance(follower, f.PinJoint | f.SlideJoint):
-            yield Violation((*path, 1), f"{cam.of[1]} is neither a pin nor a slide", "a follower swings or slides")
+            yield Violation(
+                (*path, 1), f"{cam.of[1]} is neither a pin nor a slide", "a follower moves on a pin or a slide"
+            )
         if not isinstance(shaft, f.PinJoint) or not isinstance(follower, f.PinJoint | f.SlideJoint):
             continue
         if shaft.from_.body != follower.from_.body:
             message = f"{cam.of[0]} is from {shaft.from_.body}, but {cam.of[1]} from {follower.from_.body}"
             yield Violation(
-                path, message, "both joints are from the body that carries disc and follower: turn one round"
+                path,
+                message,
+                "in both joints, from must be the body that carries disc and follower: swap from and to in one",
             )
         elif shaft.to.body == follower.to.body:
-            yield Violation(path, f"disc and follower are both {shaft.to.body}", "a cam moves another body")
+            yield Violation(path, f"disc and follower are both {shaft.to.body}", "the follower must be another body")
         elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
-            relation = "along" if isinstance(follower, f.PinJoint) else "across"
-            message = f"the axis of {cam.of[1]} is not {relation} that of {cam.of[0]}"
-            yield Violation(path, message, "a follower moves across the disc's axis")
+            relation = "parallel" if isinstance(follower, f.PinJoint) else "perpendicular"
+            message = f"the axis of {cam.of[1]} is not {relation} to that of {cam.of[0]}"
+            yield Violation(path, message, "a follower must move perpendicular to the disc's axis")
         if cam.at.body != follower.to.body:
             message = f"the point is on {cam.at.body}, but the follower is {follower.to.body}"
-            yield Violation(("couplings", name, "at"), message, "the roller's centre, or a point of the face")
+            yield Violation(("couplings", name, "at"), message, "give the roller's centre, or a point of the face")
 
 
 def are_aligned(first: tuple[float, float, float], second: tuple[float, float, float], parallel: bool) -> bool:
@@ -80,18 +86,30 @@ def check_cam_contact(draft: DraftDocument) -> Iterator[Violation]:
         for contact, (key, meaning) in CONTACTS.items():
             is_given = getattr(cam, key) is not None
             if is_given and contact != cam.contact:
-                yield Violation((*path, key), f"a {cam.contact} has no {key}", f"leave it out, or contact: {contact}")
+                yield Violation(
+                    (*path, key), f"a {cam.contact} has no {key}", f"leave it out, or write contact: {contact}"
+                )
             elif not is_given and contact == cam.contact:
-                yield Violation((*path, "contact"), f"a {contact} without {key}", f"{key}: {meaning}")
+                yield Violation((*path, "contact"), f"contact: {contact} needs a {key}", f"add {key}: {meaning}")
         if cam.radius is not None and cam.radius <= 0.0:
-            yield Violation((*path, "radius"), f"radius {cam.radius:g}", "a roller has one; without it, contact: point")
+            yield Violation(
+                (*path, "radius"),
+                f"radius must be more than 0, not {cam.radius:g}",
+                "without a roller write contact: point",
+            )
         if cam.normal == (0.0, 0.0, 0.0):
-            yield Violation((*path, "normal"), "normal is [0, 0, 0], which is no direction", "[0, 0, 1], say")
+            yield Violation((*path, "normal"), "normal is [0, 0, 0], which has no direction", "for example [0, 0, 1]")
         if cam.restitution is not None and not 0.0 <= cam.restitution <= 1.0:
-            yield Violation((*path, "restitution"), f"restitution {cam.restitution:g}", "between 0 and 1")
+            yield Violation(
+                (*path, "restitution"),
+                f"restitution {cam.restitution:g} is not between 0 and 1",
+                "0: no rebound, 1: full rebound",
+            )
         if cam.restitution is not None and cam.two_sided:
             hint = "leave out one of the two"
-            yield Violation((*path, "restitution"), "a follower that is guided on both sides is never struck", hint)
+            yield Violation(
+                (*path, "restitution"), "restitution of a follower guided on both sides, which has no impacts", hint
+            )
 
 
 @rule("cam-lift")
@@ -106,8 +124,12 @@ def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
         period = cam.lift.numbers[0]
         turns = math.tau / period if period > 0.0 else 0.0
         if not (period > 0.0 and abs(turns - round(turns)) <= tolerances.TABLE_ENDS and round(turns) >= 1):
-            message = f"the lift {cam.lift.name} does not fit a turn: its period is {math.degrees(period):.6g} deg"
-            yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or a whole part of it")
+            message = (
+                f"the lift {cam.lift.name} does not fit a revolution: its period is {math.degrees(period):.6g} deg"
+            )
+            yield Violation(
+                ("couplings", name, "lift"), message, "period: 360 deg, or 360 deg divided by a whole number"
+            )
 
 
 def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
@@ -116,13 +138,13 @@ def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterat
     """
     first, last = cam.lift.x[0], cam.lift.x[-1]
     if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
-        message = f"the lift {cam.lift.name} covers {math.degrees(last - first):.6g} deg: a disc has a turn and no more"
+        message = f"the lift {cam.lift.name} covers {math.degrees(last - first):.6g} deg, more than one revolution"
         yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
         return
     shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
     start_angle = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
     if start_angle is not None and not first + cam.phase <= start_angle <= last + cam.phase:
         covered = f"{math.degrees(first + cam.phase):.6g} to {math.degrees(last + cam.phase):.6g} deg"
-        message = f"angle {math.degrees(start_angle):.6g} deg is off the lift of cam {name}, which covers {covered}"
-        hint = "hold the disc where it has a lift, or give the lift a period"
+        message = f"angle {math.degrees(start_angle):.6g} deg is outside the lift of cam {name}, which covers {covered}"
+        hint = "start the disc within the lift, or give the lift a period"
         yield Violation(("joints", cam.of[0], "initial", "angle"), message, hint)

@@ -43,10 +43,12 @@ def check_event_name(draft: DraftDocument) -> Iterator[Violation]:
     for name in draft.document.analysis.events:
         path = ("analysis", "events", name)
         if not is_name(name):
-            yield Violation(path, f"'{name}' is not a name", "a name is a letter, then letters, digits and _", key=True)
+            yield Violation(
+                path, f"'{name}' is not a valid name", "a name is a letter, then letters, digits and _", key=True
+            )
         elif name == UNTIL:
-            message = f"'{name}' is taken: by it results tell what ended the motion"
-            yield Violation(path, message, f"call it {name}_1, say", key=True)
+            message = f"'{name}' is reserved: results use it for what ended the motion"
+            yield Violation(path, message, f"call it {name}_1, for example", key=True)
 
 
 @rule("event-motion")
@@ -56,8 +58,8 @@ def check_event_motion(draft: DraftDocument) -> Iterator[Violation]:
     if kind == "motion" or "analysis" in draft.unread:
         return
     for path, _ in iter_conditions(draft):
-        message = f"{path[-1]}: type: {kind} is one instant, at which nothing changes"
-        yield Violation(path, message, "give analysis a duration, the longest that is to be waited", key=True)
+        message = f"{path[-1]} needs a motion, but type: {kind} is one instant"
+        yield Violation(path, message, "give analysis a duration: the longest time to wait", key=True)
 
 
 @rule("event-path")
@@ -77,14 +79,12 @@ def check_event_path(draft: DraftDocument) -> Iterator[Violation]:
             or condition.of.split(".")[0] in BLOCKS_KNOWN_AFTER_RUN
         ):
             if condition.of.split(".")[0] not in draft.unread:
-                message = f"'{condition.of}': only the run can tell what that is"
-                yield Violation(of_path, message, "name a number of joints, sections, coordinates, energy, ...")
+                message = f"'{condition.of}': this is known only after the run"
+                yield Violation(of_path, message, "give a number of joints, sections, coordinates, energy, ...")
         elif not target.is_timed:
-            yield Violation(
-                of_path, f"'{condition.of}' does not run over the instants", "name a number that changes in time"
-            )
+            yield Violation(of_path, f"'{condition.of}' does not change in time", "give a number that changes in time")
         elif independent_axes(target.axes):
-            hint = f"name one of them, as {condition.of}{first_element_suffix(target.axes)}"
+            hint = f"give one of them, such as {condition.of}{first_element_suffix(target.axes)}"
             yield Violation(of_path, f"'{condition.of}' is several numbers", hint)
 
 
@@ -94,8 +94,8 @@ def check_event_limit(draft: DraftDocument) -> Iterator[Violation]:
     for path, condition, target in iter_result_conditions(draft):
         limits = [key for key in ("below", "above") if getattr(condition, key) is not None]
         if len(limits) != 1:
-            message = "both below and above" if limits else "neither below nor above"
-            hint = "one event a limit" if limits else "{of: joints.wall.force.x, below: 0}"
+            message = "below and above are both given" if limits else "neither below nor above"
+            hint = "write one event for each limit" if limits else "{of: joints.wall.force.x, below: 0}"
             yield Violation(path, message, hint)
         else:
             from heuncli.scene.file_format.rules.expect import check_dimensions

@@ -34,14 +34,14 @@ def check_coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
                 )
                 if kind.follows_path:
                     yield Violation(
-                        path, f"the travel of a {kind.name} cannot be coupled", f"couplings are of {kinds_text}"
+                        path, f"the travel of a {kind.name} cannot be coupled", f"couplings act on {kinds_text}"
                     )
                     continue
-                yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {kinds_text}")
+                yield Violation(path, f"a {kind.name} has no coordinate", f"couplings act on {kinds_text}")
             elif kind is not None and quantity and quantity not in kind.coordinates:
                 yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")
             if word in coupled_words[:i]:
-                yield Violation(path, f"{word} is coupled to itself", "name another joint")
+                yield Violation(path, f"{word} is given twice", "name another joint")
 
 
 @rule("coupling-count")
@@ -53,8 +53,12 @@ def check_coupling_count(draft: DraftDocument) -> Iterator[Violation]:
         counts, coupled_joints = COUNTS[coupling.type], coupling.of
         if len(coupled_joints) not in counts:
             counts_text = " or ".join(map(str, counts))
-            message = f"{', '.join(coupled_joints) or 'nothing'} is named"
-            yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {counts_text}")
+            message = f"of names {', '.join(coupled_joints) or 'no joint'}"
+            yield Violation(
+                ("couplings", name, "of"),
+                message,
+                f"a {coupling.type} needs {counts_text} joint{'s' if counts[-1] > 1 else ''}",
+            )
 
 
 @rule("gear-ratio")
@@ -67,19 +71,20 @@ def check_gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
         if gear.ratio is not None and gear.teeth is not None:
             yield Violation((*path, "teeth"), "ratio and teeth are both given", "keep one of them", key=True)
         if gear.ratio == 0.0:
-            yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
+            yield Violation((*path, "ratio"), "a ratio of zero locks the first gear", "give another ratio")
         if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
-            hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
+            hint = "give two numbers of teeth, first gear first; for a ring add internal: true"
             teeth_text = ", ".join(f"{z:g}" for z in gear.teeth)
-            yield Violation((*path, "teeth"), f"teeth {teeth_text} are no pair of gears", hint)
+            yield Violation((*path, "teeth"), f"teeth {teeth_text} do not make a pair of gears", hint)
         if gear.internal and gear.teeth is None and gear.ratio is None:
-            yield Violation(
-                (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
-            )
+            yield Violation((*path, "internal"), "internal is given without teeth", "give teeth, too", key=True)
         for key, limit in (("pressure_angle", 60.0), ("helix", 80.0)):
             angle = math.degrees(getattr(gear, key))
-            if not (0.0 if key == "pressure_angle" else -limit) <= angle <= limit:
-                yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {limit:g} deg")
+            low = 0.0 if key == "pressure_angle" else -limit
+            if not low <= angle <= limit:
+                yield Violation(
+                    (*path, key), f"{angle:.4g} deg is not a possible {key}", f"give {low:g} to {limit:g} deg"
+                )
 
 
 @rule("flanks-rub")
@@ -90,8 +95,8 @@ def check_friction_with_teeth(draft: DraftDocument) -> Iterator[Violation]:
         return
     for name, gear in draft.document.couplings.items():
         if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
-            message = "friction by a coefficient does not know yet what teeth push apart with"
-            hint = "set pressure_angle: 0 to leave that out, or give the friction as a torque"
+            message = "friction with a coefficient does not yet include the separating force of teeth"
+            hint = "set pressure_angle: 0 to neglect this force, or give the friction as a torque"
             yield Violation(("couplings", name), message, hint, key=True)
 
 
@@ -102,11 +107,13 @@ def check_belt_name(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(belt, BeltEntry):
             continue
         if name in draft.names.entries["forces"]:
-            message = f"{name} is the name of a force, too, and the belt's pretension has it among the loads"
+            message = (
+                f"{name} is also the name of a force, but the belt's pretension is listed under it among the loads"
+            )
             yield Violation(("couplings", name), message, "give one of them another name", key=True)
         event = f"{name}_pushes"
         if event in draft.document.analysis.events:
-            message = f"'{event}' is taken: so the belt's own event is called"
+            message = f"'{event}' is reserved: the belt's own event has this name"
             yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
 
 
@@ -116,32 +123,36 @@ def check_coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
     for name, coupling in draft.document.couplings.items():
         path = ("couplings", name)
         if isinstance(coupling, ScrewEntry) and coupling.lead == 0.0:
-            yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
+            yield Violation((*path, "lead"), "the lead must not be 0", "give the travel per revolution")
         if isinstance(coupling, BeltEntry):
             if len(coupling.radii) != 2 or any(r <= 0.0 for r in coupling.radii):
                 radii_text = ", ".join(f"{r:g}" for r in coupling.radii)
                 yield Violation(
-                    (*path, "radii"), f"{radii_text} m are no radii of two pulleys", "two lengths above zero"
+                    (*path, "radii"), f"{radii_text} m are not the radii of two pulleys", "give two lengths above 0"
                 )
             if coupling.pretension < 0.0:
-                yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
+                yield Violation(
+                    (*path, "pretension"), "pretension must not be negative", "give the tension of each strand"
+                )
         if isinstance(coupling, DifferentialEntry) and coupling.ratio in (0.0, 1.0):
-            message = f"a ratio of {coupling.ratio:g} leaves one of the three alone"
-            yield Violation((*path, "ratio"), message, "of equal wheels it is -1; with type: ratio any relation goes")
+            message = f"a ratio of {coupling.ratio:g} leaves one of the three shafts free"
+            yield Violation((*path, "ratio"), message, "for equal wheels write -1; for other relations use type: ratio")
 
 
 @rule("coupling-terms")
 def check_coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
-    """A linear relation has two joints at least, and a factor for each, none of them zero."""
+    """A linear relation has give at least two joints, and one factor for each, none of them zero."""
     for name, coupling in draft.document.couplings.items():
         if not isinstance(coupling, RatioEntry):
             continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
-            message = f"{len(coupling.of)} joints with {len(coupling.factors)} factors"
-            yield Violation(("couplings", name, "factors"), message, "two joints at least, and a factor for each")
+            message = f"number of joints {len(coupling.of)}, number of factors {len(coupling.factors)}"
+            yield Violation(
+                ("couplings", name, "factors"), message, "give at least two joints, and one factor for each"
+            )
         for i, factor in enumerate(coupling.factors):
             if factor == 0.0:
-                hint = "leave out the joint, or give its factor"
+                hint = "leave the joint out, or give its factor"
                 yield Violation(("couplings", name, "factors", i), "a factor of zero couples nothing", hint)
 
 
@@ -153,7 +164,7 @@ def check_rope_places(draft: DraftDocument) -> Iterator[Violation]:
             continue
         path = ("couplings", name, "through")
         if len(rope.through) < 2:
-            yield Violation(path, f"a rope through {len(rope.through)} places", "name two at least: its ends")
+            yield Violation(path, f"a rope needs at least two places, found {len(rope.through)}", "give its two ends")
         for i, place in enumerate(rope.through):
             for message, hint in find_place_errors(place):
                 yield Violation((*path, i), message, hint)
@@ -162,13 +173,13 @@ def check_rope_places(draft: DraftDocument) -> Iterator[Violation]:
 def find_place_errors(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
     """Yield what is wrong with one place of a rope: message and hint."""
     if (place.point is None) == (place.sheave is None):
-        yield "neither a point nor a sheave, or both", "body.point, or {sheave: body.point, radius: 0.3}"
+        yield "neither a point nor a sheave, or both", "write body.point, or {sheave: body.point, radius: 0.3}"
     elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
-        yield "a sheave without a radius", "radius: 0.3; a rope slides through a plain point, too: body.point"
+        yield "a sheave without a radius", "add radius: 0.3; to slide through a plain point write body.point"
     elif place.point is not None:
         keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
         if keys:
-            yield f"{keys[0]} of a plain point", "a sheave is {sheave: body.point, radius: 0.3}"
+            yield f"{keys[0]} given for a plain point", "for a sheave write {sheave: body.point, radius: 0.3}"
 
 
 @rule("rope-bounds")
@@ -181,25 +192,31 @@ def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
         length = None if rope.length is None else rope.length.constant
         if rope.length is not None and rope.length.uses:
             joint, coordinate = rope.length.uses[0]
-            yield Violation((*path, "length"), f"a rope's length follows time alone, not {joint}.{coordinate}", "use t")
+            yield Violation(
+                (*path, "length"), f"a rope's length may depend on time alone, not on {joint}.{coordinate}", "use t"
+            )
         if length is not None and not length > 0.0:
-            yield Violation((*path, "length"), f"a rope of length {length:g} m", "leave it out: as assembled")
+            yield Violation(
+                (*path, "length"),
+                f"length must be more than 0, not {length:g} m",
+                "leave it out for the length as assembled",
+            )
         if rope.length is not None and any(place.slip == "none" for place in rope.through):
-            message = "the length of a rope that is held on a sheave"
+            message = "a length given for a rope that does not slip on a sheave"
             yield Violation(
                 (*path, "length"),
                 message,
-                "leave it out: what is wound on the sheave is not told, either; a drive of a drum's pin winds it",
+                "leave it out: the wound length is not known; to wind the rope, drive the drum's pin",
             )
         yield from check_rope_elasticity(name, rope)
         if rope.restitution is None:
             continue
         if not 0.0 <= rope.restitution <= 1.0:
             message = f"restitution {rope.restitution:g} is not between 0 and 1"
-            yield Violation((*path, "restitution"), message, "0: it stays taut, 1: it rebounds as fast")
+            yield Violation((*path, "restitution"), message, "0: it stays taut, 1: full rebound")
         if not rope.tension_only:
-            message = "restitution of a rope that holds both ways, and so is never struck"
-            yield Violation((*path, "restitution"), message, "tension_only: true")
+            message = "restitution of a rope that also pushes, which has no impacts"
+            yield Violation((*path, "restitution"), message, "add tension_only: true")
 
 
 def check_rope_elasticity(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
@@ -207,19 +224,19 @@ def check_rope_elasticity(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
     path = ("couplings", name)
     if rope.stiffness is None:
         if rope.damping is not None:
-            yield Violation((*path, "damping"), "damping of a rope that keeps its length", "stiffness: 4e5 N/m")
+            yield Violation((*path, "damping"), "damping of an inextensible rope", "add stiffness: 4e5 N/m")
         return
     if not rope.stiffness > 0.0:
-        message = f"a rope of stiffness {rope.stiffness:g} N/m"
+        message = f"stiffness must be more than 0, not {rope.stiffness:g} N/m"
         yield Violation(
-            (*path, "stiffness"), message, "of the whole rope, EA by its length; left out it keeps its length"
+            (*path, "stiffness"), message, "EA/length of the whole rope; leave it out for an inextensible rope"
         )
     if rope.damping is not None and rope.damping < 0.0:
-        yield Violation((*path, "damping"), f"damping {rope.damping:g} N·s/m is below 0", "0, or how much it takes")
+        yield Violation((*path, "damping"), f"damping {rope.damping:g} N·s/m is below 0", "give 0 or a positive value")
     if rope.restitution is not None:
-        message = "restitution of a rope that stretches, and so is not struck"
-        yield Violation((*path, "restitution"), message, "tension_only: true alone lets it go slack and catch")
+        message = "restitution of a rope that stretches, which has no impacts"
+        yield Violation((*path, "restitution"), message, "with tension_only: true alone it goes slack and catches")
     if any(place.slip == "none" for place in rope.through):
-        message = "a rope that stretches and is held on a sheave: what it carries over it at which strain is not told"
-        hint = "slip: free; or leave out the stiffness; or a rope on either side, each ending at a point of the rim"
+        message = "a rope that stretches cannot be fixed to a sheave: its strain where it winds on is unknown"
+        hint = "use slip: free, leave out the stiffness, or use two ropes, each ending at a point of the rim"
         yield Violation((*path, "stiffness"), message, hint)

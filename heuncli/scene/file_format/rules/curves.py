@@ -27,19 +27,21 @@ def check_expected_curve(draft: DraftDocument) -> Iterator[Violation]:
         if item.curve is None:
             for key in CURVE_KEYS:
                 if key in item.model_fields_set:
-                    hint = "it is of a measured curve: curve: FILE.csv"
+                    hint = "it belongs to a measured curve: curve: FILE.csv"
                     yield Violation((*path, key), f"'{key}' without 'curve'", hint, key=True)
             continue
         for key in KEYS_WITHOUT_CURVE:
             if (key if key != "is" else "is_") in item.model_fields_set:
-                hint = "the curve tells what is expected when; another expectation for this"
-                yield Violation((*path, key), f"'{key}' beside 'curve'", hint, key=True)
+                hint = "the curve gives the expected values over time; write a separate expectation for this"
+                yield Violation((*path, key), f"'{key}' given together with 'curve'", hint, key=True)
         if item.within is not None and not 0.0 < item.within <= 1.0:
-            hint = "it is the share of the points that must lie within rel and abs: within: 0.95"
+            hint = "it is the fraction of the points that must lie within rel and abs: within: 0.95"
             yield Violation((*path, "within"), f"within {item.within:g} is not above 0 and at most 1", hint)
         if (kind := find_analysis_type(draft.document)) != "motion" and "analysis" not in draft.unread:
-            message = f"a curve runs over the instants; type: {kind} is one instant"
-            yield Violation((*path, "curve"), message, "give analysis a duration, or expect one number: is", key=True)
+            message = f"a curve needs a motion, but type: {kind} is one instant"
+            yield Violation(
+                (*path, "curve"), message, "give analysis a duration, or expect one number with is:", key=True
+            )
         yield from check_curve_axes(path, item, quantity, find_x_quantity(item, draft))
 
 
@@ -73,9 +75,9 @@ def find_x_quantity(item: f.ExpectEntry, draft: DraftDocument) -> NumberKind | N
 def require_one_number(path: Path_, result_path: str, quantity: NumberKind) -> Iterator[Violation]:
     """A curve belongs to one number that changes over the instants."""
     if not quantity.is_timed:
-        yield Violation(path, f"{result_path} does not run over the instants", "name a number that changes in time")
+        yield Violation(path, f"{result_path} does not change in time", "give a number that changes in time")
     elif quantity.axes:
-        hint = f"name one of them, as {result_path}{first_element_suffix(quantity.axes)}"
+        hint = f"give one of them, such as {result_path}{first_element_suffix(quantity.axes)}"
         yield Violation(path, f"{result_path} is several numbers", hint)
 
 

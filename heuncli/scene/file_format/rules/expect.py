@@ -53,13 +53,13 @@ def check_expected_form(draft: DraftDocument) -> Iterator[Violation]:
     for path, item, quantity in iter_expected_quantities(draft):
         if item.at is not None and item.peak is not None:
             yield Violation(
-                (*path, "peak"), "both at and peak", "at is one instant, peak is over all of them", key=True
+                (*path, "peak"), "at and peak are both given", "at is one instant, peak is over all of them", key=True
             )
         if RAGGED in list_lengths(item.is_):
-            yield Violation((*path, "is"), "lists of different lengths", "[1, 2, 3], or [[1, 0], [0, 1]]")
+            yield Violation((*path, "is"), "lists of different lengths", "write [1, 2, 3], or [[1, 0], [0, 1]]")
         if item.rel is not None and item.rel >= 1.0:
-            message = f"rel {item.rel:g} is not below 1: 0 would pass for anything"
-            yield Violation((*path, "rel"), message, "it is a share of the number expected: rel: 1e-6; or give abs")
+            message = f"rel {item.rel:g} is not below 1: even 0 would pass"
+            yield Violation((*path, "rel"), message, "it is relative to the expected number: rel: 1e-6; or give abs")
         yield from check_bounds(path, item)
         if quantity is not None:
             yield from check_time_keys(path, item, quantity)
@@ -72,11 +72,11 @@ def check_time_keys(path: Path_, item: f.ExpectEntry, quantity: NumberKind) -> I
     """Only a result over time has a value at an instant or a peak, and only a single number has an extreme."""
     for key in ("at", "peak") if not quantity.is_timed else ():
         if getattr(item, key) is not None:
-            yield Violation((*path, key), f"{item.of} does not run over the instants", f"leave {key} out", key=True)
+            yield Violation((*path, key), f"{item.of} does not change in time", f"leave {key} out", key=True)
     if item.peak is not None or item.is_bounded:
         other_axes = independent_axes(quantity.axes)
         if other_axes and other_axes != (INDEX,):  # bounds of a list apply to all its numbers
-            hint = f"name one of its numbers, as {item.of}{first_element_suffix(quantity.axes)}"
+            hint = f"give one of its numbers, such as {item.of}{first_element_suffix(quantity.axes)}"
             yield Violation(
                 (*path, "of"), f"{item.of} is {describe_lengths(tuple(x.size for x in quantity.axes))}", hint
             )
@@ -89,12 +89,14 @@ def check_bounds(path: Path_, item: f.ExpectEntry) -> Iterator[Violation]:
     bound_key = "below" if item.below is not None else "above"
     for key in ("is", "rel", "abs"):
         if (key if key != "is" else "is_") in item.model_fields_set:
-            hint = "is: beside rel: and abs:, or below: and above: alone" if key == "is" else "put it into the bound"
-            yield Violation((*path, key), f"'{key}' beside '{bound_key}'", hint, key=True)
+            hint = (
+                "give is: with rel: and abs:, or below: and above: alone" if key == "is" else "include it in the bound"
+            )
+            yield Violation((*path, key), f"'{key}' given together with '{bound_key}'", hint, key=True)
     low, high = (None if x is None else x.constant for x in (item.above, item.below))
     if low is not None and high is not None and low >= high:
-        hint = "what lies between two numbers is above the lower and below the higher one"
-        yield Violation((*path, "above"), f"nothing is above {low:g} and below {high:g}", hint, key=True)
+        hint = "for a range give above: (lower number) and below: (higher number)"
+        yield Violation((*path, "above"), f"no number is above {low:g} and below {high:g}", hint, key=True)
 
 
 def check_dimensions(path: Path_, value: Any, allowed: tuple[u.Dimension, ...]) -> Iterator[Violation]:
@@ -106,7 +108,7 @@ def check_dimensions(path: Path_, value: Any, allowed: tuple[u.Dimension, ...]) 
         expected = " or ".join(u.describe(dimension) for dimension in allowed)
         message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {expected}"
         units = " or ".join(u.si_unit(dimension) for dimension in allowed)
-        yield Violation(path, message, f"a number without a unit is taken in {units}")
+        yield Violation(path, message, f"a number without a unit is read in {units}")
 
 
 @rule("expect-instants", for_check=True)
@@ -121,8 +123,12 @@ def check_expected_instants(draft: DraftDocument) -> Iterator[Violation]:
         if quantity is None or not quantity.is_known:
             continue
         if quantity.instant is not None and quantity.instant >= len(instants):
-            message = f"{item.of} is of instant {quantity.instant}, but the output has {format_count(len(instants))}"
-            yield Violation((*path, "of"), message, "they count from 0; or leave the number out, and give at: a time")
+            message = (
+                f"{item.of} refers to instant {quantity.instant}, but the output has {format_count(len(instants))}"
+            )
+            yield Violation(
+                (*path, "of"), message, "instants count from 0; or leave the number out, and give at: a time"
+            )
             continue
         if item.at is not None and quantity.is_timed:
             nearest_instant = find_nearest(ascending, item.at)
@@ -131,7 +137,7 @@ def check_expected_instants(draft: DraftDocument) -> Iterator[Violation]:
                 instants[-1], abs(item.at)
             ):
                 message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest_instant:.10g} s"
-                yield Violation((*path, "at"), message, "add it to analysis.times, or choose other samples")
+                yield Violation((*path, "at"), message, "add it to analysis.times, or change samples")
                 continue
         if item.is_ is not None and not item.is_bounded:
             yield from check_sizes((*path, "is"), item, quantity, count)
@@ -145,7 +151,7 @@ def find_nearest(ascending: list[float], time: float) -> float:
 
 def format_count(instants: int) -> str:
     """Format a number of instants with the range of their indices."""
-    return "one alone, 0" if instants == 1 else f"{instants}, 0 to {instants - 1}"
+    return "only one, 0" if instants == 1 else f"{instants}, 0 to {instants - 1}"
 
 
 def count_output_instants(draft: DraftDocument, requested: int) -> int | None:
@@ -171,11 +177,11 @@ def check_sizes(path: Path_, item: f.ExpectEntry, quantity: NumberKind, instants
         yield Violation(
             path,
             f"{describe_lengths(given_lengths)} for {item.of} at all instants",
-            "give at: an instant, or peak: max",
+            "add at: (an instant), or peak: max",
         )
     else:
         example_words = first_element_suffix((INSTANT, *axes) if is_over_time else axes)
-        hint = f"name one of its numbers, as {item.of}{example_words}" if lengths else None
+        hint = f"give one of its numbers, such as {item.of}{example_words}" if lengths else None
         message = f"{describe_lengths(given_lengths)} for {item.of}, which is {describe_lengths(lengths)}"
         yield Violation(path, message, hint or "give one number")
 

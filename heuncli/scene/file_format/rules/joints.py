@@ -23,7 +23,7 @@ from heuncli.scene.file_format.semantics import (
     run_duration,
 )
 
-ONE_DRIVE_HINT = "one drive a joint: add the two up in one expression"
+ONE_DRIVE_HINT = "one drive per joint: add the two in one expression"
 
 
 def iter_directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float, float]]]:
@@ -48,7 +48,7 @@ def check_zero_direction(draft: DraftDocument) -> Iterator[Violation]:
     """A direction is not [0, 0, 0]."""
     for path, direction in iter_directions(draft):
         if direction == (0.0, 0.0, 0.0):
-            yield Violation(path, f"{path[-1]} is [0, 0, 0], which is no direction", "[0, 0, 1] is the z axis")
+            yield Violation(path, f"{path[-1]} is [0, 0, 0], which has no direction", "[0, 0, 1] is the z axis")
 
 
 @rule("same-body")
@@ -56,7 +56,7 @@ def check_same_body(draft: DraftDocument) -> Iterator[Violation]:
     """A joint connects two different bodies."""
     for name, joint in draft.document.joints.items():
         if joint.from_.body == joint.to.body:
-            message, hint = f"from and to are both on {joint.to.body}", "what moves as one needs no joint within it"
+            message, hint = f"from and to are both on {joint.to.body}", "a joint connects two different bodies"
             yield Violation(("joints", name, "to"), message, hint)
 
 
@@ -72,15 +72,15 @@ def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
             start = None if owner is None else find_point(owner, load.from_)
             if owner is not None and start is not None and start == find_point(owner, load.to):
                 message = "from and to are the same point"
-                yield Violation(("forces", name, "to"), message, "a force at one point is type: force, in N")
+                yield Violation(("forces", name, "to"), message, "for a force at one point use type: force, in N")
         if isinstance(load, fe.BushingEntry) and load.from_.body == load.to.body:
-            message, hint = f"from and to are both on {load.to.body}", "what stands within one body moves nothing"
+            message, hint = f"from and to are both on {load.to.body}", "a bushing acts between two different bodies"
             yield Violation(("forces", name, "to"), message, hint)
         if not isinstance(load, f.ActuatorEntry | f.SpringEntry) or load.from_.body != load.to.body:
             continue
         path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)
         if load.to.body == "ground":
-            yield Violation(path, "from and to are both on ground", "what stands within the ground moves nothing")
+            yield Violation(path, "from and to are both on ground", "a load within the ground has no effect")
         elif (
             body is not None
             and (end_point := find_point(body, load.to.at))
@@ -101,8 +101,8 @@ def check_duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
         ends = frozenset((make_end_key(joint.from_), make_end_key(joint.to)))
         key = joint.type, ends, getattr(joint, "axis", None), getattr(joint, "normal", None)
         if key in seen:
-            message = f"the same joint as {seen[key]}: their reactions are open"
-            yield Violation(("joints", name), message, "keep one", key=True)
+            message = f"same joint as {seen[key]}: their reactions are open (indeterminate)"
+            yield Violation(("joints", name), message, "keep one of them", key=True)
         seen.setdefault(key, name)
 
 
@@ -120,7 +120,7 @@ def check_drive_form(draft: DraftDocument) -> Iterator[Violation]:
             hint = (
                 drive_keys_hint(kind.name, allowed_keys)
                 if kind is not None and allowed_keys
-                else f"one of {', '.join(DRIVE_KEYS)}"
+                else f"give one of {', '.join(DRIVE_KEYS)}"
             )
             yield Violation(path, f"the drive prescribes {description}", hint, key=True)
             continue
@@ -129,17 +129,17 @@ def check_drive_form(draft: DraftDocument) -> Iterator[Violation]:
             if quantity not in allowed_keys:
                 driven_kinds = format_kind_names([kind for kind in TYPES.values() if kind.drives], "and")
                 hint = drive_keys_hint(kind.name, allowed_keys) if allowed_keys else f"drives act on {driven_kinds}"
-                yield Violation((*path, quantity), f"a {kind.name} has no {quantity} to be driven", hint, key=True)
+                yield Violation((*path, quantity), f"a {kind.name} has no {quantity} to drive", hint, key=True)
             elif kind.keeps_distance and drive.zero is not None:
-                yield Violation(
-                    (*path, "zero"), "a length is not counted from the assembled one", "zero is for angle and travel"
-                )
+                yield Violation((*path, "zero"), "zero is not for a length", "zero is for angle and travel")
         value = getattr(drive, quantity)
         if value.uses:
             joint, coordinate = value.uses[0]
-            yield Violation((*path, quantity), f"a drive follows time alone, not {joint}.{coordinate}", "use t")
+            yield Violation(
+                (*path, quantity), f"a drive may depend on time alone, not on {joint}.{coordinate}", "use t"
+            )
         if drive.joint in driven:
-            message = f"the joint {drive.joint} is driven by {driven[drive.joint]} already"
+            message = f"the joint {drive.joint} is already driven by {driven[drive.joint]}"
             yield Violation((*path, "joint"), message, ONE_DRIVE_HINT)
         driven.setdefault(drive.joint, name)
 
@@ -176,7 +176,7 @@ def check_drive_contradiction(draft: DraftDocument) -> Iterator[Violation]:
             if start_value is None or expected is None:
                 continue
             if abs(start_value - expected) > tolerances.SAME_VALUE * max(abs(start_value), abs(expected), 1.0):
-                message = f"{key} is held at {start_value:g}, but the drive {name} prescribes {expected:g} at t = 0"
+                message = f"{key} starts at {start_value:g}, but the drive {name} prescribes {expected:g} at t = 0"
                 yield Violation(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
@@ -196,11 +196,11 @@ def check_drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
     for path, value, by_rate, _ in iter_prescribed_values(draft):
         key = "drive" if path[0] == "drives" else path[-1]
         if math.isnan(value.value(0.0)):
-            yield Violation(path, f"the {key} has no value at t = 0", "look at the domains of its functions and tables")
+            yield Violation(path, f"the {key} has no value at t = 0", "check the ranges of its functions and tables")
             continue
         for _, t, before, after in find_jumps(value, duration)[:1] if not by_rate else ():
             message = f"the {key} jumps from {before:g} to {after:g} at t = {t:g} s"
-            yield Violation(path, message, "a body cannot jump: let the value run over a short time")
+            yield Violation(path, message, "a body cannot jump: change the value over a short time")
 
 
 @rule("drive-length")
@@ -214,5 +214,5 @@ def check_drive_length(draft: DraftDocument) -> Iterator[Violation]:
             continue
         vanishing_time = find_first_not_positive(value, duration)
         if vanishing_time is not None:
-            message = f"the {owner} has no length left at t = {vanishing_time:.4g} s"
-            yield Violation(path, message, "let the run end before, or the length stay above 0")
+            message = f"the length of the {owner} reaches 0 at t = {vanishing_time:.4g} s"
+            yield Violation(path, message, "end the run before, or keep the length above 0")

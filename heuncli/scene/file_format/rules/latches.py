@@ -33,16 +33,18 @@ def check_latch_form(draft: DraftDocument) -> Iterator[Violation]:
         path = ("latches", name)
         if (latch.stop is None) == (latch.joint is None):
             description = "both a stop and a joint" if latch.stop is not None else "neither a stop nor a joint"
-            hint = "stop: NAME, at whose limit it catches; or joint: NAME, at an angle or travel or where it is"
-            yield Violation(path, f"the latch names {description}", hint, key=True)
+            hint = (
+                "give stop: NAME to catch at its limit; or joint: NAME to catch at an angle, at a travel or where it is"
+            )
+            yield Violation(path, f"the latch gives {description}", hint, key=True)
         elif latch.stop is not None:
             yield from check_latch_at_stop(draft, name, latch)
         elif latch.limit is not None:
-            yield Violation((*path, "limit"), "a limit without a stop", "stop: NAME, whose limit it is", key=True)
+            yield Violation((*path, "limit"), "a limit without a stop", "add stop: NAME, whose limit it is", key=True)
         else:
             yield from check_latch_at_joint(draft, name, latch)
         if latch.every and latch.release is None:
-            hint = "release: a condition, as handle.angle > 0.1; without one it holds for ever, and catches once"
+            hint = "add release: a condition such as handle.angle > 0.1; without it the latch never releases"
             yield Violation((*path, "every"), "'every' without 'release'", hint, key=True)
 
 
@@ -50,13 +52,13 @@ def check_latch_at_stop(draft: DraftDocument, name: str, latch: f.LatchEntry) ->
     """Yield what is wrong with a latch at a stop."""
     for key in POSITION_KEYS:
         if getattr(latch, key) is not None:
-            message = f"the latch at the stop {latch.stop} holds at its limit, not at an {key} of its own"
+            message = f"the latch at the stop {latch.stop} holds at its limit and takes no {key}"
             yield Violation(("latches", name, key), message, "leave one of them out", key=True)
     stop = draft.document.stops.get(latch.stop or "")
     limits = find_limits(stop) if stop is not None else None
     if latch.limit is not None and limits is not None and limits[1][LIMIT_INDEX[latch.limit]] is None:
         message = f"the stop {latch.stop} has no {latch.limit} limit"
-        yield Violation(("latches", name, "limit"), message, "leave limit out, or name the other")
+        yield Violation(("latches", name, "limit"), message, "leave limit out, or give the other one")
 
 
 def check_latch_at_joint(draft: DraftDocument, name: str, latch: f.LatchEntry) -> Iterator[Violation]:
@@ -72,7 +74,7 @@ def check_latch_at_joint(draft: DraftDocument, name: str, latch: f.LatchEntry) -
             f"a {kind.name} has {' and '.join(coordinates)}" if coordinates else f"a {kind.name} has no coordinate"
         )
         hint = (
-            f"a stop limits the one that is meant, and the latch names it: {name}: {{stop: NAME}}"
+            f"define a stop for the coordinate to hold, and give it: {name}: {{stop: NAME}}"
             if coordinates
             else "a pin, slide or rod has one"
         )
@@ -81,7 +83,7 @@ def check_latch_at_joint(draft: DraftDocument, name: str, latch: f.LatchEntry) -
     for key in given_keys:
         if key not in coordinates:
             yield Violation(
-                (*path, key), f"a {kind.name} has no {key} to be held", f"a {kind.name} has {coordinates[0]}", key=True
+                (*path, key), f"a {kind.name} has no {key} to hold", f"a {kind.name} has {coordinates[0]}", key=True
             )
 
 
@@ -101,7 +103,7 @@ def check_latch_joint(draft: DraftDocument) -> Iterator[Violation]:
         coordinate_path = f"{coordinate.joint}.{coordinate.quantity}"
         if (coordinate.joint, coordinate.quantity) in driven:
             drive_name = driven[coordinate.joint, coordinate.quantity]
-            hint = "let the drive's law stand still there, or hold another coordinate"
+            hint = "keep the drive constant there, or hold another coordinate"
             yield Violation(where, f"{coordinate_path} is driven by {drive_name}: no latch can hold it", hint)
         rod = draft.document.joints.get(coordinate.joint)
         fixing_keys = [key for key in ("length", "tension_only") if getattr(rod, key, None)]
@@ -112,8 +114,8 @@ def check_latch_joint(draft: DraftDocument) -> Iterator[Violation]:
         for side in coordinate.sides or ((0,) if coordinate.position is not None else ()):
             other = taken.setdefault((coordinate.joint, coordinate.quantity, coordinate.position, side), name)
             if other != name:
-                message = f"{coordinate_path} is held there by {other} already"
-                yield Violation(where, message, "one latch a place: join their conditions by 'or'")
+                message = f"{coordinate_path} is already held there by {other}"
+                yield Violation(where, message, "one latch per position: join their conditions with 'or'")
 
 
 def check_latch_within_stops(draft: DraftDocument, name: str, coordinate: HeldCoordinate) -> Iterator[Violation]:
@@ -123,5 +125,7 @@ def check_latch_within_stops(draft: DraftDocument, name: str, coordinate: HeldCo
             continue
         for limit, is_past in zip(limits, (float.__lt__, float.__gt__), strict=True):
             if limit is not None and is_outside(coordinate.position, limit, is_past):
-                message = f"{quantity} comes to {coordinate.position:.9g} nowhere: the stop {stop} ends at {limit:.9g}"
-                yield Violation(("latches", name, quantity), message, f"a latch at that limit: {{stop: {stop}}}")
+                message = (
+                    f"{quantity} never reaches {coordinate.position:.9g}: the stop {stop} limits it at {limit:.9g}"
+                )
+                yield Violation(("latches", name, quantity), message, f"to catch at that limit write {{stop: {stop}}}")

@@ -39,30 +39,30 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
         if isinstance(load, f.TorqueEntry):
             if not kind.accepts_load("torque"):
                 where = " or ".join(f"{TORQUE_WORDS[k.motions[0]]} {k.name}" for k in kinds_accepting_load("torque"))
-                hint = "between two points use actuator, on a body couple"
+                hint = "between two points use an actuator, on a body a couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, fe.MotorEntry):
             if kind.coordinates != ("angle",):
-                hint = "in a slide a thrust of type torque, by guide.speed"
-                yield Violation((*path, "joint"), f"a motor turns a pin, not a {kind.name}", hint)
+                hint = "in a slide use a force of type torque, with a value in guide.speed"
+                yield Violation((*path, "joint"), f"a motor acts in a pin, not in a {kind.name}", hint)
         elif isinstance(load, f.TurnSpringEntry):
             if load.torque is not None and kind.coordinates != ("angle",):
-                message = f"the torque of a turn_spring by a law acts about a pin, not in a {kind.name}"
-                yield Violation((*path, "joint"), message, "its angle is told by a pin alone; else give a stiffness")
+                message = f"a turn_spring with a law for its torque acts in a pin, not in a {kind.name}"
+                yield Violation((*path, "joint"), message, "only a pin has one angle; otherwise give a stiffness")
             elif not kind.accepts_load("turn_spring"):
                 allowed = format_kind_names(kinds_accepting_load("turn_spring"), "or")
-                message = f"a turn_spring acts about a {allowed}, not in a {kind.name}"
+                message = f"a turn_spring acts in a {allowed}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring")
         elif isinstance(load, f.DamperEntry):
             two_motion_kinds = [k for k in kinds_accepting_load("damper") if len(k.motions) == 2]
             if not kind.accepts_load("damper"):
                 hint = "between two points use a spring with damping"
-                yield Violation((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
+                yield Violation((*path, "joint"), f"a damper has no effect in a {kind.name}", hint)
             if load.torque is not None or load.force is not None:
                 yield from check_damper_law(name, load, kind)
             elif load.coefficient is None and load.sliding is None:
-                allowed = "coefficient (of turning), sliding, or both" if kind in two_motion_kinds else "coefficient"
-                yield Violation(path, "a damper that resists nothing", f"give {allowed}", key=True)
+                allowed = "coefficient (of rotation), sliding, or both" if kind in two_motion_kinds else "coefficient"
+                yield Violation(path, "a damper without a coefficient or law", f"give {allowed}", key=True)
             if load.sliding is not None and kind not in two_motion_kinds:
                 message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
@@ -80,7 +80,7 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
                     else "neither torque nor force nor coefficient"
                 )
                 hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
-                yield Violation(path, f"friction of {description}", hint, key=True)
+                yield Violation(path, f"friction with {description}", hint, key=True)
             elif given_keys[0] == "coefficient":
                 yield from check_friction_coefficient(name, load, kind)
             elif load.radius is not None or load.length is not None:
@@ -98,7 +98,7 @@ def check_damper_law(name: str, load: f.DamperEntry, kind: JointKind) -> Iterato
     given_key = "torque" if load.torque is not None else "force"
     allowed_key = DAMPER_LAW_KEYS[kind.motions[0]] if kind.has_one_axis and len(kind.motions) == 1 else None
     if allowed_key is None:
-        message = f"a damper by a law of its rate acts in a pin or slide, not in a {kind.name}"
+        message = f"a damper with a law in its rate acts in a pin or slide, not in a {kind.name}"
         yield Violation((*path, "joint"), message, "give a coefficient")
     elif given_key != allowed_key:
         yield Violation(
@@ -124,15 +124,20 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
             key for key in (*laws[1:], *numbers) if getattr(load, key) is not None and key not in law_keys[:1]
         ]
         if law_keys and extra_keys:
-            message = f"a {load.type} by {law_keys[0]} and by {extra_keys[0]}"
+            message = f"a {load.type} with both {law_keys[0]} and {extra_keys[0]}"
             yield Violation(
-                (*path, extra_keys[0]), message, f"put all of it into {law_keys[0]}, or leave that out", key=True
+                (*path, extra_keys[0]),
+                message,
+                f"include all of it in {law_keys[0]}, or leave {law_keys[0]} out",
+                key=True,
             )
         if isinstance(load, fe.BushingEntry) and all(
             getattr(load, key) is None
             for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
         ):
-            yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
+            yield Violation(
+                path, "a bushing without stiffness, damping or preload", "give stiffness, turning or both", key=True
+            )
 
 
 # required keys of a load without a law
@@ -146,7 +151,7 @@ def check_missing_numbers(draft: DraftDocument) -> Iterator[Violation]:
         laws, _ = LAW_AND_NUMBER_KEYS.get(load.type, ((), ()))
         for key in REQUIRED_NUMBERS.get(load.type, ()):
             if getattr(load, key) is None and not any(getattr(load, law) is not None for law in laws):
-                hint = f"{MISSING_KEY_HINTS[key]}; or {laws[0]}: a law of its own"
+                hint = f"{MISSING_KEY_HINTS[key]}; or give a law as {laws[0]}: ..."
                 yield Violation(("forces", name), f"'{key}' is missing", hint, key=True)
 
 
@@ -161,11 +166,13 @@ def check_brake(draft: DraftDocument) -> Iterator[Violation]:
                 continue
             path = ("forces", name, key)
             if value.uses:
-                message = f"the size of friction follows time alone, not {'.'.join(value.uses[0])}"
-                yield Violation(path, message, "what hangs on a coordinate is a torque: -size*tanh(shaft.rate/0.01)")
+                message = f"the size of friction may depend on time alone, not on {'.'.join(value.uses[0])}"
+                yield Violation(
+                    path, message, "for one that depends on a coordinate use a torque: -size*tanh(shaft.rate/0.01)"
+                )
             elif (t := find_first_negative(value, duration)) is not None:
                 message = f"{key} must not be negative, but is {value.value(t):g} at t = {t:.4g} s"
-                yield Violation(path, message, "it resists either way: give its size")
+                yield Violation(path, message, "it resists in both directions: give its size")
 
 
 @rule("bushing-table")
@@ -178,7 +185,7 @@ def check_bushing_table(draft: DraftDocument) -> Iterator[Violation]:
             for law in parts if isinstance(parts, tuple) else (parts,):
                 if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
                     message, hint = out_of_range_texts(law.tables[0])
-                    full_message = f"{key} has no value where the bushing is not deflected: {message}"
+                    full_message = f"{key} has no value at zero deflection of the bushing: {message}"
                     yield Violation(("forces", name, key), full_message, hint)
 
 
@@ -187,20 +194,20 @@ def check_friction_coefficient(name: str, load: f.FrictionEntry, kind: JointKind
     path = ("forces", name)
     if len(kind.motions) != 1:
         message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
-        hint = "its turning and its sliding rub as one: a pin and a slide, or torque and force of a given size"
+        hint = "use a pin and a slide, or friction with a given torque and force"
         yield Violation((*path, "joint"), message, hint)
     elif kind.follows_path:
         message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
-        yield Violation((*path, "joint"), message, "along a path it has a given size: force")
+        yield Violation((*path, "joint"), message, "along a path give its size as force")
     elif kind.motions == ("turning",):
         if load.radius is None:
-            hint = "radius: of the journal, at which the force on the joint rubs, as 20 mm"
+            hint = "add the radius of the journal, for example radius: 20 mm"
             yield Violation(path, f"friction with a coefficient about a {kind.name} needs its radius", hint, key=True)
         if load.length is not None:
-            hint = "leave it out: a pin rubs at its radius"
-            yield Violation((*path, "length"), "length is for a slide: the distance of its ends", hint, key=True)
+            hint = "leave it out: a pin has a radius"
+            yield Violation((*path, "length"), "length is for a slide: the distance between its ends", hint, key=True)
     elif load.radius is not None:
-        hint = "leave it out; a slide may have a length, at whose ends it carries tilting moments"
+        hint = "leave it out; a slide that carries tilting moments may have a length"
         yield Violation((*path, "radius"), "radius is for a pin", hint, key=True)
 
 
@@ -222,7 +229,7 @@ def check_load_dimension(draft: DraftDocument) -> Iterator[Violation]:
         for key, value, dimension in checks:
             if value.dimension is not None and value.dimension != dimension:
                 message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"
-                hint = f"a number without a unit is taken in {u.si_unit(dimension)}"
+                hint = f"a number without a unit is read in {u.si_unit(dimension)}"
                 yield Violation(("forces", name, key), message, hint)
 
 
@@ -242,8 +249,8 @@ def check_couple_point(draft: DraftDocument) -> Iterator[Violation]:
             on_bodies.append((("impulses", name, "on"), blow.on.body))
     for path, body in on_bodies:
         if body in cut_bodies:
-            message = f"the couple acts on {body}, which has sections, but not at a point"
-            hint = f"write on: {body}.point: it decides on which side of the cut the couple acts"
+            message = f"the couple acts on {body}, which has sections, but no point is given"
+            hint = f"write on: {body}.point to show on which side of the cut the couple acts"
             yield Violation(path, message, hint)
 
 
@@ -253,8 +260,8 @@ def check_impulse_form(draft: DraftDocument) -> Iterator[Violation]:
     for name, impulse in draft.document.impulses.items():
         given_keys = {key for key in ("on", "vector", "body", "couple") if getattr(impulse, key) is not None}
         if given_keys not in ({"on", "vector"}, {"on", "couple"}, {"body", "couple"}):
-            message = "a blow is {on: body.point, vector}, {on: body.point, couple} or {body, couple}"
-            yield Violation(("impulses", name), message, "two blows at once: two entries", key=True)
+            message = "expected {on: body.point, vector}, {on: body.point, couple} or {body, couple}"
+            yield Violation(("impulses", name), message, "write two simultaneous impulses as two entries", key=True)
 
 
 @rule("zero-impulse", is_warning=True)
@@ -263,7 +270,7 @@ def check_zero_impulse(draft: DraftDocument) -> Iterator[Violation]:
     for name, impulse in draft.document.impulses.items():
         for key in ("vector", "couple"):
             if getattr(impulse, key) == (0.0, 0.0, 0.0):
-                message = f"{key} is [0, 0, 0]: the blow changes nothing"
+                message = f"{key} is [0, 0, 0]: the impulse has no effect"
                 yield Violation(("impulses", name, key), message, "leave it out")
 
 
@@ -277,14 +284,14 @@ def check_impulse_time(draft: DraftDocument) -> Iterator[Violation]:
         if impulse.when is not None:
             continue
         if impulse.time < 0.0:
-            yield Violation(path, f"a blow before the start, at {impulse.time:g} s", "the run starts at 0")
+            yield Violation(path, f"an impulse before the start, at {impulse.time:g} s", "the run starts at 0")
         elif impulse.time > duration and "analysis" not in draft.unread:
             hint = (
                 "give analysis a longer duration"
                 if duration > 0.0
                 else "without a duration only the jump at time 0 is computed"
             )
-            yield Violation(path, f"a blow at {impulse.time:g} s, after the end of the run at {duration:g} s", hint)
+            yield Violation(path, f"an impulse at {impulse.time:g} s, after the end of the run at {duration:g} s", hint)
 
 
 @rule("impulse-when")
@@ -295,11 +302,11 @@ def check_impulse_when(draft: DraftDocument) -> Iterator[Violation]:
         path = ("impulses", name)
         if impulse.when is None:
             if impulse.every and "when" not in draft.names.entries["impulses"][name]:
-                hint = "when: a condition, as shaft.angle < 0; at instants known before: an entry each"
+                hint = "add when: a condition such as shaft.angle < 0; for known instants write one entry each"
                 yield Violation((*path, "every"), "'every' without 'when'", hint, key=True)
         elif "time" in impulse.model_fields_set:
-            hint = "leave one of them out; not before an instant: when: t > 0.1 and shaft.angle < 0"
-            yield Violation((*path, "when"), "both 'time' and 'when'", hint, key=True)
+            hint = "leave one of them out; to act only after an instant: when: t > 0.1 and shaft.angle < 0"
+            yield Violation((*path, "when"), "'time' and 'when' are both given", hint, key=True)
         elif kind != "motion" and "analysis" not in draft.unread:
-            message = f"when: type: {kind} is one instant, at which nothing becomes true"
-            yield Violation((*path, "when"), message, "give analysis a duration; or the blow a time", key=True)
+            message = f"when needs a motion, but type: {kind} is one instant"
+            yield Violation((*path, "when"), message, "give analysis a duration, or the impulse a time", key=True)

@@ -15,12 +15,12 @@ def check_name_form(draft: DraftDocument) -> Iterator[Violation]:
     for block in NAMED_BLOCKS:
         for name in draft.names.entries[block]:
             if not is_name(name):
-                yield Violation((block, name), f"'{name}' is not a name", hint, key=True)
+                yield Violation((block, name), f"'{name}' is not a valid name", hint, key=True)
     for body, points in draft.names.points.items():
         for name in points:
             if not is_name(name):
                 path = ("ground",) if body == "ground" else ("bodies", body)
-                yield Violation((*path, "points", name), f"'{name}' is not a name", hint, key=True)
+                yield Violation((*path, "points", name), f"'{name}' is not a valid name", hint, key=True)
 
 
 @rule("reserved-name")
@@ -34,8 +34,8 @@ def check_reserved_name(draft: DraftDocument) -> Iterator[Violation]:
                     if name == "ground"
                     else "a word of expressions"
                     if block != "forces"
-                    else "a cause of its own"
+                    else "a cause in the results"
                 )
                 yield Violation(
-                    (block, name), f"'{name}' is taken: it is {meaning}", f"call it {name}_1, say", key=True
+                    (block, name), f"'{name}' is reserved: it is {meaning}", f"call it {name}_1, for example", key=True
                 )

@@ -19,7 +19,7 @@ def iter_stop_friction(draft: DraftDocument) -> Iterator[Path_]:
             yield "stops", name, "friction"
 
 
-NOT_YET: tuple[tuple[str, PathFinder], ...] = (("friction at strikes", iter_stop_friction),)
+NOT_YET: tuple[tuple[str, PathFinder], ...] = (("friction at impacts", iter_stop_friction),)
 
 
 @rule("not-yet", may_be_consequence=False)
@@ -27,4 +27,6 @@ def check_not_yet(draft: DraftDocument) -> Iterator[Violation]:
     """Refuse the features of the table."""
     for feature, find_paths in NOT_YET:
         for path in find_paths(draft):
-            yield Violation(path, f"not yet: {feature}", "leave it out: a later version has it", key=path[-1] != "type")
+            yield Violation(
+                path, f"not yet: {feature}", "leave it out: planned for a later version", key=path[-1] != "type"
+            )

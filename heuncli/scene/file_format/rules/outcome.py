@@ -205,7 +205,7 @@ def find_path_error(path: str, names: SceneNames, runs: Mapping[str, bool]) -> t
     if isinstance(target, Finding):
         return f"'{path}': {target.message}", target.hint
     if isinstance(target, TextResult):
-        return f"'{path}' is words, not a number", words_hint(path)
+        return f"'{path}' is text, not a number", words_hint(path)
     if not isinstance(target, UnknownWord):
         return None
     for load, coordinate_text in STOP_LOADS.items():
@@ -229,24 +229,22 @@ def words_hint(path: str) -> str:
     """Return a hint on what to name instead of text: for the text about indeterminate components, a component."""
     block, _, last = path.rpartition(".")
     if last == "open":
-        return f"that a component is open is expected of itself: {{of: {block}.force.z, is: null}}"
-    return "name a number: joints.NAME.force.z, sections.NAME.N, energy.kinetic, ..."
+        return f"to expect an open component write {{of: {block}.force.z, is: null}}"
+    return "give a number: joints.NAME.force.z, sections.NAME.N, energy.kinetic, ..."
 
 
 def names_hint(path: list[str], unknown: UnknownWord, names: SceneNames) -> str:
     """Return a hint on what may stand where a path leads nowhere."""
     block, *further_words = path
     if not unknown.word:
-        return f"it goes on with one of {list_words(unknown.valid_words)}"
+        return f"continue it with one of {list_words(unknown.valid_words)}"
     if unknown.word.startswith("@"):
         return NO_RUN
     if not unknown.valid_words:
         is_empty_block = block in names.entries and not names.entries[block]
-        return (
-            f"the scene has no {block}" if is_empty_block and further_words else "leave it out: the path ends before it"
-        )
+        return f"the model has no {block}" if is_empty_block and further_words else "leave it out: the path ends here"
     if unknown.word.startswith("-"):
-        return f"places are counted from 0, from the first on: {', '.join(unknown.valid_words)}"
+        return f"places are numbered from 0: {', '.join(unknown.valid_words)}"
     if unknown.word == block and find_similar(block, unknown.valid_words) is None:
         kinds = [kind for kind, block_entries in names.entries.items() if kind in TREE and block in block_entries]
         if kinds:

@@ -33,11 +33,11 @@ def check_path(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violati
     path = ("joints", name)
     tables = {axis: table for axis in AXES if isinstance(table := getattr(joint, axis), TableFunction)}
     if not tables:
-        hint = "x, y and z are each a table over the travel along the path, or a number"
-        yield Violation(path, "a path without a table is a point", hint, key=True)
+        hint = "give x, y and z, each as a table over the travel along the path or as a number"
+        yield Violation(path, "a path needs at least one table", hint, key=True)
         return
     if planar and "z" in tables:
-        yield Violation((*path, "z"), "a planar scene has no path along z", "z: a number")
+        yield Violation((*path, "z"), "a planar model has no path along z", "give z as a number")
         return
     if (violation := find_range_error(name, tables)) is not None:
         yield violation
@@ -47,17 +47,15 @@ def check_path(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violati
     curve = make_path((joint.x, joint.y, joint.z))
     cusp_travel = find_cusp(curve)
     if cusp_travel is not None:
-        hint = "a path goes on everywhere: a corner is rounded, an end is cut off before it"
-        yield Violation(
-            path, f"the path stands still at travel {cusp_travel:.6g}: it has no direction there", hint, key=True
-        )
+        hint = "round a corner, or end the path before this point"
+        yield Violation(path, f"the path has no direction at travel {cusp_travel:.6g} (cusp)", hint, key=True)
         return
     if joint.radius is not None or joint.normal is not None or joint.one_sided:
         yield from check_path_side(name, joint, planar, curve)
     start_travel = joint.initial.travel if joint.initial is not None else None
     if start_travel is not None and not curve.period and not curve.first <= start_travel <= curve.last:
-        message = f"travel {start_travel:g} is off the path, which covers {curve.first:.6g} to {curve.last:.6g} m"
-        yield Violation((*path, "initial", "travel"), message, "hold it on the path, or leave it out")
+        message = f"travel {start_travel:g} is outside the path, which covers {curve.first:.6g} to {curve.last:.6g} m"
+        yield Violation((*path, "initial", "travel"), message, "start it on the path, or leave it out")
 
 
 def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
@@ -66,13 +64,15 @@ def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) ->
     """
     joint_path, key = ("joints", name), "radius" if joint.radius is not None else "one_sided"
     if joint.radius is None and not joint.one_sided:
-        hint = "it tells on which side a roller is, or what a one_sided path pushes"
+        hint = "normal sets the side of a roller, or the pushing side of a one_sided path"
         yield Violation((*joint_path, "normal"), "'normal' without 'radius'", hint, key=True)
         return
     normal = joint.normal or ((0.0, 0.0, 1.0) if planar else None)
     if normal is None:
-        hint = "normal: [0, 0, 1], say: of the path's plane; where it points to the eye, the roller is on the left"
-        subject = "a roller beside a path" if joint.radius is not None else "a path that pushes to one side"
+        hint = (
+            "normal of the path's plane, as normal: [0, 0, 1]; with it pointing towards you, the roller is on the left"
+        )
+        subject = "a roller on a path" if joint.radius is not None else "a path that pushes to one side"
         yield Violation((*joint_path, key), f"{subject} needs its 'normal'", hint, key=True)
         return
     if normal == (0.0, 0.0, 0.0) or (planar and normal[:2] != (0.0, 0.0)):  # reported by another rule
@@ -81,8 +81,8 @@ def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) ->
 
     if leaves_plane(path, normal):
         normal_path = (*joint_path, "normal" if joint.normal is not None else key)
-        hint = "only a path in one plane has a left: z: a number, and normal: [0, 0, 1]"
-        yield Violation(normal_path, "the path does not lie in a plane across its normal", hint)
+        hint = "only a plane path has a left side: z: a number, and normal: [0, 0, 1]"
+        yield Violation(normal_path, "the path does not lie in a plane perpendicular to its normal", hint)
     elif joint.radius is not None and joint.radius > 0.0:  # else reported by another rule
         yield from check_roller(joint_path, joint, path, normal)
 
@@ -101,14 +101,13 @@ def check_roller(joint_path: Path_, joint: f.CurveJoint, path: Path, normal: Dir
         tightest_travel = (
             tightest_travel if abs(tightest_travel) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0
         )  # a smaller value is rounding error
-        curved = (
-            f"the path curves with {joint.radius / share:.4g} m at travel {tightest_travel:.6g}, where the roller has "
-        )
-        hint = "a smaller roller, a path that bends less, or the other side of it: the opposite normal"
-        yield Violation((*joint_path, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow", hint)
+        path_radius = joint.radius / share
+        curved = f"the path has a radius of {path_radius:.4g} m at travel {tightest_travel:.6g}, but the roller has "
+        hint = "use a smaller roller, a path with less curvature, or the other side (the opposite normal)"
+        yield Violation((*joint_path, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow the path", hint)
     elif (meeting := find_interference(roller)) is not None:
-        message = f"at travel {meeting[0]:.6g} the roller would meet the path at travel {meeting[1]:.6g}, too"
-        hint = "a shorter path, a smaller roller, or the other side of it; the centre's own path has no radius"
+        message = f"at travel {meeting[0]:.6g} the roller would also touch the path at travel {meeting[1]:.6g}"
+        hint = "use a shorter path, a smaller roller or the other side; for the path of the centre give no radius"
         yield Violation((*joint_path, "radius"), message, hint)
 
 
@@ -121,15 +120,15 @@ def check_path_restitution(draft: DraftDocument) -> Iterator[Violation]:
             continue
         path = ("joints", name, "restitution")
         if not joint.one_sided:
-            message = "restitution of a path that holds both ways, and so is never struck"
-            yield Violation(path, message, "one_sided: true", key=True)
+            message = "restitution of a path that holds in both directions, which has no impacts"
+            yield Violation(path, message, "add one_sided: true", key=True)
         if not 0.0 <= joint.restitution <= 1.0:
-            hint = "0: no rebound, 1: all of it"
+            hint = "0: no rebound, 1: full rebound"
             yield Violation(path, f"restitution {joint.restitution:g} is not between 0 and 1", hint)
         for load, entry in draft.document.forces.items():
             if entry.type in ("damper", "friction") and entry.joint == name:
-                message = f"the {entry.type} {load} would go on acting while the point flies off its path"
-                hint = "without restitution the run ends where it lifts off"
+                message = f"the {entry.type} {load} would still act while the point is off its path"
+                hint = "remove it; or without restitution the run ends where the point lifts off"
                 yield Violation(("forces", load, "joint"), message, hint)
 
 
@@ -143,10 +142,10 @@ def find_range_error(name: str, tables: dict[str, TableFunction]) -> Violation |
         message = "its tables have no travel in common: " + ", ".join(
             f"{axis} from {low:.6g} to {high:.6g}" for axis, (low, high) in ends.items()
         )
-        return Violation(path, message, "all are over one travel along the path", key=True)
+        return Violation(path, message, "all tables must cover the same travel along the path", key=True)
     periods = {axis: table.numbers[0] for axis, table in tables.items()}
     first = next(iter(periods.values()))
     if all(abs(period - first) <= tolerances.TABLE_ENDS * first for period in periods.values()):
         return None
-    message = "its tables close after different ways: " + ", ".join(f"{a} after {p:.6g}" for a, p in periods.items())
-    return Violation(path, message, "a closed path has one period, its length", key=True)
+    message = "its tables have different periods: " + ", ".join(f"{a} {p:.6g}" for a, p in periods.items())
+    return Violation(path, message, "a closed path has one period: its length", key=True)

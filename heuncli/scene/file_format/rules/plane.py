@@ -28,13 +28,13 @@ def check_planar(draft: DraftDocument) -> Iterator[Violation]:
         return
     if draft.document.head.gravity[2] != 0.0:
         yield Violation(
-            ("gravity", 2), "gravity points out of the xy plane of a planar scene", "use x and y, or space: spatial"
+            ("gravity", 2), "gravity points out of the xy plane of a planar model", "use x and y, or space: spatial"
         )
     yield from _check_joints(draft)
     for name, body in draft.document.bodies.items():
         if body.orientation is not None and abs(z_axis_cosine(body.orientation) - 1.0) > tolerances.UPRIGHT:
             yield Violation(
-                ("bodies", name, "orientation"), "in a planar scene a body is turned about z only", SPATIAL_HINT
+                ("bodies", name, "orientation"), "in a planar model bodies rotate about z only", SPATIAL_HINT
             )
         for key, forbidden in FORBIDDEN_VELOCITY.items():
             value = getattr(body, key)
@@ -63,7 +63,7 @@ def _check_components(path: Path_, vector: tuple[float | None, ...], forbidden: 
     """Yield forbidden components that are not zero; None stands for one that changes with time."""
     for i, (letter, value) in enumerate(zip("xyz", vector, strict=False)):
         if letter in forbidden and value != 0.0:
-            yield Violation((*path, i), f"in a planar scene {path[2]} has no {letter} component", SPATIAL_HINT)
+            yield Violation((*path, i), f"in a planar model {path[2]} has no {letter} component", SPATIAL_HINT)
 
 
 def _check_bushing(path: Path_, load: fe.BushingEntry) -> Iterator[Violation]:
@@ -71,9 +71,7 @@ def _check_bushing(path: Path_, load: fe.BushingEntry) -> Iterator[Violation]:
     for key in ("orientation", "to_orientation"):
         orientation = getattr(load, key)
         if orientation is not None and abs(z_axis_cosine(orientation) - 1.0) > tolerances.UPRIGHT:
-            yield Violation(
-                (*path, key), "in a planar scene the axes of a bushing are turned about z only", SPATIAL_HINT
-            )
+            yield Violation((*path, key), "in a planar model the axes of a bushing rotate about z only", SPATIAL_HINT)
     for key, forbidden in (("preload", ("z",)), ("turning_preload", ("x", "y"))):
         if getattr(load, key) is not None:
             yield from _check_components((*path, key), getattr(load, key), forbidden)
@@ -85,7 +83,7 @@ def _check_joints(draft: DraftDocument) -> Iterator[Violation]:
         kind = TYPES[joint.type]
         if kind.planar is None:
             yield Violation(
-                (*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", SPATIAL_HINT
+                (*path, "type"), f"a joint of type {joint.type} is not possible in a planar model", SPATIAL_HINT
             )
             continue
         along_z = kind.turn is ABOUT_AXIS or kind.follows_path
@@ -95,8 +93,8 @@ def _check_joints(draft: DraftDocument) -> Iterator[Violation]:
                 continue
             x, y, z = unit_vector(direction)
             if (math.hypot(x, y) if along_z else abs(z)) > tolerances.PARALLEL:
-                requirement = "is the z axis" if along_z else "lies in the xy plane"
-                yield Violation((*path, key), f"in a planar scene {key} of a {joint.type} {requirement}", SPATIAL_HINT)
+                requirement = "must be the z axis" if along_z else "must lie in the xy plane"
+                yield Violation((*path, key), f"in a planar model {key} of a {joint.type} {requirement}", SPATIAL_HINT)
 
 
 def z_axis_cosine(orientation: fs.Orientation) -> float:

@@ -24,7 +24,7 @@ def check_magnitude(draft: DraftDocument) -> Iterator[Violation]:
         masses = [shape_mass(shape) for shape in body.shapes or ()]
         out_of_range_shapes = [i for i, mass in enumerate(masses) if not is_in_range(mass)]
         for i in out_of_range_shapes:
-            description = "the mass of this shape [kg], its density times its volume,"
+            description = "the mass of this shape [kg] (density times volume)"
             yield make_violation((*path, "shapes", i), masses[i], description)
         if out_of_range_shapes:
             continue
@@ -33,10 +33,10 @@ def check_magnitude(draft: DraftDocument) -> Iterator[Violation]:
         reach = max((largest_magnitude(*x) for x in coordinates), default=0.0)
         inertia = max(largest_magnitude(*inertia_elements(body)), mass * reach**2)
         if not is_in_range(inertia):
-            description = f"the inertia of this body [kg m^2], {mass:g} kg times the square of {reach:g} m,"
+            description = f"the inertia of this body [kg m^2] ({mass:g} kg times the square of {reach:g} m)"
             yield make_violation(path, inertia, description)
         elif mass * farthest**2 > inertia and not is_in_range(mass * farthest**2):
-            description = f"the inertia of this body about the origin [kg m^2], {mass:g} kg at up to {farthest:g} m,"
+            description = f"the inertia of this body about the origin [kg m^2] ({mass:g} kg at up to {farthest:g} m)"
             yield make_violation(path, mass * farthest**2, description)
 
 

@@ -109,7 +109,7 @@ def check_unknown_body(draft: DraftDocument) -> Iterator[Violation]:
     for path, body, may_be_ground in iter_body_references(draft):
         if body not in with_ground:
             allowed = with_ground if may_be_ground else bodies
-            hint = "what does not move is the ground: ground.O" if body.lower() in GROUND_SYNONYMS else None
+            hint = "the fixed frame is called ground: ground.O" if body.lower() in GROUND_SYNONYMS else None
             yield Violation(path, f"'{body}' is not a body", hint or suggest(body, allowed, "bodies"))
 
 
@@ -119,9 +119,13 @@ def check_ground_use(draft: DraftDocument) -> Iterator[Violation]:
     for path, body, may_be_ground in iter_body_references(draft):
         if body == GROUND and not may_be_ground:
             thing = "a section" if path[0] == "sections" else "an applied load"
-            yield Violation(path, f"the ground cannot have {thing}", "it does not move and has no mass: name a body")
+            yield Violation(
+                path, f"the ground cannot have {thing}", "the ground does not move and has no mass: give a body"
+            )
         elif path[0] == "foundation" and body != GROUND:
-            yield Violation(path, "M_s is taken about a fixed point", "name a point of the ground, or give [x, y, z]")
+            yield Violation(
+                path, "the foundation's moment needs a fixed point", "give a point of the ground, or [x, y, z]"
+            )
 
 
 @rule("unknown-point")
@@ -162,7 +166,7 @@ def missing_point_violation(path: Path_, body: str, point: str, points: Collecti
     """Make the violation for a point that its body does not have."""
     owner = "the ground" if body == GROUND else f"body {body}"
     short_name = point.removeprefix(f"{body}.")
-    hint = f"the point alone: {short_name}" if short_name != point and short_name in points else None
+    hint = f"write the point only: {short_name}" if short_name != point and short_name in points else None
     message = f"{owner} has no point '{point}'"
     return Violation(path, message, hint or suggest(point, points, f"points of {body}"))
 

@@ -27,11 +27,11 @@ def check_wheel_form(draft: DraftDocument) -> Iterator[Violation]:
             and wheel.axle is None
             and not planar
         ):
-            hint = "axis: that of its axle, in its own axes, as [0, 1, 0]; what is round all over is shape: sphere"
+            hint = "add axis: of its axle, in its own axes, for example [0, 1, 0]; for a ball write shape: sphere"
             yield Violation(path, "a disc without an axle", hint, key=True)
         for key in ("axis", "slides") if wheel.shape == "sphere" else ():
             if getattr(wheel, key) is not None:
-                yield Violation((*path, key), f"a sphere with {key}", "leave it out, or leave shape out", key=True)
+                yield Violation((*path, key), f"{key} given for a sphere", "leave it out, or leave shape out", key=True)
         body = wheel.body if wheel.wheel is None else wheel.wheel.body
         if body == wheel.on.body:
             message, hint = (
@@ -43,14 +43,16 @@ def check_wheel_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "wheel" if wheel.body is None else "body"),
                 "the ground does not roll",
-                "the wheel is a body, the plane may be ground's",
+                "the wheel must be a body; the plane may be on the ground",
             )
         if wheel.friction is not None and wheel.friction < 0.0:
-            message = f"a coefficient of friction of {wheel.friction:g}"
-            yield Violation((*path, "friction"), message, "a number from 0 on, as 0.8; left out nothing slips")
+            message = f"friction must not be negative, but is {wheel.friction:g}"
+            yield Violation(
+                (*path, "friction"), message, "give a number such as 0.8, or leave it out for rolling without slip"
+            )
         for event in (f"{name}_lifts", f"{name}_slips"):
             if event in draft.document.analysis.events:
-                message = f"'{event}' is taken: so the wheel's own event is called"
+                message = f"'{event}' is reserved: the wheel's own event has this name"
                 yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
         if planar:
             yield from check_wheel_planar(path, wheel)
@@ -61,28 +63,32 @@ def check_wheel_reference(path: tuple[str, str], wheel: RollingEntry, draft: Dra
     if wheel.wheel is not None:
         for key in ("body", "axle"):
             if getattr(wheel, key) is not None:
-                hint = "wheel and axis, or body and axle: the pin in which it turns"
+                hint = "give wheel and axis, or body and axle: the pin in which it rotates"
                 yield Violation((*path, key), f"wheel and {key} are both given", hint, key=True)
         return
     if wheel.body is None and wheel.axle is None:
-        yield Violation(path, "'wheel' is missing", "its centre: body.point; or body: and axle: its pin", key=True)
+        yield Violation(
+            path, "'wheel' is missing", "give its centre: body.point; or body: and axle: (its pin)", key=True
+        )
     for key, other in (("body", "axle"), ("axle", "body")):
         if getattr(wheel, key) is None and getattr(wheel, other) is not None:
             hint = (
-                "axle: the pin in which it turns" if key == "axle" else "body: which of the two of the pin the wheel is"
+                "add axle: the pin in which it rotates"
+                if key == "axle"
+                else "add body: the one of the pin's two bodies that is the wheel"
             )
-            yield Violation(path, f"'{key}' is missing beside '{other}'", hint, key=True)
+            yield Violation(path, f"'{key}' is missing, but '{other}' is given", hint, key=True)
     joint = draft.document.joints.get(wheel.axle or "")
     if joint is not None and joint.type not in AXLES:
-        hint = f"the name of a joint of type {' or '.join(AXLES)}; or wheel: body.point and axis:"
+        hint = f"give a joint of type {' or '.join(AXLES)}; or give wheel: body.point and axis:"
         yield Violation(
-            (*path, "axle"), f"{wheel.axle} is of type {joint.type}: nothing turns about one axis in it", hint
+            (*path, "axle"), f"{wheel.axle} is of type {joint.type}, which has no single axis of rotation", hint
         )
     elif joint is not None and wheel.body is not None and find_centre(wheel, draft.document.joints) is None:
         hint = f"{joint.from_.body} or {joint.to.body}"
         yield Violation((*path, "body"), f"{wheel.body} is not at the joint {wheel.axle}", hint)
     for key in ("axis",) if wheel.axle is not None and wheel.axis is not None else ():
-        yield Violation((*path, key), f"axle and {key} are both given", "the axle has one: leave it out", key=True)
+        yield Violation((*path, key), f"axle and {key} are both given", "leave it out: the axle has an axis", key=True)
 
 
 def check_wheel_planar(path: tuple[str, str], wheel: RollingEntry) -> Iterator[Violation]:
@@ -93,9 +99,9 @@ def check_wheel_planar(path: tuple[str, str], wheel: RollingEntry) -> Iterator[V
             continue
         x, y, z = unit_vector(direction)
         if (math.hypot(x, y) if is_along_z else abs(z)) > tolerances.PARALLEL:
-            requirement = "is the z axis" if is_along_z else "lies in the xy plane"
+            requirement = "must be the z axis" if is_along_z else "must lie in the xy plane"
             hint = "or declare space: spatial"
-            yield Violation((*path, key), f"in a planar scene {key} of a wheel {requirement}", hint)
+            yield Violation((*path, key), f"in a planar model {key} of a wheel {requirement}", hint)
     if wheel.slides is not None:
-        message = "in a planar scene a wheel that slides along its track holds nothing but its distance"
-        yield Violation((*path, "slides"), message, "a joint of type plane does that", key=True)
+        message = "in a planar model a wheel that slides along its track only keeps its distance"
+        yield Violation((*path, "slides"), message, "use a joint of type plane instead", key=True)

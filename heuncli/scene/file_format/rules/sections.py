@@ -16,7 +16,7 @@ MAX_PLAUSIBLE_STRENGTH = 1e4  # [MPa] a few times the strength of the hardest st
 GENERAL_KEYS = ("area", "I1", "I2", "J", "c1", "c2")
 REDUCED_TO = ("at", "centroid", "line")
 MAX_CUTS = 50_000  # in a run: finer than any figure shows, and validate still takes only a second
-SHEAR_FACTOR_HINT = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
+SHEAR_FACTOR_HINT = "1 is a uniform stress; a rectangle has 1.5, a circle 4/3"
 
 
 def is_run(section: f.SectionEntry) -> bool:
@@ -36,7 +36,9 @@ def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
             if value is not None
         ]
         if single_keys and run_keys:
-            message = f"{' and '.join(single_keys)} (one cut) beside {' and '.join(run_keys)} (a run of cuts)"
+            message = (
+                f"{' and '.join(single_keys)} (one cut) given together with {' and '.join(run_keys)} (a run of cuts)"
+            )
             yield Violation(path, message, "a run takes its normal from `from` to `to`", key=True)
         elif not run_keys and len(single_keys) < 2:
             missing = [key for key in ("at", "normal") if key not in single_keys]
@@ -50,9 +52,9 @@ def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
         elif run_keys:
             yield from check_run_of_cuts(draft, name, section)
         if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
-            message = f"'{section.reduce_to}' is not a point of reference"
+            message = f"'{section.reduce_to}' is not a reference point"
             yield Violation(
-                (*path, "reduce_to"), message, "known: at, centroid, line, or a point as body.point, ground.point"
+                (*path, "reduce_to"), message, "known: at, centroid, line, or a point body.point or ground.point"
             )
 
 
@@ -60,18 +62,24 @@ def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) 
     """A run has two ends, two cuts at least, and takes both sides by itself."""
     path = ("sections", name)
     if section.count is not None and not 2 <= section.count <= MAX_CUTS:
-        hint = "one cut is {body, at, normal}" if section.count < 2 else "extremes are searched between the cuts, too"
+        hint = (
+            "for one cut write {body, at, normal}"
+            if section.count < 2
+            else "extremes are also searched between the cuts"
+        )
         yield Violation((*path, "count"), f"a run has 2 to {MAX_CUTS} cuts, not {section.count}", hint)
     body = draft.document.bodies.get(section.body)
     if body is not None:
         ends = [find_point(body, end) for end in (section.from_, section.to)]
         if ends[0] is not None and ends[0] == ends[1]:
-            yield Violation((*path, "to"), "from and to are the same point", "the normal runs from one to the other")
+            yield Violation((*path, "to"), "from and to are the same point", "the normal points from one to the other")
     if section.side is not None:
-        yield Violation((*path, "side"), "a run of cuts takes both sides by itself", "leave side out", key=True)
+        yield Violation(
+            (*path, "side"), "side given for a run of cuts, which shows both sides", "leave it out", key=True
+        )
     if section.piece is not None:
         yield Violation(
-            (*path, "piece"), "a piece belongs to a single cut", "a run of cuts needs a body with shapes", key=True
+            (*path, "piece"), "a piece given for a run of cuts", "a run of cuts needs a body with shapes", key=True
         )
 
 
@@ -83,9 +91,9 @@ def check_section_matter(draft: DraftDocument) -> Iterator[Violation]:
         if body is None or body.shapes is not None or section.piece is not None:
             continue
         if body.piece is None or is_run(section):
-            message = f"{section.body} has no shapes: what lies beyond the cut is not known"
-            hint = "give the body shapes, as [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]" + (
-                "" if is_run(section) else ", or the section piece: {mass, center, inertia}"
+            message = f"{section.body} has no shapes: the part beyond the cut is not known"
+            hint = "give the body shapes, for example [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]" + (
+                "" if is_run(section) else ", or give the section a piece: {mass, center, inertia}"
             )
             yield Violation(("sections", name, "body"), message, hint)
 
@@ -103,7 +111,7 @@ def check_first_axis(draft: DraftDocument) -> Iterator[Violation]:
         if section.first_axis is None or normal is None or not any(normal) or not any(section.first_axis):
             continue
         if vector_length(cross_product(unit_vector(section.first_axis), unit_vector(normal))) < tolerances.PARALLEL:
-            hint = "it is made perpendicular to the normal, and must not vanish by that"
+            hint = "give a direction across the normal: only its part perpendicular to the normal is used"
             yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
 
 
@@ -114,8 +122,8 @@ def check_strength_unit(draft: DraftDocument) -> Iterator[Violation]:
         strength = section.strength
         if strength is not None and 0.0 < strength < tolerances.LEAST_STRENGTH:
             suggestion = f"{strength:g} MPa" if strength <= MAX_PLAUSIBLE_STRENGTH else "235 MPa"
-            message = f"a strength of {strength:g} Pa is less than any bar's: a plain number is in Pa"
-            yield Violation(("sections", name, "strength"), message, f"with its unit, as {suggestion}")
+            message = f"a strength of {strength:g} Pa is unusually low: a plain number is in Pa"
+            yield Violation(("sections", name, "strength"), message, f"give the unit, for example {suggestion}")
 
 
 @rule("properties-form")
@@ -126,14 +134,16 @@ def check_properties_form(draft: DraftDocument) -> Iterator[Violation]:
         path = ("sections", name)
         if properties is None:
             if section.strength is not None:
-                hint = "properties: {circle: {radius: 10 mm}}, or properties: auto"
-                yield Violation((*path, "strength"), "strength without properties gives no stress", hint, key=True)
+                hint = "add properties: {circle: {radius: 10 mm}}, or properties: auto"
+                yield Violation((*path, "strength"), "strength is given without properties", hint, key=True)
             continue
         if isinstance(properties, str):
             body = draft.document.bodies.get(section.body)
             if body is not None and body.shapes is None:
                 message = f"{section.body} has no shapes to take them from"
-                yield Violation((*path, "properties"), message, f"circle, tube, rectangle, or all of {GENERAL_KEYS}")
+                yield Violation(
+                    (*path, "properties"), message, f"give circle, tube, rectangle, or all of {', '.join(GENERAL_KEYS)}"
+                )
             continue
         shapes = [key for key in ("circle", "tube", "rectangle") if getattr(properties, key) is not None]
         numbers = [key for key in GENERAL_KEYS if getattr(properties, key) is not None]
@@ -141,18 +151,20 @@ def check_properties_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "properties"),
                 "properties of one shape are needed",
-                f"auto, circle, tube, rectangle, or all of {GENERAL_KEYS}",
+                f"give auto, circle, tube, rectangle, or all of {', '.join(GENERAL_KEYS)}",
             )
         elif numbers and len(numbers) < len(GENERAL_KEYS):
             missing = ", ".join(key for key in GENERAL_KEYS if key not in numbers)
-            yield Violation((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL_KEYS)}")
+            yield Violation(
+                (*path, "properties"), f"properties without {missing}", f"give all of {', '.join(GENERAL_KEYS)}"
+            )
         yield from check_shear_factor(properties, (*path, "properties", "shear_factor"))
         tube = properties.tube
         if tube is not None and tube.inner_radius >= tube.radius:
             yield Violation(
                 (*path, "properties", "tube"),
                 f"inner_radius {tube.inner_radius:g} is not less than radius {tube.radius:g}",
-                "a full one is a circle",
+                "for a solid one use circle",
             )
 
 
@@ -162,9 +174,9 @@ def check_shear_factor(properties: f.PropertiesEntry, path: tuple[str, ...]) -> 
     if factor is None:
         return
     if properties.area is None:
-        hint = f"it goes with {', '.join(GENERAL_KEYS)}"
-        yield Violation(path, "the shape itself says how its shear stresses are spread", hint, key=True)
+        hint = f"use it with {', '.join(GENERAL_KEYS)}"
+        yield Violation(path, "shear_factor is not for a named shape, which defines its shear stresses", hint, key=True)
     elif factor < 1.0:
         yield Violation(
-            path, f"the largest shear stress over the mean is 1 at least, not {factor:g}", SHEAR_FACTOR_HINT
+            path, f"the largest shear stress over the mean must be at least 1, not {factor:g}", SHEAR_FACTOR_HINT
         )

@@ -49,7 +49,7 @@ def check_stop_form(draft: DraftDocument) -> Iterator[Violation]:
             hint = (
                 f"a {kind.name} has {' and '.join(allowed_keys)}"
                 if kind and allowed_keys
-                else f"one of {', '.join(LIMIT_KEYS)}"
+                else f"give one of {', '.join(LIMIT_KEYS)}"
             )
             yield Violation(path, f"the stop limits {description}", hint, key=True)
             continue
@@ -58,14 +58,16 @@ def check_stop_form(draft: DraftDocument) -> Iterator[Violation]:
             assert kind is not None
             kinds_text = format_kind_names([kind for kind in TYPES.values() if limitable_coordinates(kind)], "and")
             hint = f"a {kind.name} has {' and '.join(allowed_keys)}" if allowed_keys else f"stops limit {kinds_text}"
-            yield Violation(limits_path, f"a {kind.name} has no {quantities[0]} to be limited", hint, key=True)
+            yield Violation(limits_path, f"a {kind.name} has no {quantities[0]} to limit", hint, key=True)
             continue
         low, high = getattr(stop, quantities[0])
         if low is None and high is None:
-            yield Violation(limits_path, "a stop without a limit", "null is no limit: [null, 0.2] has one")
+            yield Violation(
+                limits_path, "a stop without a limit", "null means no limit: give at least one, as in [null, 0.2]"
+            )
         elif low is not None and high is not None and not low < high:
-            message = f"the limits {low:g} and {high:g} leave no way between them"
-            yield Violation(limits_path, message, "the lower limit stands first")
+            message = f"the limits {low:g} and {high:g} leave no range between them"
+            yield Violation(limits_path, message, "give the lower limit first")
 
 
 @rule("stop-joint")
@@ -76,19 +78,19 @@ def check_stop_joint(draft: DraftDocument) -> Iterator[Violation]:
     for name, joint, _, quantity, limits in iter_limited_coordinates(draft):
         path = ("stops", name)
         if (joint, quantity) in driven:
-            message = f"{joint}.{quantity} is driven by {driven[joint, quantity]}: no stop can hold it"
+            message = f"{joint}.{quantity} is driven by {driven[joint, quantity]}: a stop cannot limit it"
             yield Violation((*path, quantity), message, "drive something else, or leave the stop out", key=True)
         rod = draft.document.joints.get(joint)
         fixing_keys = [key for key in ("length", "tension_only") if getattr(rod, key, None)]
         if quantity == "length" and fixing_keys:
             message = f"the rod {joint} gives {fixing_keys[0]}, but between the limits of a stop its length is free"
-            hint = "a rope that catches: tension_only and restitution, without a stop"
-            yield Violation((*path, "joint"), message, f"leave {fixing_keys[0]} out, or {hint}")
+            hint = "for a rope that catches use tension_only and restitution, without a stop"
+            yield Violation((*path, "joint"), message, f"leave {fixing_keys[0]} out; {hint}")
         for side, limit in enumerate(limits):
             other = taken.setdefault((joint, quantity, side), name) if limit is not None else name
             if other != name:
-                message = f"{joint}.{quantity} is limited from {('below', 'above')[side]} by {other} already"
-                yield Violation((*path, quantity, side), message, "one stop a side")
+                message = f"{joint}.{quantity} is already limited from {('below', 'above')[side]} by {other}"
+                yield Violation((*path, quantity, side), message, "one stop per side")
 
 
 def find_driven_coordinates(draft: DraftDocument) -> dict[tuple[str, str], str]:
@@ -108,7 +110,7 @@ def check_stop_start(draft: DraftDocument) -> Iterator[Violation]:
         start_value = getattr(getattr(draft.document.joints.get(joint), "initial", None), quantity, None)
         for limit, is_past in zip(limits, (float.__lt__, float.__gt__), strict=True):
             if start_value is not None and limit is not None and is_outside(start_value, limit, is_past):
-                message = f"{quantity} is held at {start_value:.9g}, beyond the limit {limit:.9g} of the stop {name}"
+                message = f"{quantity} starts at {start_value:.9g}, beyond the limit {limit:.9g} of the stop {name}"
                 yield Violation(("joints", joint, "initial", quantity), message, "start within the limits")
 
 
@@ -123,7 +125,7 @@ def is_outside(value: float, limit: float, is_past: Callable[[float, float], boo
 @rule("restitution")
 def check_restitution(draft: DraftDocument) -> Iterator[Violation]:
     """A restitution is between 0 and 1, and only what may go slack or lift off has one."""
-    hint = "0: no rebound, 1: all of it"
+    hint = "0: no rebound, 1: full rebound"
     for name, stop in draft.document.stops.items():
         if not 0.0 <= stop.restitution <= 1.0:
             message = f"restitution {stop.restitution:g} is not between 0 and 1"
@@ -133,8 +135,8 @@ def check_restitution(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(joint, f.RodJoint) or joint.restitution is None:
             continue
         if not joint.tension_only:
-            message = "restitution of a rod that holds both ways, and so is never struck"
-            yield Violation(path, message, "a rope: tension_only: true; between limits: stops", key=True)
+            message = "restitution of a rod that holds in both directions, which has no impacts"
+            yield Violation(path, message, "for a rope add tension_only: true; for limits use stops", key=True)
         if not 0.0 <= joint.restitution <= 1.0:
             yield Violation(path, f"restitution {joint.restitution:g} is not between 0 and 1", hint)
     yield from paths.check_path_restitution(draft)
@@ -176,13 +178,16 @@ def check_shared_name(draft: DraftDocument) -> Iterator[Violation]:
     if impact_couplings:
         names_by_block["joints"] = {"couplings": [name for name in impact_couplings if name in joints]}
     for name in CAUSE_NAMES.intersection(joints):
-        hint = f"call it {name}_1, say"
+        hint = f"call it {name}_1, for example"
         yield Violation(
-            ("joints", name), f"'{name}' is taken: it is a cause of its own, and this strikes", hint, key=True
+            ("joints", name),
+            f"'{name}' is reserved: it is a cause in the results, and this joint has impacts",
+            hint,
+            key=True,
         )
     for block, others in names_by_block.items():
         for name in entries[block]:
             for other, names in others.items():
                 if name in names:
-                    message = f"'{name}' is taken: {other}.{name} stands beside it in the results"
-                    yield Violation((block, name), message, f"call it {name}_1, say", key=True)
+                    message = f"'{name}' is already used: {other}.{name} has the same name in the results"
+                    yield Violation((block, name), message, f"call it {name}_1, for example", key=True)
