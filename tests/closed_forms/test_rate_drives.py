@@ -165,7 +165,7 @@ def test_zero_assembled_means_one_thing(kind: str) -> None:
 @pytest.mark.parametrize("kind", FROM_THE_START)
 @pytest.mark.parametrize(("value", "initial"), [("0.2 + t", ""), ("t", "0.1")])
 def test_what_is_counted_from_the_start_is_zero_there(kind: str, value: str, initial: str) -> None:
-    with pytest.raises(SolveError, match="counted from the assembled start") as caught:
+    with pytest.raises(SolveError, match="where it is zero by definition") as caught:
         solved(counted(kind, value, initial))
     assert [problem.code for problem in caught.value.problems] == ["held-conflict"]
 

@@ -43,7 +43,7 @@ def test_a_flat_parallelogram_moves_on_in_two_ways(crank: float, rocker: float) 
 
 
 def test_a_flat_parallelogram_cannot_move_otherwise() -> None:
-    with pytest.raises(SolveError, match=r"loop at joint . stands in a singular pose .*singular-pose"):
+    with pytest.raises(SolveError, match=r"loop at joint . is in a singular position .*singular-pose"):
         assemble(flat(1.0, 2.0))
 
 

@@ -208,7 +208,7 @@ def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> No
         ("21/s", "with a unit: 21 1/s"),
         ("5/q", "there are no parameters"),
         ("joints.pivot.force.z", "{of: "),
-        ("\"table('f', t)\"", "without quotes"),
+        ("\"table('f', t)\"", "write no quotes"),
         ("interp(t)", "table(NAME, ...)"),
         ("5*time", "write t"),
         ("5*", "a value is missing"),

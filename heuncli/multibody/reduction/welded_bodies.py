@@ -99,12 +99,12 @@ def find_excluded_body(layout: Layout, parts: BodyParts) -> tuple[int, str] | No
         if parts.is_internal(joint) and ends_run:
             body = max(joint.a, joint.b, key=lambda i: layout.place.get(i, -1))
             what = f"joints.{joint.name} to a body welded to it is driven, limited, coupled or tension-only"
-            return body, f"bodies.{mechanism.bodies[body].name} stays a body by itself: {what}"
+            return body, f"bodies.{mechanism.bodies[body].name} stays a separate body: {what}"
     for owner, candidate in enumerate(mechanism.couplings, len(mechanism.joints)):
         if parts.contains_coupling(candidate):
             body = max(candidate.bodies, key=lambda i: layout.place[i])
             what = f"{mechanism.owner_path(owner)} connects it to a body welded to it"
-            return body, f"bodies.{mechanism.bodies[body].name} stays a body by itself: {what}"
+            return body, f"bodies.{mechanism.bodies[body].name} stays a separate body: {what}"
     return None
 
 

@@ -42,7 +42,7 @@ def _iter_lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield "#"
     yield from map(_format_comment, machine.header_lines)
     yield from map(_format_comment, _left_out_lines(machine))
-    yield _format_comment(f"Written by heun import from {_base_name(machine.file)}, {machine.form}, sha256")
+    yield _format_comment(f"Made by heun import from {_base_name(machine.file)}, {machine.form}, sha256")
     yield _format_comment(machine.sha256)
     yield "heun: 1 # version of the format; plain numbers are SI"
     yield f"title: {_quote_text(_make_safe(machine.title))}"

@@ -164,7 +164,7 @@ def _check_is_new(
 ) -> bool:
     previous = earlier.get(element.name)
     if previous is not None:
-        message = f"the name is already used in line {previous.element.line}"
+        message = f"the name is already used, first in line {previous.element.line}"
         fields.report("import-twice", element.element, element.path, message, "give each its own name")
     return previous is None
 

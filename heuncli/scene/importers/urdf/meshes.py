@@ -105,6 +105,6 @@ def find_mesh_file(name: str, model: str) -> Path:
         found = None
     if found is None:
         raise Finding(
-            "import-shape", "the file does not exist", "put it at the path given in the model; package://NAME is NAME/"
+            "import-shape", "there is no such file", "put it at the path given in the model; package://NAME is NAME/"
         )
     return found
