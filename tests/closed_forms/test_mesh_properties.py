@@ -149,4 +149,4 @@ def test_a_turned_first_axis_is_refused_with_the_one_to_take(tmp_path: Path) -> 
     with pytest.raises(HeunError) as caught:
         solve(load(tmp_path / "a.yaml"))
     assert [p.code for p in caught.value.problems] == ["no-properties"]
-    assert "first_axis: [0, 1, 0] is" in str(caught.value)
+    assert "use first_axis: [0, 1, 0]" in str(caught.value)

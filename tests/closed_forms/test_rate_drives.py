@@ -175,7 +175,7 @@ def test_a_rod_that_is_used_up() -> None:
     bodies, joints = MACHINES["a rod, as it is assembled"][:2]
     text = f"{HEAD}bodies:\n{bodies}joints:\n{joints}drives: {{motor: {{joint: j, speed: -2}}}}\n"
     text += "analysis: {duration: 1}\n"
-    with pytest.raises(SolveError, match=r"the rod j has no length left at t = 0\.85"):
+    with pytest.raises(SolveError, match=r"the length of rod j reaches 0 at t = 0\.85"):
         solved(text)
 
 

@@ -199,7 +199,7 @@ def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> No
         ("math.sin(t)", "write sin"),
         ("t^2", "**"),
         ("'1,5'", "1.5"),
-        ("5*sin(t) N", "leave N out"),
+        ("5*sin(t) N", "leave out N"),
         ("5 N * sin(t)", "name 5 N under parameters"),
         ("50%", "0.5"),
         ("'if(t > 1, 5, 0)'", "a if c else b"),

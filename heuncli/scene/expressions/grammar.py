@@ -592,7 +592,7 @@ class _Parser:
         message, suggestion = f"'{name}' is not a {kind}", find_similar(name, *known)
         is_near = suggestion is not None and suggestion.lower() == name.lower()
         if not is_near and kind == "parameter" and (unit := si_expression_hint("", name)) is not None:
-            return Finding("unknown-name", message, f"e.g. 20 {name}" if self.scope.with_units else unit)
+            return Finding("unknown-name", message, f"write e.g. 20 {name}" if self.scope.with_units else unit)
         if kind == "parameter" and self.scope.own and suggestion is None:
             return Finding("unknown-name", message, f"quantities of the load itself: {', '.join(self.scope.own)}")
         listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
