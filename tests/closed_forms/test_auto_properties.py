@@ -80,9 +80,9 @@ def test_along_a_stepped_bar() -> None:
 
 
 @pytest.mark.parametrize(("shapes", "where", "more", "why"), [
-    (ROUND, "at: [0.5, 0, 0], normal: [1, 0.1, 0]", "", "askew"),
-    (BOX, "at: [0.5, 0, 0], normal: [1, 0.1, 0]", "", "askew"),
-    (BOX, AT, ", first_axis: [0, 1, 1]", "e1 is not along a side"),
+    (ROUND, "at: [0.5, 0, 0], normal: [1, 0.1, 0]", "", "obliquely"),
+    (BOX, "at: [0.5, 0, 0], normal: [1, 0.1, 0]", "", "obliquely"),
+    (BOX, AT, ", first_axis: [0, 1, 1]", "e1 is not parallel to a side"),
     (THIN, AT, "", "no shape with a thickness"),
     (f"{ROUND}, {CORE}", AT, "", "overlap"),
     (f"{ROUND}, {BOX}", AT, "", "round and rectangular"),

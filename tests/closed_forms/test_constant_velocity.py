@@ -70,4 +70,4 @@ def test_axes_that_point_against_each_other() -> None:
     (problem,) = refused.value.problems
     assert problem.code == "cv-bend"
     assert "151.4 deg" in problem.message
-    assert "turn one of them round" in problem.hint
+    assert "reverse one of them" in problem.hint

@@ -432,7 +432,7 @@ def test_what_moves_though_it_could_have_stayed_is_told() -> None:
     found = solved(scene)
     near([found.coordinates[n]["rate"][0] for n in "abc"], (10, -2, 4), 10.0, ROUNDING)
     (sentence,) = found.model["started"]
-    assert sentence.startswith("the couplings set in motion b (2 rad/s), c (4 rad/s): other rates meet them as well")
+    assert sentence.startswith("the couplings set in motion b (2 rad/s), c (4 rad/s): other rates also satisfy them")
 
 
 @pytest.mark.parametrize(("joint", "origin"), [(None, (0.0, -2.0, 0.0)), ("line", (0.0, -2.0, 0.0)), ("ball", None)])

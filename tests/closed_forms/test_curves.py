@@ -223,7 +223,7 @@ def test_a_start_where_a_path_meets_itself() -> None:
         force = solved(text).joints["wire"]["force"][0]
         near(force, along_the_eight(np.array(s), np.array(2.0))[2], 20.0, 1e-9)
     driven = held[0].replace(", initial: {travel: 0.0, speed: 2}", "")
-    with pytest.raises(SolveError, match=r"at travel 0 and 3\.14159: on which branch is not told"):
+    with pytest.raises(SolveError, match=r"at travel 0 and 3\.14159: the branch is not given"):
         solved(driven)
     drive = f"drives: {{go: {{joint: wire, travel: '{math.pi} + 2*t'}}}}\nanalysis"
     results = solved(driven.replace("analysis", drive))

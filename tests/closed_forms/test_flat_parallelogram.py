@@ -67,7 +67,7 @@ def test_refused_with_exit_code_and_reason(tmp_path: Any, capsys: pytest.Capture
             assert json.loads(out)["joints"]["A"]["force"][0][0] is None
         else:
             assert out == ""
-            assert "singular pose" in err and "no acceleration" in err and "[singular-pose]" in err
+            assert "singular position" in err and "no acceleration" in err and "[singular-pose]" in err
             assert "rate of one more joint" in err
     assert codes == {(1, 1): 0, (1, -3): 0, (1, 2): 3}
 

@@ -95,7 +95,7 @@ def test_two_pins_at_a_sheave_may_point_opposite_ways(sense: float) -> None:
     near(solved(scene).coordinates["rails"]["acceleration"], -RISES, G, 1e-12)
     scene["couplings"]["hoist"]["through"][1]["side"] = "right"
     if sense < 0.0:
-        with pytest.raises(SolveError, match="opposite ways"):
+        with pytest.raises(SolveError, match="opposite directions"):
             solved(scene)
     else:
         near(solved(scene).coordinates["rails"]["acceleration"], -RISES, G, 1e-12)

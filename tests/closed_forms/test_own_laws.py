@@ -166,7 +166,7 @@ forces: {f: {type: bushing, from: ground.O, to: m.c, stiffness: [1, 2, 3], turni
 def test_a_parameter_of_the_same_name() -> None:
     """It would be a guess which of the two is meant."""
     text = block("{type: spring, from: ground.O, to: m.c, force: -k*length}").replace("far: 0.3", "length: 0.3")
-    with pytest.raises(SpecError, match="'length' is a parameter"):
+    with pytest.raises(SpecError, match="'length' is both a parameter"):
         solved(text)
 
 

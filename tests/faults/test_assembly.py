@@ -24,7 +24,7 @@ def refusal(s: Mechanism) -> tuple[str, str]:
 def test_links_too_short_to_meet() -> None:
     code, text = refusal(four_bar(1.0, 1.0, 0.5, 3.0))
     assert code == "does-not-fit"
-    assert "joint C (pin) cannot be closed: its points on coupler and rocker stay 0.5 m from where they belong" in text
+    assert "joint C (pin) cannot be assembled: its points on coupler and rocker remain 0.5 m from where" in text
     assert "near" in text
 
 
@@ -50,7 +50,7 @@ def test_two_held_positions_that_contradict() -> None:
     )
     code, text = refusal(s)
     assert code == "held-conflict"
-    assert "joint j (ball): its points on a and b stay 0.25 m from where they belong; both are held" in text
+    assert "joint j (ball): its points on a and b remain 0.25 m from where the joint requires them; both are prescribed" in text
     assert "leave out the position of one of them" in text
 
 
@@ -59,7 +59,7 @@ def test_two_held_attitudes_that_contradict() -> None:
         scene([body("a", rotation=turned(X, 30))], [joint("j", "pin", "ground", (0, 0, 0), "a", (0, 0, 0), Z)])
     )
     assert code == "held-conflict"
-    assert "joint j (pin): ground and a stay turned by 30 deg from what it allows; both are held" in text
+    assert "joint j (pin): ground and a remain misaligned by 30 deg; both are prescribed" in text
 
 
 def test_a_held_attitude_against_an_initial_angle_and_a_drive() -> None:
@@ -69,7 +69,7 @@ def test_a_held_attitude_against_an_initial_angle_and_a_drive() -> None:
         )
         code, text = refusal(s)
         assert code == "held-conflict"
-        assert "turned by 18.6 deg" in text
+        assert "misaligned by 18.6 deg" in text
         assert hint in text
 
 
@@ -79,12 +79,12 @@ def test_a_held_attitude_against_an_initial_angle_and_a_drive() -> None:
         (
             "pin",
             {"angle": 0.5, "drive": ("angle", in_time("t"))},
-            "initial angle 0.5 rad contradicts drive motor, which asks for 0 rad",
+            "initial angle 0.5 rad contradicts drive motor, which requires 0 rad",
         ),
         (
             "pin",
             {"rate": 0.5, "drive": ("angle", in_time("2*t"))},
-            "initial rate 0.5 rad/s contradicts drive motor, which asks for 2 rad/s",
+            "initial rate 0.5 rad/s contradicts drive motor, which requires 2 rad/s",
         ),
         (
             "slide",
@@ -99,12 +99,12 @@ def test_a_held_attitude_against_an_initial_angle_and_a_drive() -> None:
         (
             "pin",
             {"drive": ("angle", in_time("0.3 + t"), True)},
-            "angle 0.3 rad at the start, but it is counted from the assembled start",
+            "angle 0.3 rad at the start, where it is zero by definition",
         ),
         (
             "pin",
             {"angle": 0.3, "to_axis": (0, 0, 1)},
-            "angle 0.3 rad at the start, but it is counted from the assembled start",
+            "angle 0.3 rad at the start, where it is zero by definition",
         ),
     ],
 )
@@ -164,7 +164,7 @@ def test_held_rates_that_contradict() -> None:
     )
     code, text = refusal(s)
     assert code == "rates-do-not-fit"
-    assert "joint j (ball): the start velocities of a and b differ there by 2 m/s more than it allows" in text
+    assert "joint j (ball): the start velocities of a and b are incompatible at the joint by 2 m/s" in text
 
 
 def test_a_spin_that_a_pin_cannot_have() -> None:

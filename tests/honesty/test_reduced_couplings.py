@@ -84,14 +84,14 @@ def gear(more: str = "") -> str:
 
 
 NOT_FLAT = {  # of a frame on a ball, and what is told
-    "teeth that push along the axes": (scene, (gear(", helix: 0.01"),), "the force of couplings.m points out of it"),
-    "a rope's point beside it": (scene, (ROPE, "ball", "pin", "[0, 0, 1]", 1e-9), "a point of couplings.m lies 1e-09"),
+    "teeth that push along the axes": (scene, (gear(", helix: 0.01"),), "the force of couplings.m points out of the plane"),
+    "a rope's point beside it": (scene, (ROPE, "ball", "pin", "[0, 0, 1]", 1e-9), "a point of couplings.m is 1e-09"),
     "a turn that the plane has not": (
-        scene, (RATIO, "pin", "pin", "[1, 0, 0]"), "couplings.m counts second.angle, a coordinate out of it"
+        scene, (RATIO, "pin", "pin", "[1, 0, 0]"), "couplings.m uses second.angle, an out-of-plane coordinate"
     ),
     "a shift that the plane has not": (
         scene, ("couplings: {m: {type: screw, of: [second], lead: 0.1}}", "pin", "cylinder"),
-        "couplings.m counts second.travel, a coordinate out of it",
+        "couplings.m uses second.travel, an out-of-plane coordinate",
     ),
 }  # fmt: skip
 
@@ -129,7 +129,7 @@ def test_a_scene_in_space_tells_which_coupling_makes_it_one() -> None:
     assert found is not None
     assert not found.explanations
     assert found.exceptions == (
-        "not solved in the plane across x: couplings.m counts second.angle, a coordinate out of it",
+        "not solved in the plane normal to x: couplings.m uses second.angle, an out-of-plane coordinate",
     )
 
 

@@ -54,8 +54,8 @@ def test_the_model_is_not_written_over(heun, arm):
 @pytest.mark.usefixtures("arm")
 def test_strict_writes_nothing_where_something_is_left_out(heun, folder):
     easy = heun("import", "rubbed.urdf")
-    assert easy.returncode == 0 and 'friction="0.1" is not taken over [import-left-out]' in easy.stderr
-    assert '# Left out:\n# - joint shoulder: friction="0.1" is not taken over\n' in easy.stdout
+    assert easy.returncode == 0 and 'friction="0.1" is left out [import-left-out]' in easy.stderr
+    assert '# Left out:\n# - joint shoulder: friction="0.1" is left out\n' in easy.stdout
     assert not heun("import", "rubbed.urdf", "--quiet").stderr
     strict = heun("import", "rubbed.urdf", "--strict", "-o", "r.yaml")
     assert strict.returncode == 1 and not strict.stdout and not (folder / "r.yaml").exists()
@@ -65,7 +65,7 @@ def test_strict_writes_nothing_where_something_is_left_out(heun, folder):
 def test_what_is_wrong_leaves_with_2_and_writes_nothing(heun, folder):
     done = heun("import", "wrong.urdf", "-o", "w.yaml")
     assert done.returncode == 2 and not done.stdout and not (folder / "w.yaml").exists()
-    assert "wrong.urdf:38:3: joint shoulder: its parent 'bas' is no link [import-tree]" in done.stderr
+    assert "wrong.urdf:38:3: joint shoulder: its parent 'bas' is not a link [import-tree]" in done.stderr
     assert "did you mean base?" in done.stderr
 
 

@@ -56,7 +56,7 @@ def test_refused_with_a_place(name):
 def test_of_what_is_no_xml_at_all_is_said_what_is_read(name):
     with pytest.raises(SpecError) as refused:
         imported(REFUSED[name][0])
-    assert refused.value.problems[0].hint.startswith("a URDF begins with <robot")
+    assert refused.value.problems[0].hint.startswith("a URDF file begins with <robot")
 
 
 def test_more_elements_than_are_read_are_refused_while_they_come(monkeypatch):

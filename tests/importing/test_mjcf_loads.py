@@ -76,7 +76,7 @@ def test_joints_that_follow_each_other_do_not_fall():
     )
     machine = described(circle)
     assert [problem.message.split(": ")[-1] for problem in machine.left_out] == [
-        "turn follows a joint that nothing else holds"
+        "turn follows a joint that nothing else drives"
     ]
     assert [one.keys["joint"] for one in machine.drives] == ["turn", "way"]
     assert machine.drives[1].keys["travel"] == "0.5*turn"

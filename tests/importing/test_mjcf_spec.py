@@ -64,7 +64,7 @@ def test_the_spec_of_a_leg():
     assert "motor" not in text and "# actuator 'knee', gear 3" in text
     assert "spring_hip_x: {type: turn_spring, joint: hip_x, stiffness: 2, angle: 0.17453292519943295}" in text
     assert "damping_hip_x: {type: damper, joint: hip_x, coefficient: 0.5}" in text
-    assert "its 3 kg are not in the load on the foundation" in text
+    assert "their 3 kg are not in the load on the foundation" in text
 
 
 def test_the_start_is_the_models_zero_or_a_keyframe():
@@ -78,7 +78,7 @@ def test_the_start_is_the_models_zero_or_a_keyframe():
         [study.results.joints[name]["drive"][0] for name in ("hip_x", "hip_y", "shin")], data.qfrc_inverse, 30.0, 1e-13
     )
     assert imported(LEG, keyframe="1") != imported(LEG, keyframe="bent")
-    with pytest.raises(SpecError, match="no keyframe is called 'bend'") as refused:
+    with pytest.raises(SpecError, match="there is no keyframe 'bend'") as refused:
         imported(LEG, keyframe="bend")
     assert "bent" in refused.value.problems[0].hint
 
@@ -98,23 +98,23 @@ LEFT = {  # what is left out, and what the warning says of it
     "friction": (scene('<body><joint name="f" frictionloss=".1"/><geom size=".1"/></body>'), "frictionloss.*joint f"),
     "ball spring": (scene('<body><joint name="b" type="ball" stiffness="1"/><geom size=".1"/></body>'), "springs.*b"),
     "free damping": (
-        scene('<body><joint name="r" type="free" damping="1"/><geom size=".1"/></body>'), "damping of a free.*joint r",
+        scene('<body><joint name="r" type="free" damping="1"/><geom size=".1"/></body>'), "damping of free.*joint r",
     ),
     "servo": (scene(rest='<actuator><position name="p" joint="elbow"/></actuator>'), "actuators with.*actuator p"),
     "muscle": (scene(rest='<actuator><muscle name="m" joint="elbow" lengthrange="0 1"/></actuator>'), "actuators"),
-    "fluid": (scene(option='density="1.2"'), "forces of a fluid"),
+    "fluid": (scene(option='density="1.2"'), "fluid forces"),
     "contact": (
         scene('<body><joint/><geom size=".1" contype="1"/><geom size=".1"/></body><geom size="1" conaffinity="1"/>'),
-        "contacts are not in a spec: 2 of 4 geoms",
+        "contacts are left out: 2 of 4 geoms",
     ),
     "pair": (
         scene('<body><joint/><geom name="x" size=".1"/></body>', '<contact><pair geom1="x" geom2="bar"/></contact>'),
-        "contacts are not in a spec: 2 of 2",
+        "contacts are left out: 2 of 2",
     ),
     "mocap": (scene('<body name="hand" mocap="true"/>'), "mocap.*body hand"),
     "fixed tendon": (
         scene(rest='<tendon><fixed name="t" stiffness="3"><joint joint="elbow" coef="1"/></fixed></tendon>'),
-        "tendons are in a spec where they run straight.*tendon t",
+        "tendons are left out unless they run straight.*tendon t",
     ),
     "limited tendon": (
         scene('<site name="w" pos="0 1 0"/>', '<tendon><spatial name="t" stiffness="3" range="0 2"><site site="tip"/>'
@@ -126,12 +126,12 @@ LEFT = {  # what is left out, and what the warning says of it
     ),
     "twice": (
         scene(rest='<equality><joint joint1="elbow"/><joint name="s" joint1="elbow" polycoef="1 0 0 0 0"/></equality>'),
-        "equality 's': elbow follows twice",
+        "equality 's': elbow follows two joints",
     ),
     "turned weld": (
         scene('<body name="lid" pos="0 1 0"><freejoint/><geom size=".1"/></body>',
               '<equality><weld name="w" body1="lid" body2="arm" relpose="0 0 0 .7 .7 0 0"/></equality>'),
-        "equality 'w': a weld that turns its bodies by 90 degrees",
+        "equality 'w': a spec has no weld that rotates its bodies by 90 degrees",
     ),
 }  # fmt: skip
 
@@ -158,15 +158,15 @@ REFUSED = {
     "no mass": ("<mujoco><worldbody><body>\n<joint/></body></worldbody></mujoco>", "import-mjcf", 1, "mass and"),
     "no file": ('<mujoco><asset><mesh file="x.stl"/></asset></mujoco>', "import-mjcf", None, "x.stl"),
     "nan": ('<mujoco><option gravity="nan 0 0"/></mujoco>', "import-number", 1, "gravity"),
-    "device": ('<mujoco><asset>\n<mesh file="/dev/zero"/></asset></mujoco>', "import-file", 2, "no regular file"),
-    "included device": ('<mujoco>\n<include file="/dev/zero"/></mujoco>', "import-file", 2, "no regular file"),
+    "device": ('<mujoco><asset>\n<mesh file="/dev/zero"/></asset></mujoco>', "import-file", 2, "not a regular file"),
+    "included device": ('<mujoco>\n<include file="/dev/zero"/></mujoco>', "import-file", 2, "not a regular file"),
     "replicas": (
         '<mujoco><worldbody><replicate count="10000"><replicate count="10000"/></replicate></worldbody></mujoco>',
         "too-large", 1, "100,000,000",
     ),
     "texture": ('<mujoco><asset><texture width="99999" height="99999"/></asset></mujoco>', "too-large", 1, "texture"),
     "latin": (LATIN, "not-xml", 1, "UTF-8"),
-    "nothing moves": ("<mujoco/>", "import-mass", 1, "nothing moves"),
+    "nothing moves": ("<mujoco/>", "import-mass", 1, "nothing can move"),
 }  # fmt: skip
 
 
@@ -214,7 +214,7 @@ def test_without_mujoco_the_command_says_how_to_get_it(monkeypatch):
     real = builtins.__import__
     monkeypatch.setattr(builtins, "__import__", importing)
     monkeypatch.delitem(sys.modules, "mujoco")
-    with pytest.raises(SpecError, match="it is not installed") as refused:
+    with pytest.raises(SpecError, match="which is not installed") as refused:
         imported(LEG)
     assert refused.value.problems[0].code == "missing-extra"
     assert 'pip install "heuncli[mujoco]"' in refused.value.problems[0].hint
@@ -225,4 +225,4 @@ def test_a_pipe_is_not_waited_for(heun, folder):
     os.mkfifo(folder / "p.stl")
     (folder / "m.xml").write_text('<mujoco><asset><mesh file="p.stl"/></asset></mujoco>')
     done = heun("import", "m.xml")
-    assert done.returncode == 2 and "p.stl is no regular file" in done.stderr
+    assert done.returncode == 2 and "p.stl is not a regular file" in done.stderr

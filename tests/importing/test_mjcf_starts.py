@@ -38,7 +38,7 @@ def test_what_slides_in_a_loop_starts_on_the_side_of_the_keyframe():
 def test_what_floats_goes_with_what_an_equality_welds_it_to():
     for results, angle in ((solved(CUP), 0.0), (solved(CUP, j="30 deg"), np.pi / 6), (solved(CUP, "typed"), 0.5)):
         near(results.bodies["cup"]["center"][0], [0.7 * np.cos(angle), 0, 1 - 0.7 * np.sin(angle)], 1.0, 1e-12)
-    assert "its rates follow from what holds it" in imported(
+    assert "its start velocities follow from its constraints" in imported(
         CUP.replace('1 0 0 0 0 0 0"/>', '1 0 0 0 0 1 0"/>'), keyframe="typed"
     )
     assert "near" not in imported(CUP.replace('<weld body1="arm" body2="cup"/>', ""))

@@ -35,18 +35,18 @@ TWO = (link("a"), link("b"))
 MIMIC = '<mimic joint="{}" multiplier="2"/>'
 REFUSED = {  # the lines, and of each problem its line, code, and words of message or hint
     "no links": ([], [(1, "import-tree", "no links")]),
-    "unknown link": ([*TWO, joint("j", "aa", "b")], [(4, "import-tree", "its parent 'aa' is no link")]),
+    "unknown link": ([*TWO, joint("j", "aa", "b")], [(4, "import-tree", "its parent 'aa' is not a link")]),
     "two parents": (
         [*TWO, link("c"), joint("j", "a", "b"), joint("k", "c", "b")],
-        [(6, "import-tree", "two parents: it is the child of j")],
+        [(6, "import-tree", "two parents: it is also the child of joint j")],
     ),
-    "two roots": ([*TWO], [(3, "import-tree", "2 links are nobody's child: a, b")]),
-    "no root": ([*TWO, joint("j", "a", "b"), joint("k", "b", "a")], [(5, "import-tree", "a circle of links")]),
+    "two roots": ([*TWO], [(3, "import-tree", "2 links have no parent, but only one may be the root: a, b")]),
+    "no root": ([*TWO, joint("j", "a", "b"), joint("k", "b", "a")], [(5, "import-tree", "the links form a loop")]),
     "circle beside a root": (
         [*TWO, link("c"), joint("j", "b", "c"), joint("k", "c", "b")],
-        [(6, "import-tree", "a circle of links: b, c, b")],
+        [(6, "import-tree", "the links form a loop: b, c, b")],
     ),
-    "own child": ([link("a"), joint("j", "a", "a")], [(3, "import-tree", "a circle of links: a, a")]),
+    "own child": ([link("a"), joint("j", "a", "a")], [(3, "import-tree", "the links form a loop: a, a")]),
     "name twice": ([link("a"), link("a")], [(3, "import-twice", "first in line 2")]),
     "joint twice": (
         [*TWO, joint("j", "a", "b"), joint("j", "a", "b")], [(5, "import-twice", "first in line 4")],
@@ -60,9 +60,9 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     "unknown type": ([*TWO, joint("j", "a", "b", kind="ball")], [(4, "import-joint", "three revolute")]),
     "axis of nothing": ([*TWO, joint("j", "a", "b", '<axis xyz="0 0 0"/>')], [(4, "import-joint", "axis is 0 0 0")]),
     "axis of two": ([*TWO, joint("j", "a", "b", '<axis xyz="0 1"/>')], [(4, "import-number", "found 2")]),
-    "comma": ([*TWO, joint("j", "a", "b", '<origin xyz="0,1,2"/>')], [(4, "import-number", "apart by spaces")]),
+    "comma": ([*TWO, joint("j", "a", "b", '<origin xyz="0,1,2"/>')], [(4, "import-number", "separate numbers by spaces")]),
     "macro": ([*TWO, joint("j", "a", "b", '<origin xyz="${x} 0 0"/>')], [(4, "import-number", "xacro")]),
-    "xacro": (["<xacro:arm/>"], [(2, "import-xacro", "<xacro:arm> is a macro")]),
+    "xacro": (["<xacro:arm/>"], [(2, "import-xacro", "<xacro:arm> is a xacro macro")]),
     "unknown part": ([*TWO, joint("j", "a", "b"), "<loop_joint/>"], [(5, "import-part", "<loop_joint>")]),
     "quaternion": (
         [*TWO, joint("j", "a", "b", '<origin quat_xyzw="0 0 0 1"/>')], [(4, "import-attribute", "quat_xyzw")],
@@ -114,7 +114,7 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
             joint("j", "a", "b"), joint("k", "b", "c"),
         ],
         [
-            (2, "import-inertia", "all moments are 0"), (3, "import-inertia", "negative: -1, 1, 1"),
+            (2, "import-inertia", "all moments of inertia are 0"), (3, "import-inertia", "negative: -1, 1, 1"),
             (4, "import-inertia", "principal moments 1, 1, 3"),
         ],
     ),
@@ -129,11 +129,11 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     "no mass at all": (
         [link("a", ""), link("b", ""), joint("j", "a", "b", kind="fixed")], [(1, "import-mass", "no link")],
     ),
-    "mimic of nothing": ([*TWO, joint("j", "a", "b", MIMIC.format("jj"))], [(4, "import-mimic", "no joint")]),
+    "mimic of nothing": ([*TWO, joint("j", "a", "b", MIMIC.format("jj"))], [(4, "import-mimic", "not a joint")]),
     "mimic of itself": ([*TWO, joint("j", "a", "b", MIMIC.format("j"))], [(4, "import-mimic", "follows itself")]),
     "mimics in a circle": (
         [*TWO, link("c"), joint("j", "a", "b", MIMIC.format("k")), joint("k", "b", "c", MIMIC.format("j"))],
-        [(5, "import-mimic", "follows itself, by j, k")],
+        [(5, "import-mimic", "follows itself, through j, k")],
     ),
     "mimic of a weld": (
         [*TWO, link("c"), joint("j", "a", "b", kind="fixed"), joint("k", "b", "c", MIMIC.format("j"))],
@@ -207,6 +207,6 @@ def test_moments_of_no_mass_are_left_out_where_that_is_asked_for():
     ]  # fmt: skip
     text = imported(robot(*lines), repair=frozenset({"massless"}))
     for name in ("b", "c"):
-        assert f'Repaired (massless): the link "{name}" has the mass 0; its inertia is left out.' in text
-    assert "mass: 1e-06 # repaired (massless): the link has the mass 0 in the file" in text
+        assert f'Repaired (massless): the link "{name}" has mass 0; its inertia is left out.' in text
+    assert "mass: 1e-06 # repaired (massless): the link has mass 0 in the file" in text
     assert "  b:" not in text

@@ -64,7 +64,7 @@ def test_what_shifts_in_a_plane_is_not_turned_over_where_the_plane_is_lifted():
             load("r.yaml", lifted, {"j": f"{lift} m"}), Options(requested_reports=frozenset({"motion"}))
         ).results
         near(found.bodies["c"]["quaternion"][0], [1, 0, 0, 0], 1.0, 1e-14)
-    with pytest.raises(SpecError, match="a planar joint behind j, which turns its plane"):
+    with pytest.raises(SpecError, match="a planar joint after j, which rotates its plane"):
         imported(robot(*parts, joint("j", "a", "b", "continuous", '<axis xyz="1 0 0"/>')))
 
 
@@ -197,8 +197,8 @@ def test_angles_that_are_nearly_right_are_kept_and_told_or_taken_for_right():
         link("a"), link("b"), joint("j", "a", "b", "revolute", '<origin rpy="1.5708 0 0"/><axis xyz="0 0 1"/>')
     )
     kept, right = imported(parts), imported(parts, repair=frozenset({"right-angles"}))
-    assert "nearly right ones, are kept as they are: joint j" in kept
-    assert "taken for right angles (--repair right-angles): joint j" in right
+    assert "Nearly right angles, such as 1.5708, are kept unchanged: joint j" in kept
+    assert "read as right angles (--repair right-angles): joint j" in right
     assert "axis: [0, -1, 0]" in right
     (x, y, z) = spec_of(kept).joints["j"].axis
     assert (x, y) == (0, pytest.approx(-1)) and z == pytest.approx(np.cos(1.5708), rel=1e-9)
@@ -209,7 +209,7 @@ def test_damping_is_a_damper_and_friction_is_told_to_be_left_out():
     machine = described(parts)
     assert [(problem.code, problem.location.line) for problem in machine.left_out] == [("import-left-out", 1)]
     assert "damping_j: {type: damper, joint: j, coefficient: 0.5}" in imported(parts)
-    assert '# Left out:\n# - joint j: friction="0.1" is not taken over\n' in imported(parts)
+    assert '# Left out:\n# - joint j: friction="0.1" is left out\n' in imported(parts)
 
 
 def test_damping_of_what_shifts_and_turns_is_told_to_be_left_out():

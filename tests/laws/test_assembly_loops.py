@@ -123,7 +123,7 @@ def test_a_start_in_line_is_folded_and_said_so() -> None:
     s = four_bar(1.0, 1.0, 1.02, 3.0)
     a = assemble(s)
     assert largest_gap(s, a) < 1e-15
-    assert any("joint C started in line" in line for line in a.start_choices)
+    assert any("joint C starts with its links in line" in line for line in a.start_choices)
     assert not any("in line" in line for line in assemble(slider_crank(angle=1.0)).start_choices)
 
 

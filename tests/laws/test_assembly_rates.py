@@ -43,7 +43,7 @@ def test_a_flat_parallelogram_moves_on_in_two_ways(crank: float, rocker: float) 
 
 
 def test_a_flat_parallelogram_cannot_move_otherwise() -> None:
-    with pytest.raises(SolveError, match=r"loop at joint . stands in a singular pose .*singular-pose"):
+    with pytest.raises(SolveError, match=r"loop at joint . is in a singular position .*singular-pose"):
         assemble(flat(1.0, 2.0))
 
 
@@ -210,7 +210,7 @@ def test_a_resting_loop_rests() -> None:
 def test_at_a_dead_centre_the_crank_may_turn_but_not_the_piston() -> None:
     a = assemble(slider_crank(angle=0.0, rate=2.0))
     assert a.velocity[2] == pytest.approx([0, 0, 0], abs=1e-15)
-    with pytest.raises(SolveError, match=r"joint \w+ \(\w+\): .* 1 m/s more.*rates-do-not-fit"):
+    with pytest.raises(SolveError, match=r"joint \w+ \(\w+\): .* incompatible .* 1 m/s.*rates-do-not-fit"):
         assemble(moving_piston(0.0))
     b = assemble(moving_piston(np.radians(90)))
     assert b.angular_velocity[0] == pytest.approx([0, 0, -10.0], abs=1e-12)

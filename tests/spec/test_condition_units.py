@@ -93,7 +93,7 @@ def refused(text: str) -> Finding:
         ("guide.travel > 3 q", "expression-syntax", "write 3*q"),
         ("guide.travel > 2 t", "expression-syntax", "write 2*t"),
         ("guide.speed*q > 2 km/m", "expression-syntax", "write (2 km)/m"),
-        ("guide.travel > mm", "unknown-name", "as in 20 mm"),
+        ("guide.travel > mm", "unknown-name", "write e.g. 20 mm"),
         ("20 mm", "condition", "never changes"),
         ("guide.travel > 1e308 km", "not-computable", "too large"),
     ],

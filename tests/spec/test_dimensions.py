@@ -80,7 +80,7 @@ def test_what_is_certain(text: str, unit: str | None) -> None:
         ("v*t + m*g", "adds a length and a force"),
         ("L < m", "compares a length and a mass"),
         ("0 < L < m", "compares a length and a mass"),
-        ("min(L, 1, m)", "takes the least of a length and a mass"),
+        ("min(L, 1, m)", "takes the smallest of a length and a mass"),
         ("atan2(L, m)", "takes atan2 of a length and a mass"),
         ("L if t < 1 else m", "chooses between a length and a mass"),
         ("F if 1 < 2 else m", "chooses between a force and a mass"),

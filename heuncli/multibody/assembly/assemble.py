@@ -86,7 +86,10 @@ def _find_rates(
         start_choices=(),
         gap=start_poses.gap,
     )
-    folds = [f"the loop at joint {name} started in line: folded in a fixed way" for name in start_poses.folded_joints]
+    folds = [
+        f"the loop at joint {name} starts with its links in line; the fold direction was chosen by a fixed rule"
+        for name in start_poses.folded_joints
+    ]
     choices = find_pose_choices(
         mechanism, start_poses.drawn_poses, start_poses.poses, start_poses.tree, start_poses.fitted_bodies, size
     )

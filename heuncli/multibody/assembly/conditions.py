@@ -112,7 +112,7 @@ def _joint_condition(mechanism: Mechanism, k: int, joint: Joint, t0: float, prob
         stretch = jet.rate, jet.acceleration
     if length is not None and length <= 0.0:
         message = f"joint {joint.name} (rod): its length is {length:.6g} m at the start"
-        hint = "give a length above zero; for zero take a ball"
+        hint = "give a length above zero; for zero length use a ball"
         problems.append(Problem("no-length", message, hint=hint, entry_path=f"joints.{joint.name}"))
 
     kind = JOINTS[joint.kind]
@@ -170,7 +170,7 @@ def condition_on_tangent(d: JointCondition, x: Array, R: Array) -> JointConditio
 
 def _not_computable_problem(drive: Drive, t0: float) -> Problem:
     message = f"drive {drive.name}: {drive.quantity} '{drive.value.source}' or a derivative cannot be computed"
-    hint = "a drive needs finite rates and accelerations: begin it smoothly, as t**2 or with a table"
+    hint = "a drive needs finite rates and accelerations: start it smoothly, e.g. with t**2 or a table"
     return Problem("not-computable", f"{message} at t = {t0:g} s", drive.value.location, hint)
 
 
@@ -224,7 +224,7 @@ def _compare(joint: Joint, initial: InitialValue, drive_value: float) -> list[Pr
         return []
     message = (
         f"joint {joint.name}: initial {what} {held:.6g} {unit} contradicts drive {joint.drive.name}, "
-        f"which asks for {drive_value:.6g} {unit} at the start"
+        f"which requires {drive_value:.6g} {unit} at the start"
     )
     return [Problem("held-conflict", message, hint=f"leave out the initial {what}; the drive sets it",
                     entry_path=f"joints.{joint.name}")]  # fmt: skip
@@ -234,7 +234,7 @@ def _not_zero_problem(joint: Joint, initial: InitialValue, value: float) -> Prob
     what, unit, _ = initial
     return Problem(
         "held-conflict",
-        f"joint {joint.name}: {what} {value:.6g} {unit} at the start, but it is counted from the assembled start",
-        hint="let it be zero there, or leave out to_axis and zero: assembled",
+        f"joint {joint.name}: {what} {value:.6g} {unit} at the start, where it is zero by definition",
+        hint="set it to zero, or leave out to_axis and zero: assembled",
         entry_path=f"joints.{joint.name}",
     )

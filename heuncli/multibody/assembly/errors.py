@@ -23,22 +23,22 @@ def does_not_fit(mechanism: Mechanism, distance: Array, angle: Array, size: floa
     is_distance = bool(distance[k] >= size * angle[k])
     between = f"{_name(mechanism, joint.a)} and {_name(mechanism, joint.b)}"
     if is_distance:
-        gap = f"its points on {between} stay {distance[k]:.3g} m from where they belong"
+        gap = f"its points on {between} remain {distance[k]:.3g} m from where the joint requires them"
     else:
-        gap = f"{between} stay turned by {math.degrees(angle[k]):.3g} deg from what it allows"
+        gap = f"{between} remain misaligned by {math.degrees(angle[k]):.3g} deg"
     if all(_is_held(mechanism, i, is_distance) for i in (joint.a, joint.b)):
         what = "position" if is_distance else "orientation"
         return SolveError(
             Problem(
                 "held-conflict",
-                f"joint {joint.name} ({joint.kind}): {gap}; both are held",
+                f"joint {joint.name} ({joint.kind}): {gap}; both are prescribed",
                 hint=f"leave out the {what} of one of them" + _other_hints(mechanism, k, joints),
                 entry_path=f"joints.{joint.name}",
             )
         )
     return SolveError(Problem(
-        "does-not-fit", f"joint {joint.name} ({joint.kind}) cannot be closed: {gap}",
-        hint="check the points and lengths; hold fewer values; or draw the bodies nearer with near:"
+        "does-not-fit", f"joint {joint.name} ({joint.kind}) cannot be assembled: {gap}",
+        hint="check the points and lengths; prescribe fewer start values; or set closer start positions by near:"
         + _other_hints(mechanism, k, joints), entry_path=f"joints.{joint.name}",
     ))  # fmt: skip
 
@@ -52,11 +52,11 @@ def rates_do_not_fit(mechanism: Mechanism, speed: Array, spin: Array, size: floa
     gap = f"{speed[k]:.3g} m/s" if speed[k] >= size * spin[k] else f"{spin[k]:.3g} rad/s"
     message = (
         f"joint {joint.name} ({joint.kind}): the start velocities of {_name(mechanism, joint.a)} and "
-        f"{_name(mechanism, joint.b)} differ there by {gap} more than it allows"
+        f"{_name(mechanism, joint.b)} are incompatible at the joint by {gap}"
     )
     return SolveError(Problem(
         "rates-do-not-fit", message,
-        hint="hold fewer velocities; what is left out follows the joints" + _drive_hint(mechanism, joints),
+        hint="prescribe fewer velocities; heun computes the others from the joints" + _drive_hint(mechanism, joints),
         entry_path=f"joints.{joint.name}",
     ))  # fmt: skip
 
@@ -64,7 +64,7 @@ def rates_do_not_fit(mechanism: Mechanism, speed: Array, spin: Array, size: floa
 def no_length(mechanism: Mechanism, joint: int) -> SolveError:
     """Make the error for a rod whose points coincide."""
     name = mechanism.joints[joint].name
-    message = f"joint {name} (rod): its two points coincide at the start, so that it has no direction"
+    message = f"joint {name} (rod): its two points coincide at the start, so it has no direction"
     hint = "give its length, or move one of the points"
     return SolveError(Problem("no-length", message, hint=hint, entry_path=f"joints.{name}"))
 
@@ -73,8 +73,8 @@ def too_many(mechanism: Mechanism, island: AssemblyIsland, what: str) -> SolveEr
     """Make the error for an island with more bodies than are fitted at once."""
     name = mechanism.joints[(island.closures or island.tree_joints)[0]].name
     message = (
-        f"the loop at joint {name} ties {len(island.members):,} "
-        f"bodies together whose start {what} do not fit yet: more than are fitted at once"
+        f"the loop at joint {name} connects {len(island.members):,} "
+        f"bodies whose start {what} do not fit: too many to fit at once"
     )
     return SolveError(Problem("too-many-together", message, hint=f"give the {what} of more of its bodies",
                               entry_path=f"joints.{name}"))  # fmt: skip
@@ -85,10 +85,12 @@ def singular_pose(mechanism: Mechanism, joint: int, joints: Sequence[int]) -> So
     loop.
     """
     message = (
-        f"the loop at joint {mechanism.joints[joint].name} stands in a singular pose (links in line, say), "
-        "in which no acceleration belongs to its start velocities"
+        f"the loop at joint {mechanism.joints[joint].name} is in a singular position (e.g. links in line), "
+        "where no acceleration exists for its start velocities"
     )
-    hint = "give the rate of one more joint of the loop; together they must be those of a motion through this pose"
+    hint = (
+        "give the rate of one more joint of the loop; all rates together must belong to a motion through this position"
+    )
     hint += _drive_hint(mechanism, joints)
     return SolveError(Problem("singular-pose", message, hint=hint, entry_path=f"joints.{mechanism.joints[joint].name}"))
 

@@ -19,8 +19,8 @@ MAX_LISTED = 8  # bodies listed one by one; more of the same are listed together
 
 FORMS = {
     "position": "position {} m",
-    "orientation": "orientation turned by {} deg",
-    "velocity": "velocity of the centre {} m/s",
+    "orientation": "orientation rotated by {} deg",
+    "velocity": "velocity of the centre of mass {} m/s",
     "angular velocity": "angular velocity {} rad/s",
 }
 FITTED, FROM_JOINT = "fitted to the joints", "from joint"
@@ -51,7 +51,7 @@ def format_choices(choices: Iterable[StartChoice]) -> tuple[str, ...]:
     for (what, how), members in groups.items():
         if len(members) > MAX_LISTED:
             names = ", ".join(c.body for c in members[:3])
-            origin = "from the joints that lead to them" if how == FROM_JOINT else how
+            origin = "from the joints that connect them" if how == FROM_JOINT else how
             group_sentences.append(f"{names} and {len(members) - 3:,} more: {what} {origin}")
             continue
         for c in members:
@@ -128,10 +128,10 @@ def describe_resting_centres(mechanism: Mechanism, assembly: RateAssembly) -> tu
         F = assembly.rows[joint].F if joint >= 0 else np.zeros((0, 3))
         chosen_part = origin - F.T @ (F @ origin)
         if np.abs(chosen_part).max() > tolerances.UNMOVED * assembly.size * np.abs(assembly.rates.w[i]).max():
-            where = f" as far as joint {mechanism.joints[joint].name} lets it" if joint >= 0 else ""
+            where = f" as far as joint {mechanism.joints[joint].name} allows" if joint >= 0 else ""
             velocity = _format_vector(assembly.rates.v[i] + origin, float(np.abs(origin).max()))
             sentences.append(
-                f"{body.name} has an angular_velocity and no velocity: its centre of mass starts at rest{where}, "
+                f"{body.name} has an angular_velocity but no velocity: its centre of mass starts at rest{where}, "
                 f"its origin at {velocity} m/s"
             )
     return tuple(sentences)
@@ -144,7 +144,7 @@ def _choice_origin(mechanism: Mechanism, tree: PlacementTree, body: int, fitted_
 
 
 def _default_origin(near_value: Array | None) -> str:
-    return "as drawn" if near_value is None else "as near says"
+    return "same as the world frame (default)" if near_value is None else "as given by near"
 
 
 def _format_vector(a: Array, size: float) -> str:

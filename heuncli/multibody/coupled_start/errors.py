@@ -13,8 +13,9 @@ from heuncli.results.results import Array, Indices
 def poses_do_not_fit(layout: Layout, rows: Indices, gaps: Array) -> SolveError:
     """Make the error for the worst of some closure rows; gaps: of each row [m]."""
     name, entry_path, bodies = _describe_owner(layout, rows, gaps)
-    message = f"{name} cannot be met by the start: {_format_largest(layout, rows, gaps)} stay open between {bodies}"
-    hint = "hold fewer values (initial, position, orientation); or change its numbers"
+    largest = _format_largest(layout, rows, gaps)
+    message = f"{name} cannot be satisfied at the start: an error of {largest} remains between {bodies}"
+    hint = "prescribe fewer start values (initial, position, orientation), or change its values"
     return SolveError(Problem("does-not-fit", message, hint=hint, entry_path=entry_path))
 
 
@@ -22,15 +23,15 @@ def rates_do_not_fit(layout: Layout, rows: Indices, residuals: Array) -> SolveEr
     """Make the error for the worst of some closure rows; residuals: of the rate of each row [m/s]."""
     name, entry_path, bodies = _describe_owner(layout, rows, residuals)
     largest = _format_largest(layout, rows, residuals)
-    message = f"{name}: the start velocities of {bodies} differ there by {largest}/s more than it allows"
-    hint = "hold fewer velocities, or drive fewer coordinates; what is left out follows the couplings"
+    message = f"{name}: the start velocities of {bodies} are incompatible by {largest}/s"
+    hint = "prescribe fewer velocities, or drive fewer coordinates; heun computes the others from the couplings"
     return SolveError(Problem("rates-do-not-fit", message, hint=hint, entry_path=entry_path))
 
 
 def too_many(layout: Layout, row: int, bodies: int) -> SolveError:
     """Make the error for a coupling row that ties more bodies together than are fitted at once."""
     name, entry_path, _ = _describe_owner(layout, np.array([row]), np.ones(1))
-    message = f"{name} ties {bodies:,} bodies together whose start does not fit yet: more than are fitted at once"
+    message = f"{name} connects {bodies:,} bodies whose start does not fit: too many to fit at once"
     return SolveError(Problem("too-many-together", message, hint="give more of its velocities", entry_path=entry_path))
 
 

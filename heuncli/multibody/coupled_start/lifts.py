@@ -28,7 +28,7 @@ def iter_lift_problems(layout: Layout, t: float) -> Iterator[Problem]:
         if lift.first <= angle <= lift.last:
             continue
         first, last = math.degrees(lift.first), math.degrees(lift.last)
-        message = f"the disc of cam {coupling.name} stands at {joint.name}.angle = {math.degrees(angle):.6g} deg, off "
+        message = f"the disc of cam {coupling.name} is at {joint.name}.angle = {math.degrees(angle):.6g} deg, outside "
         message += f"its lift, which covers {first:.6g} to {last:.6g} deg"
-        hint = "turn it onto its lift (initial, or the drive), or give the lift a period"
+        hint = "start it within the lift (initial, or the drive), or give the lift a period"
         yield Problem("path-ends", message, hint=hint, entry_path=f"couplings.{coupling.name}")

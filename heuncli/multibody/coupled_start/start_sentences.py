@@ -15,7 +15,7 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows, vector_from_rotation
 
-COUPLING_ORIGIN = "then, to meet the couplings"
+COUPLING_ORIGIN = "then, to satisfy the couplings"
 
 
 def format_coupling_changes(scene: PreparedScene, start: Assembly) -> tuple[str, ...]:
@@ -55,8 +55,8 @@ def format_unprescribed_motions(
 
 
 REASONS = {
-    False: "other rates meet them as well, these are the least; give rates to choose",
-    True: "the coupled bodies that it carries cannot meet them by themselves",
+    False: "other rates also satisfy them, these are the smallest; give rates to choose",
+    True: "the coupled bodies mounted on it cannot satisfy them alone",
 }
 
 

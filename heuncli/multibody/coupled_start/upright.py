@@ -19,6 +19,6 @@ def require_upright(mechanism: Mechanism, start: Assembly) -> None:
         n, k = body_state(start, part.a)[1] @ part.e, body_state(start, part.b)[1] @ part.g
         across = np.cross(n, k)
         if float(across @ across) <= 1.0 - tolerances.ALONG_SQUARED:
-            message = f"the wheel {coupling.name} lies flat on its plane: it touches everywhere, and has no way to roll"
-            hint = "turn it up, by its orientation; what lies on a plane is three joints of type plane"
+            message = f"the wheel {coupling.name} lies flat on its plane: it touches everywhere and cannot roll"
+            hint = "set it upright with its orientation; for a body lying on a plane use three joints of type plane"
             raise SolveError(Problem("does-not-fit", message, hint=hint, entry_path=f"rolling.{coupling.name}"))

@@ -80,7 +80,7 @@ def gear_row(
     """Make the condition of a pair of gears; pitch_point: a body and its point. Raises Finding."""
     carrier, first, second = find_gears(joints, bodies, joint_pair)
     if pitch_point is not None and pitch_point[0] != carrier:
-        raise Finding(MISFIT, "the pitch point is not one of the body that carries both gears",
+        raise Finding(MISFIT, "the pitch point is not on the body that carries both gears",
                       f"name a point of {_body_name(bodies, carrier)}")  # fmt: skip
     mesh = find_mesh(entry, carrier, first, second, None if pitch_point is None else pitch_point[1])
     f, h = line_of_action(entry, mesh)
@@ -129,8 +129,8 @@ def find_gears(
     first, second = (joints[k] for k in joint_pair)
     shared = {first.a, first.b} & {second.a, second.b}
     if len(shared) == 2:
-        raise Finding("gear-carrier", f"joints {first.name} and {second.name} are between the same two bodies",
-                      "gears turn in two joints on one carrier")  # fmt: skip
+        raise Finding("gear-carrier", f"joints {first.name} and {second.name} connect the same two bodies",
+                      "two gears need two joints on one carrier")  # fmt: skip
     if shared:
         carrier = shared.pop()
         return (
@@ -149,8 +149,8 @@ def find_gears(
                 mate = make_gear(joints, bodies, other, carrier)
                 return (carrier, gear, mate) if k == joint_pair[0] else (carrier, mate, gear)
     raise Finding(
-        "gear-carrier", f"joints {first.name} and {second.name} share no body that carries both gears",
-        "gears turn in joints on one carrier; one may stand beside it in a pin on the axis of the carrier's own",
+        "gear-carrier", f"joints {first.name} and {second.name} have no common body that carries both gears",
+        "gears need joints on one carrier; one gear may instead be in another pin on the axis of the carrier's own pin",
     )  # fmt: skip
 
 
@@ -168,7 +168,7 @@ def make_gear(joints: Sequence[Joint], bodies: Sequence[Body], k: int, carrier: 
     joint = joints[k]
     if joint.kind not in ("pin", "slide", "cylinder"):
         raise Finding(
-            "gear-joints", f"joint {joint.name} is a {joint.kind}", "gears turn in pins or cylinders, racks slide"
+            "gear-joints", f"joint {joint.name} is a {joint.kind}", "gears need pins or cylinders, racks need slides"
         )
     body, sign = (joint.b, 1.0) if joint.a == carrier else (joint.a, -1.0)
     point, axis = joint_line(joint, bodies, carrier)
@@ -224,9 +224,9 @@ def find_mesh(
 ) -> GearMesh:
     """Find the pitch point of two gears. Raises Finding where axes, ratio and point contradict each other."""
     if not (first.turns or second.turns):
-        raise Finding(MISFIT, "both joints slide: there is nothing that rolls", "for two travels take type: ratio")
+        raise Finding(MISFIT, "both joints slide: nothing rolls", "for two travels use type: ratio")
     if pitch_point is None and entry.ratio is None and entry.teeth is None:
-        raise Finding(MISFIT, "neither ratio nor teeth nor the pitch point is given", "give one of ratio, teeth, at")
+        raise Finding(MISFIT, "ratio, teeth and pitch point are all missing", "give one of ratio, teeth, at")
     make = _mesh_rack
     if first.turns and second.turns:
         make = (
@@ -235,8 +235,8 @@ def find_mesh(
     mesh = make(entry, carrier, first, second, pitch_point)
     for wheel in (first, second):
         if wheel.turns and _length(arm_to_axis(wheel, mesh)) <= tolerances.TYPED_POINT * _length(wheel.point - mesh.P):
-            raise Finding(MISFIT, "the pitch point lies on the axis of a gear, or the pitch cone of one is flat: which "
-                          "way its teeth push it is not known", "correct axes, ratio or pitch point")  # fmt: skip
+            raise Finding(MISFIT, "the pitch point is on the axis of a gear, or one pitch cone is flat: the "
+                          "direction of the tooth force is unknown", "correct axes, ratio or pitch point")  # fmt: skip
     return mesh
 
 
@@ -248,7 +248,7 @@ def _motion_ratio(entry: c.Gear, first: GearMember, second: GearMember, external
     assert entry.ratio is not None
     ratio = entry.ratio * first.sign * second.sign
     if entry.internal and ratio * external > 0.0:
-        raise Finding(MISFIT, f"a ratio of {entry.ratio:g} is that of external gears here, and internal is given",
+        raise Finding(MISFIT, f"a ratio of {entry.ratio:g} means external gears here, but internal is given",
                       "change the sign of the ratio, or leave out internal")  # fmt: skip
     return ratio
 
@@ -261,13 +261,17 @@ def _mesh_parallel(
     distance = _length(d)
     size = max(float(np.max(np.abs(first.point))), float(np.max(np.abs(second.point))))
     if distance <= tolerances.TYPED_POINT * size:
-        raise Finding(MISFIT, "both gears turn about the same axis", "gears on one axis are tied by type: ratio")
+        raise Finding(MISFIT, "both gears turn about the same axis", "for gears on one axis use type: ratio")
     if entry.ratio is None and entry.teeth is None:
         assert pitch_point is not None
         return _mesh_at_point(carrier, first, second, pitch_point, first.axis)
     i = _motion_ratio(entry, first, second, -same) * same
     if abs(i - 1.0) < tolerances.TYPED_AXES:
-        raise Finding(MISFIT, "of a ratio of 1 in the same sense there is no pitch point", "take type: belt or ratio")
+        raise Finding(
+            MISFIT,
+            "a ratio of 1 with both rotating in the same direction has no pitch point",
+            "use type: belt or ratio",
+        )
     P = first.point + d / (1.0 - i)
     if pitch_point is not None:
         offset = first.arm(pitch_point) - d / (1.0 - i)
@@ -285,14 +289,14 @@ def _mesh_bevel(
         return _mesh_at_point(carrier, first, second, pitch_point, _unit(pitch_point - apex))
     sides = [float((m.point - apex) @ m.axis) for m in (first, second)]
     if entry.teeth is not None and not all(sides):
-        raise Finding(MISFIT, "a joint's point is where the two axes meet: on which side its gear is, is not known",
+        raise Finding(MISFIT, "a joint's point is where the two axes meet, so the side of its gear is unknown",
                       "move the joint's point to its gear, or give ratio and at")  # fmt: skip
     external = -math.copysign(1.0, sides[0] * sides[1])
     i = _motion_ratio(entry, first, second, external)
     g = _unit(i * first.axis - second.axis)
     along = float(g @ first.axis)
     if pitch_point is None and (sides[0] == 0.0 or abs(along) < tolerances.TYPED_AXES):
-        raise Finding(MISFIT, "where on the pitch cone the teeth meet is not known", "give the pitch point: at")
+        raise Finding(MISFIT, "it is unknown where on the pitch cone the teeth meet", "give the pitch point: at")
     if pitch_point is None:
         P = apex + sides[0] / along * g
     else:
@@ -307,9 +311,13 @@ def _mesh_rack(
 ) -> GearMesh:
     wheel, rack = (first, second) if first.turns else (second, first)
     if abs(float(wheel.axis @ rack.axis)) > tolerances.TYPED_AXES:
-        raise Finding(MISFIT, "the rack does not slide at right angles to the axis of its wheel", "correct the axes")
+        raise Finding(MISFIT, "the rack does not slide perpendicular to the axis of its gear", "correct the axes")
     if entry.teeth is not None:
-        raise Finding(MISFIT, "teeth tell no ratio of a rack", "give the ratio, in rad/m, or the pitch point: at")
+        raise Finding(
+            MISFIT,
+            "the number of teeth does not define the ratio of a rack",
+            "give the ratio, in rad/m, or the pitch point: at",
+        )
     if entry.ratio is None:
         assert pitch_point is not None
         return _mesh_at_point(carrier, first, second, pitch_point, wheel.axis)
@@ -335,8 +343,8 @@ def _mesh_at_point(carrier: int, first: GearMember, second: GearMember, P: Array
 def _require_pitch_point(P: Array, offset: Array, size: float) -> None:
     if _length(offset) > tolerances.TYPED_POINT * size:
         where = ", ".join(f"{x:.6g}" for x in P)
-        raise Finding(MISFIT, f"the pitch point given is {_length(offset):.3g} m from where axes and ratio "
-                      f"put it, at ({where})", "leave out at, or the ratio; or move an axis")  # fmt: skip
+        raise Finding(MISFIT, f"the given pitch point is {_length(offset):.3g} m from the one that axes and ratio "
+                      f"define, ({where})", "leave out at, or the ratio; or move an axis")  # fmt: skip
 
 
 def _find_apex(first: GearMember, second: GearMember) -> Array:
@@ -345,8 +353,8 @@ def _find_apex(first: GearMember, second: GearMember) -> Array:
     D = second.point - first.point
     gap, size = abs(float(n @ D)) / _length(n), _length(D)
     if gap > tolerances.TYPED_POINT * size:
-        raise Finding(MISFIT, f"the axes are neither parallel nor do they meet: they pass at {gap:.3g} m",
-                      "tie gears with crossed axes, as worms, by type: ratio, without their tooth force")  # fmt: skip
+        raise Finding(MISFIT, f"the axes are neither parallel nor intersecting: their distance is {gap:.3g} m",
+                      "for gears with crossed axes, such as worm gears, use type: ratio (no tooth force)")  # fmt: skip
     return np.asarray(first.point + float(cross_vectors(D, second.axis) @ n) / float(n @ n) * first.axis)
 
 

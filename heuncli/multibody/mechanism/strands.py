@@ -70,14 +70,14 @@ def find_strands(entry: c.Belt, first: GearMember, second: GearMember) -> tuple[
     skew = cross_vectors(n, second.axis)
     if not (first.turns and second.turns) or float(skew @ skew) > tolerances.TYPED_AXES**2:
         raise Finding(
-            "belt-axes", "the two pulleys do not turn about parallel axes", "a belt runs over two pins or cylinders"
+            "belt-axes", "the two pulleys do not have parallel axes of rotation", "a belt needs two pins or cylinders"
         )
     r1, r2 = entry.radii
     d = first.arm(second.point)
     D = math.sqrt(float(d @ d))
     reach = (r1 + r2 if entry.crossed else abs(r1 - r2)) / D if D > 0.0 else math.inf
     if reach >= 1.0:
-        raise Finding("belt-axes", f"the axes stand {D:.6g} m apart, too near for radii of {r1:.6g} m and {r2:.6g} m",
+        raise Finding("belt-axes", f"the axes are {D:.6g} m apart, too close for radii of {r1:.6g} m and {r2:.6g} m",
                       "move the axes apart, or make the pulleys smaller")  # fmt: skip
     x = d / D
     y = cross_vectors(n, x)

@@ -54,6 +54,4 @@ def divide_by_length(at_length: float, length: float, law: Expression | None) ->
     """Make an expression that varies as 1 / l0 along a law, from its value at one length."""
     if law is None:
         return Expression.from_number(at_length)
-    return combine_expressions(
-        Expression.from_number(at_length * length), law, OPS["div"], "of the length without load"
-    )
+    return combine_expressions(Expression.from_number(at_length * length), law, OPS["div"], "per unloaded length")

@@ -43,7 +43,7 @@ def screw_row(
         joint = joints[joint_pair[0]]
         if joint.kind != "cylinder":
             raise Finding("screw-joints", f"joint {joint.name} is a {joint.kind}",
-                          "a thread is in a cylinder, or between a pin and a slide: of: [spindle, nut]")  # fmt: skip
+                          "a screw needs a cylinder, or a pin and a slide: of: [spindle, nut]")  # fmt: skip
         coordinates = [Coordinate(joint_pair[0], "travel", 1.0), Coordinate(joint_pair[0], "angle", -lead_per_radian)]
         return CoupledRow(
             mesh_parts(joint.a, joint.b, joint.a, joint.p, joint.axis, -lead_per_radian * joint.axis, coordinates)
@@ -68,8 +68,8 @@ def find_spindle_and_nut(
     """Return the carrier of both, the body that turns in it, and the body that slides. Raises Finding."""
     carrier, first, second = find_gears(joints, bodies, joint_pair)
     if first.turns == second.turns:
-        raise Finding("screw-joints", "of the two joints one has to turn and the other to slide",
-                      "name a pin and a slide; two that turn are a gear, two that slide a ratio")  # fmt: skip
+        raise Finding("screw-joints", "one of the two joints must rotate and the other must slide",
+                      "name a pin and a slide; for two pins use a gear, for two slides a ratio")  # fmt: skip
     return (carrier, first, second) if first.turns else (carrier, second, first)
 
 

@@ -30,10 +30,10 @@ def reasons_against_reduction(mechanism: Mechanism) -> list[str]:
     """Return the reasons why a scene must not be reduced, as sentences; empty if it may be."""
     reasons = []
     if mechanism.joint_friction:
-        reasons.append("friction hangs on what joints carry, and in a smaller scene they carry less")
+        reasons.append("friction depends on the joint loads, and a reduced model would change them")
     if any(coupling.stretched_row is not None for coupling in mechanism.couplings):
-        reasons.append("ropes that stretch pull at bodies that a smaller scene might be without")
-    return [f"the scene is moved as it is given: {reason}" for reason in reasons]
+        reasons.append("elastic ropes act on bodies that a reduced model might omit")
+    return [f"the full model is solved: {reason}" for reason in reasons]
 
 
 def reduce(scene: PreparedScene, stages: Stages = NO_CACHE) -> ReducedScene:

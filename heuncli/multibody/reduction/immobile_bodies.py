@@ -53,11 +53,8 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
     layout_at_start = replace(smaller.layout, y0=embedding.restrict(0.0, layout.y0))
     names = [i for i, part in enumerate(placements) if part.body == GROUND]
     verb = "is" if len(names) == 1 else "are"
-    explanation = (
-        f"{format_body_names(mechanism, names)} {verb} held by joints among themselves and with the "
-        "ground, whatever else moves"
-    )
-    explanation += " and acts: part of the ground"
+    explanation = f"{format_body_names(mechanism, names)} {verb} fixed to the ground by joints, whatever else moves"
+    explanation += " and whatever loads act: part of the ground"
     return Reduction(
         replace(smaller, layout=layout_at_start),
         embedding.embed,
@@ -170,7 +167,7 @@ def find_limited_body(layout: Layout, is_held: Mask, exceptions: dict[int, str])
         if (joint.tension_only or k in limited) and ends and is_held[ends].all():
             name = mechanism.bodies[layout.spanning.links[max(ends)].body].name
             exceptions[max(ends)] = (
-                f"bodies.{name} cannot move, but stays: joints.{joint.name} may go slack, or is limited"
+                f"bodies.{name} cannot move, but stays a body: joints.{joint.name} may go slack, or is limited"
             )
             return [max(ends)]
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
@@ -178,7 +175,7 @@ def find_limited_body(layout: Layout, is_held: Mask, exceptions: dict[int, str])
         if is_held[places].all():
             name = mechanism.bodies[layout.spanning.links[max(places)].body].name
             exceptions[max(places)] = (
-                f"bodies.{name} cannot move, but stays: {mechanism.owner_path(owner)} holds it as well"
+                f"bodies.{name} cannot move, but stays a body: {mechanism.owner_path(owner)} also constrains it"
             )
             return [max(places)]
     return []
@@ -206,7 +203,8 @@ def find_moving_bodies(
     if is_null.any() and float(sigma.min()) > tolerances.RANK * largest:
         names = format_body_names(layout.mechanism, [layout.spanning.links[i].body for i in moving])
         exceptions[moving[0]] = (
-            f"{names} could hardly move, but stay: {float(sigma.min()):.1g} is left of what holds them"
+            f"{names} can hardly move, but stay bodies: their constraints are nearly dependent, "
+            f"by {float(sigma.min()):.1g}"
         )
     return moving
 

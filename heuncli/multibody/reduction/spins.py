@@ -84,10 +84,10 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
 def format_explanation(body: Body, spin: Spin) -> str:
     """Explain what was done to a body, and why that changes nothing."""
     return (
-        f"bodies.{body.name} is symmetric about its axis and nothing turns it about that: its spin of {spin.rate:.4g} "
-        f"rad/s stays, and one of {spin.rate - spin.rate_reduction:.4g} rad/s with "
+        f"bodies.{body.name} is axisymmetric and no moment acts about its axis: its spin of {spin.rate:.4g} "
+        f"rad/s is constant; a spin of {spin.rate - spin.rate_reduction:.4g} rad/s with "
         f"{spin.replacement_moment / spin.moment:.3g} times the "
-        "inertia moves the axis alike"
+        "inertia gives the same motion of the axis"
     )
 
 

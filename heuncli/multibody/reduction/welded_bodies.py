@@ -74,7 +74,7 @@ def find_welded_parts(layout: Layout, separate: dict[int, str]) -> BodyParts:
         is_turned = float(np.abs(part.R - np.eye(3)).max()) > tolerances.UNIT_EXACT
         if link.body in bound and is_turned and part.body != GROUND:
             name = mechanism.bodies[link.body].name
-            separate[link.body] = f"bodies.{name} stays a body by itself: a load that varies is fixed in its own axes"
+            separate[link.body] = f"bodies.{name} stays a separate body: a varying load is fixed in its own axes"
             continue
         placement_of[link.body] = part
     placements = tuple(placement_of[i] for i in range(len(mechanism.bodies)))
@@ -98,13 +98,13 @@ def find_excluded_body(layout: Layout, parts: BodyParts) -> tuple[int, str] | No
         ends_run = joint.tension_only or joint.drive is not None or k in limited or k in counted
         if parts.is_internal(joint) and ends_run:
             body = max(joint.a, joint.b, key=lambda i: layout.place.get(i, -1))
-            what = f"joints.{joint.name} between it and what it is welded to is driven, limited, coupled or a rope"
-            return body, f"bodies.{mechanism.bodies[body].name} stays a body by itself: {what}"
+            what = f"joints.{joint.name} to a body welded to it is driven, limited, coupled or tension-only"
+            return body, f"bodies.{mechanism.bodies[body].name} stays a separate body: {what}"
     for owner, candidate in enumerate(mechanism.couplings, len(mechanism.joints)):
         if parts.contains_coupling(candidate):
             body = max(candidate.bodies, key=lambda i: layout.place[i])
-            what = f"{mechanism.owner_path(owner)} is between it and what it is welded to"
-            return body, f"bodies.{mechanism.bodies[body].name} stays a body by itself: {what}"
+            what = f"{mechanism.owner_path(owner)} connects it to a body welded to it"
+            return body, f"bodies.{mechanism.bodies[body].name} stays a separate body: {what}"
     return None
 
 

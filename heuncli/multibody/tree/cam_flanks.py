@@ -34,24 +34,24 @@ def find_fault(layout: Layout, cam: Coupling) -> Problem | None:
     """Return the first problem of a cam, or None if it can be made."""
     entry_path = f"couplings.{cam.name}"
     if is_tilted(layout, cam):
-        message = f"the face of cam {cam.name} is not along the axis of its disc: its normal leans that way"
-        hint = "normal: across the disc's axis, in the follower's axes"
+        message = f"the face of cam {cam.name} is not parallel to the axis of its disc: its normal is inclined to it"
+        hint = "give a normal perpendicular to the disc's axis, in the follower's axes"
         return Problem("cam-contact", message, hint=hint, entry_path=entry_path)
     cam_flank = make_flank(layout, cam)
     if (cam_flank.lag_rates <= 0.0).any():
         where = format_angles(cam_flank, cam_flank.lag_rates <= 0.0)
-        message = f"the face of cam {cam.name} turns as fast as its disc, or faster, at angles {where} of the disc"
-        hint = "a face touches a flank that turns past it: a lift that grows by less than 1 rad for each, or a roller"
+        message = f"the face of cam {cam.name} rotates as fast as its disc, or faster, at disc angles {where}"
+        hint = "use a lift that rises by less than 1 rad per rad of disc rotation, or a roller"
         return Problem("cam-undercut", message, hint=hint, entry_path=entry_path)
     if (cam_flank.separation_rates <= 0.0).any() and (cam_flank.separation_rates >= 0.0).any():
         where = format_angles(cam_flank, cam_flank.separation_rates <= 0.0)
-        message = f"the flank of cam {cam.name} pushes its follower toward smaller coordinates at angles {where} of "
-        message += "its disc, elsewhere toward greater ones: between them it stands across and moves nothing"
-        hint = "guide the follower so that it never passes beside the disc's axis, where it moves along the flank"
+        message = f"the flank of cam {cam.name} pushes its follower toward smaller coordinates at disc angles "
+        message += f"{where}, elsewhere toward larger ones: in between it cannot move the follower"
+        hint = "guide the follower so that it never moves along the flank, as it does next to the disc's axis"
         return Problem("cam-sense", message, hint=hint, entry_path=entry_path)
     if cam.rows[0].tension_only and (cam_flank.separation_rates < 0.0).all():
-        message = f"the lift of cam {cam.name} grows toward its disc: a cam that presses moves its follower away"
-        hint = "turn the axis of the follower's joint round, and with it the lift; or in a groove: two_sided: true"
+        message = f"the lift of cam {cam.name} is positive toward its disc, but a cam can only push its follower away"
+        hint = "reverse the axis of the follower's joint, and with it the lift; for a grooved cam: two_sided: true"
         return Problem("cam-sense", message, hint=hint, entry_path=entry_path)
     return find_undercut(cam_flank, cam, layout.mechanism.joints[cam.rows[0].parts[0].coordinates[0].joint].axis)
 
@@ -78,23 +78,20 @@ def find_undercut(cam_flank: Flank, cam: Coupling, axis: Array) -> Problem | Non
         crossing = find_crossing(cam_flank, shape, np.asarray(axis)) if shape.radius else None
         if crossing is None:
             return None
-        message = (
-            f"the flank of cam {cam.name} is cut away at an angle {crossing:.4g} deg of its disc: there the roller "
-        )
-        message += "would be in the disc, which it touches at another angle"
-        hint = "a smaller roller, or a larger disc (a roller further out)"
+        message = f"the flank of cam {cam.name} is undercut at disc angle {crossing:.4g} deg: there the roller "
+        message += "would penetrate the disc, which it touches at another angle"
+        hint = "use a smaller roller, or a larger disc (roller further out)"
         return Problem("cam-undercut", message, hint=hint, entry_path=entry_path)
     if shape.face is None:
         curve = cam_flank.radius[is_undercut].min() + shape.radius
-        what = f"curves with {curve:.4g} m where the roller's centre runs, the roller has {shape.radius:.4g} m"
-        hint = "a smaller roller, a larger disc (a roller further out), or a lift that bends less"
+        what = f"the roller's path has a radius of curvature of {curve:.4g} m, the roller {shape.radius:.4g} m"
+        hint = "use a smaller roller, a larger disc (roller further out), or a lift with less curvature"
     else:
-        what = f"would have a radius of {cam_flank.radius.min():.4g} m: the face does not reach it"
-        hint = "a larger disc (a face further out), or a lift that bends less: base + lift + lift'' stays above zero"
-    message = (
-        f"the flank of cam {cam.name} is cut away at angles {format_angles(cam_flank, is_undercut)} of "
-        f"its disc: there it {what}"
-    )
+        what = f"its radius would be {cam_flank.radius.min():.4g} m: the face cannot touch it"
+        hint = (
+            "use a larger disc (face further out), or a lift with less curvature: keep base + lift + lift'' above zero"
+        )
+    message = f"the flank of cam {cam.name} is undercut at disc angles {format_angles(cam_flank, is_undercut)}: {what}"
     return Problem("cam-undercut", message, hint=hint, entry_path=entry_path)
 
 

@@ -26,8 +26,8 @@ def require_lengths(mechanism: Mechanism, last: float) -> None:
             find_first_not_positive(drive.value, last) if drive is not None and drive.quantity == "length" else None
         )
         if drive is not None and end_time is not None:
-            message = f"drive {drive.name}: the rod {joint.name} has no length left at t = {end_time:.4g} s"
-            hint = "let the run end before, or the length stay above 0"
+            message = f"drive {drive.name}: the length of rod {joint.name} reaches 0 at t = {end_time:.4g} s"
+            hint = "end the run earlier, or keep the length above 0"
             problems.append(Problem("drive-length", message, drive.value.location, hint))
     if problems:
         raise SolveError(*problems)

@@ -107,11 +107,13 @@ def make_rope_point(mechanism: Mechanism, start: Assembly, name: str, k: int, pa
     axis = Z if passage.axis is None else normalize(np.array(passage.axis))
     if passage.radius and passage.axis is None and not mechanism.planar:
         if not pins or not all(is_parallel(a, pins[0][1]) for _, a, _, _ in pins):
-            message = f"the sheave has no axis: {'more than one pin' if pins else 'no pin'} stands at its centre"
+            message = f"the sheave has no axis: {'more than one pin' if pins else 'no pin'} at its centre"
             raise rope_error(name, k, "rope-axis", message, "axis: [x, y, z], in the axes of its body")
         axis = pins[0][1]
         if passage.side in ("left", "right") and any(float(a @ axis) < 0.0 for _, a, _, _ in pins):
-            message = "the axes of the pins at the sheave's centre point opposite ways: which side is left is not told"
+            message = (
+                "the axes of the pins at the sheave's centre have opposite directions: left and right are undefined"
+            )
             raise rope_error(name, k, "rope-axis", message, "axis: [x, y, z], in the axes of its body")
     coaxial = [
         (carrier, joint, sign * float(np.sign(a @ axis))) for joint, a, carrier, sign in pins if is_parallel(a, axis)
@@ -121,8 +123,10 @@ def make_rope_point(mechanism: Mechanism, start: Assembly, name: str, k: int, pa
         carrier, joint, sign = coaxial[0]
         turn = Coordinate(joint, "angle", sign)
     elif passage.grips:
-        message = "the sheave stands on no pin about its axis, whose turn would tell what is wound on it"
-        raise rope_error(name, k, "rope-grip", message, "a pin of its body through the sheave's centre, or slip: free")
+        message = "the sheave has no pin about its axis, whose angle would give the rope length wound on it"
+        raise rope_error(
+            name, k, "rope-grip", message, "mount its body on a pin through the sheave's centre, or give slip: free"
+        )
     return RopePoint(passage, body, point, axis, x + R @ point, R @ axis, carrier, turn)
 
 
@@ -221,13 +225,15 @@ def find_route(mechanism: Mechanism, name: str, points: list[RopePoint]) -> Rope
     """Find the route of a rope: past the sides that are given, otherwise the shortest. Raises SolveError."""
     for k, (a, b) in enumerate(pairwise(points)):
         if a.radius and b.radius and not is_parallel(a.normal, b.normal):
-            message = "the axes of this sheave and of the one before are not parallel, so that no strand lies in both"
-            hint = "a plain point between them, or in place of one of them"
+            message = "the axes of this sheave and the previous one are not parallel: no strand lies in both planes"
+            hint = "put a plain point between them, or replace one of them by a plain point"
             raise rope_error(name, k + 1, "rope-askew", message, hint)
     require_separate(name, points)
     unnamed = [k for k, x in enumerate(points) if x.radius and x.passage.side not in ("left", "right")]
     if len(unnamed) > MAX_OPEN_SIDES:
-        message = f"past which sides of {len(unnamed)} sheaves the rope runs is not said"
+        message = (
+            f"no side is given for {len(unnamed)} sheaves of the rope; at most {MAX_OPEN_SIDES} sides can be found"
+        )
         raise rope_error(name, unnamed[0], "rope-side", message, f"side: {SIDES}")
     vertical = vertical_direction(mechanism)
     known = [{"left": 1, "right": -1}.get(x.passage.side or "", 0) if x.radius else 0 for x in points]
@@ -240,12 +246,12 @@ def find_route(mechanism: Mechanism, name: str, points: list[RopePoint]) -> Rope
         if way is not None and all(matches_side(points, way, k, vertical) for k in unnamed):
             routes.append(way)
     if not routes:
-        message = "no way round the sheaves as their sides are named: one of them is in the way of a strand"
+        message = "no route exists for the given sides: one of the sheaves blocks a strand"
         raise rope_error(name, None, "rope-side", message, f"side: {SIDES}")
     routes.sort(key=lambda way: way.length)
     if len(routes) > 1 and routes[1].length - routes[0].length <= tolerances.OPEN_GAP * routes[0].length:
         k = next(k for k in unnamed if routes[0].sides[k] != routes[1].sides[k])
-        message = "past which side of this sheave the rope runs is not said, and both are as short"
+        message = "no side is given for this sheave, and both routes are equally short"
         raise rope_error(name, k, "rope-side", message, f"side: over, under, {SIDES}")
     return routes[0]
 
@@ -259,14 +265,14 @@ def require_separate(name: str, points: Sequence[RopePoint]) -> None:
         distance = float(np.sqrt(offset @ offset))
         if sheave.radius and distance <= (sheave.radius - inner.radius) * (1.0 + tolerances.ON_AXIS):
             description = f"this sheave of radius {inner.radius:.6g} m" if inner.radius else "this point"
-            where = "before" if sheave is a else "behind"
+            where = "before" if sheave is a else "after"
             message = (
-                f"{description} stands {distance:.6g} m from the axis of the sheave {where} it, of "
+                f"{description} is {distance:.6g} m from the axis of the sheave {where} it, which has "
                 f"radius {sheave.radius:.6g} "
-                "m: no strand leads there"
+                "m: no strand can reach it"
             )
             hint = (
-                "move it out of the sheave; what is wound on a sheave ends with the sheave itself, with slip: none"
+                "move it outside the sheave; to wind rope on a sheave, end it with the sheave itself, with slip: none"
                 if index in (0, len(points) - 1)
                 else "move one of them, or make the sheave smaller"
             )
@@ -278,8 +284,8 @@ def require_directions(name: str, points: Sequence[RopePoint]) -> None:
     tolerance = tolerances.NO_LENGTH * max(float(np.abs(x.place).max()) for x in points)
     for k, (a, b) in enumerate(pairwise(points)):
         if not (a.radius or b.radius) and float(np.abs(b.place - a.place).max()) <= tolerance:
-            message = "this point and the one before it coincide at the start: the strand between has no direction"
-            hint = "move one of them, or leave one out; a rope that is slack there has tension_only and restitution"
+            message = "this point and the one before it coincide at the start: the strand between them has no direction"
+            hint = "move one of them, or leave one out; if the rope is slack there, give tension_only and restitution"
             raise rope_error(name, k + 1, "no-length", message, hint)
 
 

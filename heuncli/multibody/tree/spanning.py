@@ -172,31 +172,31 @@ def _leaves_spin_free(joint: Joint, is_to: bool, null: Array) -> bool:
 
 def _over_driven_problem(mechanism: Mechanism, k: int) -> Problem:
     joint = mechanism.joints[k]
-    what = "is driven" if joint.drive else "is named in an expression"
+    what = "is driven" if joint.drive else "is used in an expression"
     if JOINTS[joint.kind].coordinates == ():
-        what = "has a turn_spring"
+        what = "has a torsion spring"
     if any(stop.joint == k for stop in mechanism.stops):
-        what = "is limited by a stop, or held by a latch"
+        what = "is limited by a stop, or locked by a latch"
     return Problem(
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",
-        hint="leave at least one joint of each closed chain neither driven nor limited nor named",
+        hint="leave at least one joint of each closed chain not driven, limited or used in an expression",
     )
 
 
 def _one_sided_problem(joint: Joint) -> Problem:
     return Problem(
         "over-driven",
-        f"joints.{joint.name} is one-sided: its travel follows from the pose, and nothing drives, limits or names it",
-        hint="name the point itself: body.P.x; or leave one_sided out",
+        f"joints.{joint.name} is one-sided: its travel is a result; it cannot be driven, limited or used",
+        hint="use the point itself: body.P.x; or leave out one_sided",
     )
 
 
 def _path_unheld_problem(joint: Joint) -> Problem:
     return Problem(
         "path-unheld",
-        f"joints.{joint.name} is to hold the body of its path by a point that is held already",
-        hint="the path's body carries what runs along it: run a body of its own, on a ball or pin at that point",
+        f"joints.{joint.name} would constrain the body of its path by a point that is already constrained",
+        hint="the path's body carries what moves along it: use a separate body, on a ball or pin at that point",
     )
 
 

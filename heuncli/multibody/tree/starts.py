@@ -118,10 +118,8 @@ def require_one_branch(joint: Joint, path: Path, place: Array) -> None:
     branches = path.find_branches(place, tolerances.SAME_PLACE * path.bounds[0])
     if len(branches) > 1:
         where = " and ".join(f"{s:.6g}" for s in branches[:3])
-        message = (
-            f"joint {joint.name} starts where its path meets itself, at travel {where}: on which branch is not told"
-        )
-        hint = f"initial: {{travel: {branches[0]:.6g}}} says which"
+        message = f"joint {joint.name} starts where its path crosses itself, at travel {where}: the branch is not given"
+        hint = f"initial: {{travel: {branches[0]:.6g}}} selects one"
         raise SolveError(Problem("path-branch", message, None, hint, f"joints.{joint.name}"))
 
 
@@ -130,8 +128,10 @@ def require_bend(joint: Joint, R: Array) -> None:
     cosine = float(joint.axis @ R @ joint.to_axis)
     if cosine <= tolerances.PARALLEL:
         bend = math.degrees(math.acos(max(cosine, -1.0)))
-        message = f"joint {joint.name} (cv): its two shafts start bent by {bend:.4g} deg, and turn alike only below 90"
-        hint = "axis and to_axis point the same way along the line of shafts: turn one of them round, or bend it less"
+        message = (
+            f"joint {joint.name} (cv): its two shafts start at an angle of {bend:.4g} deg; it must be below 90 deg"
+        )
+        hint = "axis and to_axis must point the same way along the shafts: reverse one of them, or reduce the angle"
         raise SolveError(Problem("cv-bend", message, None, hint, f"joints.{joint.name}"))
 
 

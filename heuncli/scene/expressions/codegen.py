@@ -27,7 +27,7 @@ from heuncli.scene.expressions.programs import Code, Expression, Switch, TableFu
 
 OP = expressions.OPERATIONS
 MAX_NODES = 500
-NOT_FINITE_HINT = "no division by 0, no root or logarithm of what is negative, nothing beyond 1e308"
+NOT_FINITE_HINT = "avoid division by 0, roots and logarithms of negative numbers, and values above 1e308"
 COMPARISONS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "==": "eq", "!=": "ne"}
 NO_VARIABLES: frozenset[int] = frozenset()
 TRUTH_OPERATIONS = frozenset({*COMPARISONS.values(), "step"})
@@ -166,7 +166,7 @@ class CodeGenerator:
         self.nodes += 1
         if self.nodes > MAX_NODES:
             message = f"an expression of more than {MAX_NODES} parts"
-            raise Finding("expression-limit", message, "put its values in a table: tables: {gas: {file: ...}}")
+            raise Finding("expression-limit", message, "put the values in a table: tables: {gas: {file: ...}}")
         return part
 
     def evaluate_lookup(self, code: Code, table: TableFunction) -> float:

@@ -45,7 +45,7 @@ COORDINATES = {  # of joints, of points, of loads
 TIME_DIMENSION = MeasuredDimension("loose", TIME, moving=True)
 NUMBER_FUNCTIONS = frozenset({"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp"})
 SUMS = {  # operations whose operands need the same dimension, in words for messages
-    "add": "adds", "sub": "subtracts", "min": "takes the least of", "max": "takes the largest of",
+    "add": "adds", "sub": "subtracts", "min": "takes the smallest of", "max": "takes the largest of",
     "hypot": "takes hypot of", "atan2": "takes atan2 of", "choose": "chooses between",
     **dict.fromkeys(("lt", "le", "gt", "ge", "eq", "ne"), "compares"),
 }  # fmt: skip
@@ -99,7 +99,7 @@ def common_dimension(name: str, a: MeasuredDimension, b: MeasuredDimension, stri
     kinds = {a.kind, b.kind}
     if (kinds == {"known"} or (strict and kinds == {"known", "loose"})) and a.dimension != b.dimension:
         message = f"{SUMS[name]} {describe(a.dimension)} and {describe(b.dimension)}"
-        raise Finding("wrong-dimension", message, "multiply or divide one of them by what it lacks")
+        raise Finding("wrong-dimension", message, "both must have the same dimension")
     for part in (a, b):
         if part.kind == "known":
             return MeasuredDimension("known", part.dimension, literal, moving)
@@ -133,7 +133,7 @@ def power_dimension(
     """Return the dimension of a power. exponent: None if it is not constant; then its own dimension counts."""
     if exponent_measure.kind == "known" and exponent_measure.dimension != NUMBER:
         message = f"has an exponent that is {describe(exponent_measure.dimension)}"
-        raise Finding("wrong-dimension", message, "an exponent is a plain number: divide it by a reference of its own")
+        raise Finding("wrong-dimension", message, "an exponent must be a plain number: divide it by a reference value")
     if base.kind in ("free", "factor"):
         return base._replace(literal=True) if base.kind == "factor" else FREE
     if exponent is None or abs(exponent) > MAX_POWER:
@@ -149,7 +149,7 @@ def function_dimension(name: str, argument: MeasuredDimension) -> MeasuredDimens
     """Return the dimension of a function of numbers and angles. Raises Finding [wrong-dimension]."""
     if argument.kind == "known" and argument.dimension != NUMBER:
         message = f"takes {name} of {describe(argument.dimension)}"
-        raise Finding("wrong-dimension", message, "divide it by a reference of its own: sin(t/T), exp(x/L)")
+        raise Finding("wrong-dimension", message, "divide it by a reference value: sin(t/T), exp(x/L)")
     return FACTOR
 
 

@@ -225,8 +225,10 @@ class SwitchSearch:
         count = sum(number for number in points_passed if number < math.inf)
         if count > tolerances.MOST_STEPS:
             where = f"between {self.grid.t0:g} and {self.grid.t1:g} s"
-            message = f"'{self.expression.source}' passes {count:,.0f} points of its table {where}, each a step's end"
-            hint = f"at most {tolerances.MOST_STEPS:,} steps are taken: a shorter duration, or a table of fewer points"
+            message = (
+                f"'{self.expression.source}' passes {count:,.0f} points of its table {where}, and each ends a step"
+            )
+            hint = f"at most {tolerances.MOST_STEPS:,} steps are taken: shorten the duration, or use fewer table points"
             raise LimitError(Problem("too-many-jumps", message, self.expression.location, hint))
 
     def evaluate_branches(self, instants: set[float]) -> None:
@@ -304,8 +306,8 @@ def _find_sampled_changes(expression: Expression, switch: Switch, t0: float, t1:
         if len(changed) * CELLS_PER_CHANGE <= cells:
             break
         if cells >= MAX_CELLS:
-            message = f"'{expression.source}' jumps or bends too often between {t0:g} and {t1:g} s"
-            hint = f"at most about {MAX_CELLS // CELLS_PER_CHANGE} jumps and kinks can be met exactly"
+            message = f"'{expression.source}' has too many jumps or kinks between {t0:g} and {t1:g} s"
+            hint = f"at most about {MAX_CELLS // CELLS_PER_CHANGE} jumps and kinks can be located exactly"
             raise LimitError(Problem("too-many-jumps", message, expression.location, hint))
         cells *= 4
     spans = [(instants[i], instants[i + 1]) for i in changed]

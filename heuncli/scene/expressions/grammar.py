@@ -88,10 +88,10 @@ class Scope:
     own: Mapping[str, str] = NO_NAMES
 
 
-FIXED_VALUE_HINT = "this one is read once, before the run: give it as a number or by parameters"
+FIXED_VALUE_HINT = "this value is read once, before the run: use only numbers and parameters"
 
 
-NO_COORDINATE_HINT = "only a pin and a slide have coordinates: shaft.angle, guide.travel"
+NO_COORDINATE_HINT = "only pins and slides have coordinates: shaft.angle, guide.travel"
 
 
 class DimensionedParameter(NamedTuple):
@@ -109,7 +109,7 @@ class DependentError(Finding):
     """A value on which this one depends is in error; that error is reported, and this one is not."""
 
     def __init__(self) -> None:
-        super().__init__("follows", "depends on something that is in error", "mend that first")
+        super().__init__("follows", "depends on a value with an error", "correct that error first")
 
 
 def compile_expression(text: str, scope: Scope) -> Expression:
@@ -141,9 +141,9 @@ def find_dimension(scope: Scope, name: str) -> Dimension | None:
 def require_length(text: str) -> None:
     """Raise Finding [expression-limit] for a text too long to be an expression, or a number with a unit."""
     if len(text) > MAX_LENGTH:
-        hint = "parts of it may have names under parameters; many points are a table"
+        hint = "define parts of it under parameters; put many points in a table"
         raise Finding(
-            "expression-limit", f"an expression of {len(text)} characters; at most {MAX_LENGTH} are read", hint
+            "expression-limit", f"an expression of {len(text)} characters; at most {MAX_LENGTH} are allowed", hint
         )
 
 
@@ -155,8 +155,8 @@ def describe_dimensions(text: str, scope: Scope) -> str | None:
 
 def too_deep_finding() -> Finding:
     """Make the error of an expression with too many nested parentheses."""
-    message = f"an expression nested more than {MAX_DEPTH} deep"
-    return Finding("expression-limit", message, "name its inner parts under parameters, or write it as a sum")
+    message = f"an expression nested more than {MAX_DEPTH} levels deep"
+    return Finding("expression-limit", message, "define its inner parts under parameters, or write it as a sum")
 
 
 class _Parser:
@@ -171,7 +171,7 @@ class _Parser:
 
     def parse(self) -> Expression:
         if not self.tokens:
-            raise Finding("expression-syntax", "an empty expression", "write a number, or leave the key out")
+            raise Finding("expression-syntax", "an empty expression", "write a number, or leave out the key")
         part = self.parse_expression()
         if self.position < len(self.tokens):
             raise self.unexpected_token_error()
@@ -211,17 +211,17 @@ class _Parser:
     def unexpected_token_error(self) -> Finding:
         """Make the error of a token that does not belong here, with a hint for what was probably meant."""
         hints = {
-            "^": "a power is written **", "%": "write x - n*y; there is no remainder", "//": "write /",
+            "^": "write ** for a power", "%": "write x - n*y; there is no remainder operator", "//": "write /",
             "&&": "write and", "||": "write or", "&": "write and", "|": "write or", "!": "write not",
-            "=": "compare with > or <, in a choice with ==",
-            ":": "a value by cases is: a if c else b", "?": "a value by cases is: a if c else b",
-            "×": "write *", "·": "write *", "÷": "write /", "−": "write the plain minus sign -",
+            "=": "compare with > or <, or with == in a choice",
+            ":": "for cases write a if c else b", "?": "for cases write a if c else b",
+            "×": "write *", "·": "write *", "÷": "write /", "−": "write a plain minus sign -",
         }  # fmt: skip
         if not self.token:
-            return self.syntax_error("it ends too early", "a value is missing: as 2*L, or 5*sin(t)")
+            return self.syntax_error("it ends too early", "a value is missing, e.g. 2*L or 5*sin(t)")
         hint = hints.get(self.token)
         if self.token == "%" and self.position == len(self.tokens) - 1:
-            hint = "a part of a hundred is written as 0.5 for 50 %"
+            hint = "write 0.5 for 50 %"
         if hint is None and self.kind == "name" and self.position and self.tokens[self.position - 1][0] != "number":
             hint = self.suggest_product()
         if (
@@ -241,12 +241,12 @@ class _Parser:
         if hint is None and self.token == ",":
             hint = self.suggest_decimal_point(self.position)
         if hint is None and self.token == "if":
-            hint = "a value by cases is: a if c else b"
+            hint = "for cases write a if c else b"
         if hint is None and self.token == "[":
-            hint = "points stand in a table: tables: {NAME: {x: [0, 1], y: [5, 7]}}, and here table(NAME, x)"
+            hint = "put points in a table: tables: {NAME: {x: [0, 1], y: [5, 7]}}, and write table(NAME, x) here"
         if hint is None and self.token == "." and self.position and self.tokens[self.position - 1][1] == ")":
-            hint = "only a joint has coordinates: shaft.angle, guide.travel"
-        plain = "an expression is of numbers, names, + - * / ** and ( )"
+            hint = "only joints have coordinates: shaft.angle, guide.travel"
+        plain = "an expression consists of numbers, names, + - * / ** and ( )"
         return self.syntax_error(f"'{self.token}' is not expected here", hint or plain)
 
     def suggest_product(self) -> str | None:
@@ -255,7 +255,7 @@ class _Parser:
         if self.token == "(" and (kind == "number" or before == ")"):
             return f"for a product write {before}*("
         if before in (")", "t") and self.kind == "name" and si_expression_hint("", self.token) is not None:
-            return f"an expression is taken in SI: leave {self.token} out"
+            return f"an expression is in SI units: leave out {self.token}"
         return None
 
     def suggest_decimal_point(self, comma: int) -> str | None:
@@ -266,7 +266,7 @@ class _Parser:
         (_, whole, _), (_, _, end), (_, part, last) = around
         if last - len(part) != end or not part.isdigit():
             return None
-        return f"a decimal is written with a point: {whole}.{part}"
+        return f"use a decimal point: {whole}.{part}"
 
     def text_since(self, begin: int) -> str:
         """Return the text from token number `begin` to the last one taken."""
@@ -411,7 +411,7 @@ class _Parser:
             size, dimension = self.parse_unit_name(figure)
             measure, value = known_dimension(dimension), value * size
         if not math.isfinite(value):
-            raise Finding("not-computable", f"{figure} is too large a number", "numbers go up to 1.8e308")
+            raise Finding("not-computable", f"{figure} is too large", "the largest number is 1.8e308")
         return self.codegen.make_number(value, measure)
 
     def is_reciprocal_unit(self) -> bool:
@@ -443,8 +443,8 @@ class _Parser:
     def require_no_parameter(self, quantity: str, mark: str, name: str) -> None:
         """Raise Finding for 2 m/s if s is a parameter, too."""
         if name in self.scope.parameters:
-            message = f"'{quantity}{mark}{name}': {name} is a unit, and a parameter of this scene"
-            hint = f"for the parameter write ({quantity}){mark}{name}; for the unit give the parameter another name"
+            message = f"'{quantity}{mark}{name}': {name} is both a unit and a parameter of this model"
+            hint = f"for the parameter write ({quantity}){mark}{name}; for the unit rename the parameter"
             raise Finding("expression-syntax", message, hint)
 
     def parse_call(self, name: str) -> Part:
@@ -469,9 +469,9 @@ class _Parser:
             count = f"{least}" if least == most else f"{least} or more"
             message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
             arguments = ", ".join("xyz"[:least]) + (", ..." if most > least else "")
-            hint = decimal or f"as {name}({arguments})"
+            hint = decimal or f"write {name}({arguments})"
             if name == "log":
-                hint = "log is the natural logarithm; to the base b: log(x)/log(b)"
+                hint = "log is the natural logarithm; for base b write log(x)/log(b)"
             raise Finding("function-arguments", message, hint)
         text = self.text_since(begin)
         part = self.codegen.make_operation(name, *parts[:2], text=text)
@@ -485,13 +485,15 @@ class _Parser:
         self.position += 1
         if not name or not self.take_token(","):
             quoted = self.tokens[self.position - 1][1] in ("'", '"')
-            hint = "the name without quotes" if quoted else "inside { } and [ ] an expression with a comma needs quotes"
+            hint = "write no quotes" if quoted else "inside { } and [ ] an expression with a comma needs quotes"
             message = "table() takes a table's name and a value: table(gas, shaft.angle)"
             raise Finding("function-arguments", message, hint)
         argument = self.parse_expression()
         self.expect_token(")", "to close table(...)")
         if not self.scope.in_time:
-            raise Finding("not-in-time", "a table may stand only in a value in time (forces, drives)", FIXED_VALUE_HINT)
+            raise Finding(
+                "not-in-time", "a table is allowed only in functions of time (forces, drives)", FIXED_VALUE_HINT
+            )
         if name not in self.scope.tables:
             hint = suggest(name, self.scope.tables, "tables")
             raise Finding("unknown-table", f"'{name}' is not a table", hint)
@@ -508,12 +510,10 @@ class _Parser:
         self.position += 1
         joints = self.scope.joints
         if quantity in REACTIONS or (joint in RESULT_BLOCKS and joint not in joints):
-            message = (
-                f"'{joint}.{quantity}': reactions cannot enter laws or other expressions, they follow from the motion"
-            )
+            message = f"'{joint}.{quantity}': reactions cannot be used in expressions, they result from the motion"
             raise Finding("unknown-name", message, LAW_HINT)
         if not self.scope.in_time:
-            message = f"{joint}.{quantity} may stand only in a value in time (forces, drives)"
+            message = f"{joint}.{quantity} is allowed only in functions of time (forces, drives)"
             raise Finding("not-in-time", message, FIXED_VALUE_HINT)
         if joint not in joints:
             hint = f"write {quantity}" if joint in LIBRARIES else suggest(joint, joints, "joints")
@@ -524,12 +524,12 @@ class _Parser:
                     else POINT_FORM_HINT
                 )
             if joint in REPORT_OF:
-                hint = "paths of results stand in {of: joints.NAME.force.z, below: 0}; in expressions NAME.angle"
+                hint = "use paths of results in {of: joints.NAME.force.z, below: 0}, and NAME.angle in expressions"
             raise Finding("unknown-name", f"'{joint}.{quantity}': '{joint}' is not a joint", hint)
         words = COORDINATES_BY_TYPE.get(joints[joint], ())
         if quantity not in words:
             known = "; ".join(f"{kind}: {', '.join(w)}" for kind, w in COORDINATES_BY_TYPE.items())
-            has = f"has {' and '.join(words)}" if words else "has no coordinate of its own"
+            has = f"has {' and '.join(words)}" if words else "has no single coordinate"
             message = f"'{joint}.{quantity}': a joint of type {joints[joint]} {has}, not '{quantity}'"
             raise Finding("unknown-coordinate", message, f"coordinates of joints: {known}")
         return self.codegen.make_coordinate(joint, quantity)
@@ -549,7 +549,7 @@ class _Parser:
         text = ".".join((POINTS, *words))
         if not self.scope.in_time:
             raise Finding(
-                "not-in-time", f"{text} may stand only in a value in time (forces, conditions)", FIXED_VALUE_HINT
+                "not-in-time", f"{text} is allowed only in functions of time (forces, conditions)", FIXED_VALUE_HINT
             )
         body, point, quantity = resolve_point(text, words, self.scope.points)
         return self.codegen.make_coordinate(f"{POINTS}.{body}.{point}", quantity)
@@ -557,7 +557,7 @@ class _Parser:
     def parse_name(self, name: str) -> Part:
         if name in self.scope.own:
             if name in self.scope.parameters:
-                message = f"'{name}' is a parameter, and here what the load itself stands between"
+                message = f"'{name}' is both a parameter and a quantity of the load itself"
                 raise Finding("unknown-name", message, "give the parameter another name")
             return self.codegen.make_coordinate(OWN, self.scope.own[name])
         if name in self.scope.parameters:
@@ -573,12 +573,12 @@ class _Parser:
         if name == "t":
             if not self.scope.in_time:
                 raise Finding(
-                    "not-in-time", "the time t may stand only in a value in time (forces, drives)", FIXED_VALUE_HINT
+                    "not-in-time", "the time t is allowed only in functions of time (forces, drives)", FIXED_VALUE_HINT
                 )
             return self.codegen.make_time()
         if name in ARITY:
             arguments = "a, b" if ARITY[name][0] > 1 else "t"
-            raise Finding("function-arguments", f"{name} is a function", f"write {name}(...), as {name}({arguments})")
+            raise Finding("function-arguments", f"{name} is a function", f"write {name}(...), e.g. {name}({arguments})")
         raise self.unknown_name_finding(name, "parameter")
 
     def unknown_name_finding(self, name: str, kind: str) -> Finding:
@@ -592,9 +592,9 @@ class _Parser:
         message, suggestion = f"'{name}' is not a {kind}", find_similar(name, *known)
         is_near = suggestion is not None and suggestion.lower() == name.lower()
         if not is_near and kind == "parameter" and (unit := si_expression_hint("", name)) is not None:
-            return Finding("unknown-name", message, f"as in 20 {name}" if self.scope.with_units else unit)
+            return Finding("unknown-name", message, f"write e.g. 20 {name}" if self.scope.with_units else unit)
         if kind == "parameter" and self.scope.own and suggestion is None:
-            return Finding("unknown-name", message, f"of the load itself: {', '.join(self.scope.own)}")
+            return Finding("unknown-name", message, f"quantities of the load itself: {', '.join(self.scope.own)}")
         listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
         hint = f"did you mean {suggestion}?" if suggestion else suggest(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

@@ -79,8 +79,8 @@ def divide_into_pieces(rate: Expression, last: float) -> tuple[list[float], list
             knots.append(piece_end)
             sums.append(total)
             if len(sums) > MAX_PIECES:
-                message = f"'{rate.source}' changes too often between 0 and {last:g} s to be integrated"
-                raise LimitError(Problem("too-many-jumps", message, rate.location, "let the run be shorter"))
+                message = f"'{rate.source}' changes too often between 0 and {last:g} s and cannot be integrated"
+                raise LimitError(Problem("too-many-jumps", message, rate.location, "use a shorter duration"))
             if total != total:
                 if math.isfinite(rate.value(piece_end + last * PROBE_DISTANCE)):
                     raise SpecError(_pole_problem(rate, piece_end))
@@ -89,8 +89,8 @@ def divide_into_pieces(rate: Expression, last: float) -> tuple[list[float], list
 
 
 def _pole_problem(rate: Expression, t: float) -> Problem:
-    message = f"'{rate.source.strip()}' grows without bound at t = {t:.9g} s: there is no integral over it"
-    return Problem("not-computable", message, rate.location, "keep the rate finite, or end the run before")
+    message = f"'{rate.source.strip()}' grows without bound at t = {t:.9g} s: its integral does not exist"
+    return Problem("not-computable", message, rate.location, "keep the rate finite, or end the run earlier")
 
 
 class PieceDivision:

@@ -16,6 +16,6 @@ REACTIONS = frozenset(
     if row.path.startswith(("joints.JOINT.", "stops.STOP.")) and set(row.units) & {"N", "N·m"}
 ) - {"shares"}
 LAW_HINT = (
-    "a law takes t, parameters and coordinates, as shaft.angle, shaft.rate, guide.travel, guide.speed; "
-    "a condition takes {of: joints.NAME.force.z, below: 0}"
+    "a law may use t, parameters and coordinates such as shaft.angle, shaft.rate, guide.travel, guide.speed; "
+    "a condition may use {of: joints.NAME.force.z, below: 0}"
 )

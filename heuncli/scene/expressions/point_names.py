@@ -10,7 +10,7 @@ from heuncli.scene.expressions.programs import POINTS
 
 GROUND = "ground"
 QUANTITIES = ("x", "y", "z", "vx", "vy", "vz")
-POINT_FORM_HINT = f"a point is {POINTS}.BODY.POINT.x, y, z [m] or .vx, .vy, .vz [m/s], along the axes of the world"
+POINT_FORM_HINT = f"a point is {POINTS}.BODY.POINT.x, y, z [m] or .vx, .vy, .vz [m/s], world axes"
 
 Points = Mapping[str, Collection[str]]  # of each body and of the ground
 
@@ -20,7 +20,9 @@ def resolve_point(text: str, words: Sequence[str], points: Points) -> tuple[str,
     *names, quantity = words
     if quantity not in QUANTITIES or len(names) not in (1, 2):
         raise Finding(
-            "unknown-coordinate", f"'{text}' is no coordinate of a point", suggest_point_form(names, quantity, points)
+            "unknown-coordinate",
+            f"'{text}' is not a coordinate of a point",
+            suggest_point_form(names, quantity, points),
         )
     if len(names) == 1:
         names = [find_owner(text, names[0], points), names[0]]

@@ -112,7 +112,7 @@ def split_into_even_intervals(path: RollerPath) -> tuple[Array, Array]:
             np.concatenate([half_length, half_length]),
         )
     else:
-        raise AssertionError("a path that stands still")  # validation refuses such paths
+        raise AssertionError("a path of zero length")  # validation refuses such paths
     return np.concatenate([m for m, _ in done]), np.concatenate([h for _, h in done])
 
 

@@ -53,12 +53,12 @@ READERS = (
     ModelReader("mujoco", "MJCF", "mjcf.reader", frozenset({"free", "limits", "keyframe"})),
 )
 UNREAD_FORMATS = {  # root elements of known formats without a reader, and a hint
-    "sdf": "SDF is not read: export the model as URDF",
-    "gazebo": "SDF is not read: export the model as URDF",
-    "COLLADA": "this is a mesh: the URDF that names it is read",
-    "collada": "this is a mesh: the URDF that names it is read",
-    "OpenSimDocument": "OpenSim is not read",
-    "mujocoinclude": "this is a part of a model: name the file that includes it",
+    "sdf": "SDF cannot be read: export the model as URDF",
+    "gazebo": "SDF cannot be read: export the model as URDF",
+    "COLLADA": "this is a mesh: give the URDF that uses it",
+    "collada": "this is a mesh: give the URDF that uses it",
+    "OpenSimDocument": "OpenSim models cannot be read",
+    "mujocoinclude": "this is only a part of a model: give the file that includes it",
 }
 
 
@@ -74,5 +74,5 @@ def find_reader(root: XmlElement, file: str) -> ModelReader:
     if root.tag.startswith("xacro:"):
         hint = XACRO_HINT
     forms = " or ".join(f"<{reader.root}> ({reader.form})" for reader in READERS)
-    message = f"the root element is <{root.tag}>; read are {forms}"
+    message = f"the root element is <{root.tag}>; readable are {forms}"
     raise SpecError(Problem("import-format", message, place, hint))

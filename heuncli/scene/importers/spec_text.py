@@ -27,8 +27,8 @@ MAX_REMARK_LENGTH = 240  # characters of a remark
 # names, joint ends, numbers with a unit need no quotes
 PLAIN_TEXT = re.compile(r"(?:-?\d)?[\w.]+(?: [A-Za-z][\w^/*]*)?\Z")
 BLOCK_REMARKS = {
-    "bodies": "kg, m, kg m^2 about the centre of mass; with every joint at 0 their axes stand along the world's",
-    "joints": "directions in the axes of the bodies, which are the world's with every joint at 0",
+    "bodies": "kg, m, kg m^2 about the centre of mass; with every joint at 0 body axes are parallel to world axes",
+    "joints": "directions in body axes, which are parallel to world axes with every joint at 0",
 }
 
 

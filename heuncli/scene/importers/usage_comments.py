@@ -13,8 +13,8 @@ def explain_motion(parameter: str, example_value: str, *, free: bool, at_rest: b
     pose = f'--set {parameter}="{example_value}"'
     if free:
         start = "start at rest" if at_rest else "start"
-        return (f"The joints are free, and {start} where their parameters say ({pose}).",)
+        return (f"The joints are free, and {start} at the values of their parameters ({pose}).",)
     return (
-        f"Drives hold the joints where their parameters say ({pose}); what they take is told as drive.",
-        "A motion is a law of time in place of the parameter: 0.5*sin(2*t).",
+        f"Drives hold the joints at the values of their parameters ({pose}); their loads are reported as drive.",
+        "For a motion, replace the parameter in a drive by a function of time: 0.5*sin(2*t).",
     )

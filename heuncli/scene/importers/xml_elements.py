@@ -17,12 +17,12 @@ MAX_ELEMENTS = 1_000_000  # 100,000 links and their joints
 MAX_DEPTH = 5000  # levels: URDF has six, a chain of bodies in MJCF one each
 MAX_ATTRIBUTE_LENGTH = 100_000  # characters of an attribute: the points of a mesh in MJCF
 ENCODING_ERRORS = frozenset({expat.errors.codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]})
-ENCODING_HINT = "encodings are UTF-8, and UTF-16, ISO-8859-1, US-ASCII where the first line says so: save it as UTF-8"
+ENCODING_HINT = "save it as UTF-8; UTF-16, ISO-8859-1 and US-ASCII are accepted if the first line declares them"
 LFS_POINTER = b"version https://git-lfs"
-BROKEN_HINT = "the file is cut off, or was edited by hand near this place"
-XACRO_HINT = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
-ROOT_HINT = "a URDF begins with <robot name=...>, a model of MuJoCo's with <mujoco>"
-DOCTYPE_HINT = "delete the DOCTYPE and write out what its entities stand for"
+BROKEN_HINT = "the file is truncated, or was damaged by hand editing near this place"
+XACRO_HINT = "expand the macros first: xacro robot.urdf.xacro > robot.urdf"
+ROOT_HINT = "a URDF file begins with <robot name=...>, a MuJoCo model with <mujoco>"
+DOCTYPE_HINT = "delete the DOCTYPE and replace its entities by their text"
 
 
 @record
@@ -78,7 +78,7 @@ class _XmlParser:
             if b"<" not in content[: error.offset + 1]:
                 hint = ROOT_HINT
             if content.startswith(LFS_POINTER):
-                hint = "it is a pointer of Git LFS: git lfs pull fetches the file"
+                hint = "this is a Git LFS pointer: fetch the file with git lfs pull"
             raise self.make_error(
                 "not-xml", f"not XML: {reason}", hint, position=(error.lineno, error.offset + 1)
             ) from None
@@ -92,13 +92,13 @@ class _XmlParser:
     def start_element(self, tag: str, attributes: dict[str, str]) -> None:
         self.count += 1
         if self.count > MAX_ELEMENTS:
-            message = f"more than {MAX_ELEMENTS:,} elements; no more are read"
-            raise self.make_error("too-large", message, "split what is generated")
+            message = f"more than {MAX_ELEMENTS:,} elements, the limit"
+            raise self.make_error("too-large", message, "split the file")
         if len(self.open_elements) >= MAX_DEPTH:
-            raise self.make_error("too-deep", f"nested more than {MAX_DEPTH} levels deep", "is an element left open?")
+            raise self.make_error("too-deep", f"nested more than {MAX_DEPTH} levels deep", "is an element not closed?")
         for name, value in attributes.items():
             if len(value) > MAX_ATTRIBUTE_LENGTH or len(name) > MAX_ATTRIBUTE_LENGTH:
-                message = f"an attribute of {len(value):,} characters; at most {MAX_ATTRIBUTE_LENGTH:,} are read"
+                message = f"an attribute of {len(value):,} characters; at most {MAX_ATTRIBUTE_LENGTH:,} are allowed"
                 raise self.make_error("too-large", message, "is it the right file?")
         element = XmlElement(tag, attributes, [], self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
         if self.open_elements:
@@ -111,7 +111,7 @@ class _XmlParser:
         self.open_elements.pop()
 
     def refuse_doctype(self, *_given: Any) -> None:
-        raise self.make_error("xml-entities", "a DOCTYPE, which may define entities, is not read", DOCTYPE_HINT)
+        raise self.make_error("xml-entities", "a DOCTYPE is not allowed, because it may define entities", DOCTYPE_HINT)
 
     def make_error(self, code: str, message: str, hint: str, position: tuple[int, int] | None = None) -> SpecError:
         line, column = position or (self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)

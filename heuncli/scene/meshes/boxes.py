@@ -44,8 +44,8 @@ def iter_overlapping(low: Array, high: Array) -> Iterator[tuple[IndexArray, Inde
         if level < 0:
             total += len(a)
             if total > MAX_PAIRS:
-                message = "its triangles overlap so much that it is not seen whether they cross each other"
-                raise Finding("too-large", message, "a mesh of shorter triangles")
+                message = "its triangles overlap too much to check whether they intersect each other"
+                raise Finding("too-large", message, "use a mesh with shorter triangles")
             yield a, b
             continue
         for i in range(0, len(a), MAX_PAIRS_AT_ONCE):

@@ -32,9 +32,9 @@ TRIED_TRIANGLES = (
 MAX_WINDING_ERROR = (
     0.1  # deviation of the winding number from a whole one, below which a place is clear of the other shell's faces
 )
-REPAIR_HINT = "repair it in the program that drew it, or export the solid with a finer tolerance"
-ONE_SOLID_HINT = "export the solid alone, joined to one; solids that touch are shapes of their own"
-OUTWARD_HINT = "recalculate its normals outward in the program that drew it"
+REPAIR_HINT = "repair it in the CAD program, or export the solid with a finer tolerance"
+ONE_SOLID_HINT = "export the solid alone, as one body; give touching solids as separate shapes"
+OUTWARD_HINT = "recalculate its normals outward in the CAD program"
 
 
 class MeshEdges(NamedTuple):
@@ -95,7 +95,9 @@ def find_edge_neighbours(soup: TriangleSoup, edges: MeshEdges) -> tuple[IndexArr
     same_direction = edges.ends[one, 0] == edges.ends[other, 0]
     if same_direction.any():
         wrong_edges = one[same_direction]
-        message = f"beside {_format_edge_count(len(wrong_edges), plain=True)} the triangles turn opposite ways: "
+        message = (
+            f"at {_format_edge_count(len(wrong_edges), plain=True)} the adjacent triangles have opposite orientation: "
+        )
         raise Finding("mesh-orientation", message + _format_first_edge(soup, edges.ends[wrong_edges[0]]), OUTWARD_HINT)
     return one // 3, other // 3
 
@@ -145,7 +147,9 @@ def find_shells(
     total_volume = float(volumes.sum())
     size = (0.5 * float(np.ptp(soup.corners, axis=0).max())) ** 3
     if not abs(total_volume) > size * np.finfo(float).eps * 64.0:
-        raise Finding("mesh-orientation", "the surface encloses no volume", "a solid has a volume: is it flat?")
+        raise Finding(
+            "mesh-orientation", "the surface encloses no volume", "check whether the mesh is flat; a solid is needed"
+        )
     if len(volumes) == 1:
         is_reversed = total_volume < 0.0
     else:
@@ -171,10 +175,8 @@ def _are_inward(soup: TriangleSoup, number: IndexArray, volumes: Array) -> bool:
     bad = [k for k, orientation in enumerate(wrong) if orientation == sign]
     if bad:
         where = ", ".join(f"{x:.6g}" for x in 0.5 * (low[bad[0]] + high[bad[0]]))
-        message = (
-            f"{len(bad)} of {len(volumes)} shells are turned inside out against where they lie, one about ({where})"
-        )
-        hint = f"a hole's surface is turned into the hole, a solid within another counts twice; {OUTWARD_HINT}"
+        message = f"{len(bad)} of {len(volumes)} shells are inside out for their location, one at about ({where})"
+        hint = f"the normals of a cavity point into the cavity, a solid within another counts twice; {OUTWARD_HINT}"
         raise Finding("mesh-orientation", message, hint)
     return bool(sign)
 
@@ -189,7 +191,9 @@ def _count_enclosing(places: Array, triangles_by_shell: list[IndexArray], low: A
         angles += sum(map(len, others))
         if angles > MAX_SOLID_ANGLES:
             raise Finding(
-                "too-large", f"{len(triangles_by_shell)} shells within each other are not told apart", "a file a solid"
+                "too-large",
+                f"{len(triangles_by_shell)} shells within each other are too many to tell apart",
+                "use one file for each solid",
             )
         yield sum(_lies_in_shell(places[triangles], places[other]) for other in others)
 

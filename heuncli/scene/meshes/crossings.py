@@ -29,7 +29,7 @@ from heuncli.scene.meshes.inward_offset import move_faces_inward
 from heuncli.scene.meshes.model import IndexArray, connected_components, cross_columns, dot_columns, gather_corners
 from heuncli.scene.meshes.numbers import mesh_file_finding
 
-JOIN_HINT = "join its solids to one (a union) in the program that drew it, or give each its own file"
+JOIN_HINT = "unite its solids in the CAD program, or give each solid its own file"
 EDGE_CORNERS = ((0, 1), (1, 2), (2, 0))
 # corners of the edges, in both directions
 EDGE_BEGINS, EDGE_ENDS = (np.array([0, 1, 2, 1, 2, 0]), np.array([1, 2, 0, 0, 1, 2]))
@@ -71,8 +71,10 @@ def require_no_crossing(corners: Array, triangles: IndexArray, tolerance: float)
     triangles, rotated = triangles[order], rotated[..., order]
     faces = make_faces(corners, triangles, tolerance)
     if faces.double_areas[faces.is_narrow].sum() > MAX_NARROW_SHARE * faces.double_areas.sum():
-        message = "so many of its triangles are narrower than its digits that whether it crosses itself is not seen"
-        raise mesh_file_finding(message, "export it near its origin, and no finer than needed")
+        message = (
+            "too many of its triangles are narrower than its digits resolve, so self-intersection cannot be checked"
+        )
+        raise mesh_file_finding(message, "export it near its origin and not finer than needed")
     pairs = [
         _find_suspects(faces, a, b, tolerance) for a, b in iter_overlapping(rotated.min(axis=0), rotated.max(axis=0))
     ]
@@ -90,8 +92,10 @@ def require_no_crossing(corners: Array, triangles: IndexArray, tolerance: float)
     if is_crossing.any():
         place_text = ", ".join(f"{x:.6g}" for x in faces.places[:, :, a[is_crossing][0]].mean(axis=0))
         count = int(is_crossing.sum())
-        count_text = f"{count} pairs of triangles cross" if count > 1 else "2 triangles cross"
-        message = f"the surface crosses itself: {count_text} each other, about ({place_text}) in the file's units"
+        count_text = f"{count} pairs of triangles intersect" if count > 1 else "2 triangles intersect"
+        message = (
+            f"the surface intersects itself: {count_text} each other, first at about ({place_text}) in the file's units"
+        )
         raise Finding("mesh-crosses-itself", message, JOIN_HINT)
 
 

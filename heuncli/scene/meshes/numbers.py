@@ -30,7 +30,7 @@ def parse_floats(words: Sequence[bytes], what: str) -> Array:
         return np.frombuffer(array("d", map(float, words)))
     except ValueError:
         raise mesh_file_finding(
-            f"{what} {1 + _find_first_invalid(float, words)}: a coordinate is no number", SAVE_AGAIN_HINT
+            f"{what} {1 + _find_first_invalid(float, words)}: a coordinate is not a number", SAVE_AGAIN_HINT
         ) from None
 
 
@@ -39,7 +39,7 @@ def parse_integers(words: Sequence[bytes], what: str) -> IndexArray:
     try:
         return np.frombuffer(array("q", map(int, words)), np.int64)
     except (ValueError, OverflowError):
-        raise mesh_file_finding(f"{what}: the number of a corner is none", SAVE_AGAIN_HINT) from None
+        raise mesh_file_finding(f"{what}: a vertex index is not a whole number", SAVE_AGAIN_HINT) from None
 
 
 def parse_all(text: bytes, kind: type[N]) -> NDArray[N] | None:

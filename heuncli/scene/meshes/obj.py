@@ -31,7 +31,7 @@ def read_obj(content: bytes) -> TriangleSoup:
     corners = _parse_corners([line[1:] for line, kind in zip(lines, kinds, strict=True) if kind in corner_kinds])
     faces = [line[1:] for line, kind in zip(lines, kinds, strict=True) if kind in face_kinds]
     if not faces:
-        raise mesh_file_finding("there are no faces in it", "a solid's surface, in triangles: f 1 2 3")
+        raise mesh_file_finding("the file has no faces", "give the surface of a solid as triangles: f 1 2 3")
     if b"/" in content:
         faces = TEXTURE_AND_NORMAL.sub(b"", b"\n".join(faces)).split(b"\n")
     corners_so_far = None
@@ -40,7 +40,7 @@ def read_obj(content: bytes) -> TriangleSoup:
         corners_so_far = corner_counts[[i for i, kind in enumerate(kinds) if kind in face_kinds]]
     triangles = _parse_triangles(faces, corners_so_far)
     if (triangles < 1).any() or (triangles > len(corners)).any():
-        raise mesh_file_finding(f"a face has a corner that is none of the {len(corners)}", "corners are counted from 1")
+        raise mesh_file_finding(f"a face uses a vertex outside 1 to {len(corners)}", "vertices are numbered from 1")
     return TriangleSoup(corners, triangles - 1)
 
 
@@ -76,5 +76,5 @@ def _parse_corners(lines: list[bytes]) -> Array:
     rows = [line.split(None, 3)[:3] for line in lines]
     short = next((i for i, row in enumerate(rows) if len(row) < 3), None)
     if short is not None:
-        raise mesh_file_finding(f"corner {short + 1} has not three coordinates", SAVE_AGAIN_HINT)
-    return np.stack([parse_floats([row[k] for row in rows], "corner") for k in range(3)], axis=-1)
+        raise mesh_file_finding(f"vertex {short + 1} does not have three coordinates", SAVE_AGAIN_HINT)
+    return np.stack([parse_floats([row[k] for row in rows], "vertex") for k in range(3)], axis=-1)

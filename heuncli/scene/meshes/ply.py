@@ -68,10 +68,12 @@ def read_ply(content: bytes) -> TriangleSoup:
             break
     if corners is None or faces is None or not len(faces):
         raise mesh_file_finding(
-            "there are no corners and faces in it", "a solid's surface: element vertex, element face"
+            "the file has no vertices and faces", "give the surface of a solid: element vertex, element face"
         )
     if (faces < 0).any() or (faces >= len(corners)).any():
-        raise mesh_file_finding(f"a face has a corner that is none of the {len(corners)}", "corners are counted from 0")
+        raise mesh_file_finding(
+            f"a face uses a vertex outside the {len(corners)} of the file", "vertices are numbered from 0"
+        )
     return TriangleSoup(corners, faces)
 
 
@@ -80,7 +82,7 @@ def parse_header(content: bytes) -> PlyHeader:
     end = content.find(b"end_header", 0, MAX_HEADER_SIZE)
     line_end = content.find(b"\n", end, end + 16) if end >= 0 else -1
     if line_end < 0:
-        raise mesh_file_finding("the head of the PLY file has no end", SAVE_AGAIN_HINT)
+        raise mesh_file_finding("the PLY header has no end_header", SAVE_AGAIN_HINT)
     order: str | None = None
     elements: list[PlyElement] = []
     for line in content[:end].decode("ascii", "replace").splitlines()[1:]:
@@ -101,10 +103,10 @@ def parse_header(content: bytes) -> PlyHeader:
                     raise KeyError
         except (KeyError, ValueError, IndexError):
             raise mesh_file_finding(
-                "a line of the PLY head is none", "format, element, property; comments begin so"
+                "the PLY header has an invalid line", "lines begin with format, element, property or comment"
             ) from None
     if order is None or any(not 0 <= element.item_count <= len(content) for element in elements):
-        raise mesh_file_finding("the head of the PLY file announces more than there is", SAVE_AGAIN_HINT)
+        raise mesh_file_finding("the PLY header declares more elements than the file has", SAVE_AGAIN_HINT)
     return PlyHeader(order, elements, line_end + 1)
 
 
@@ -112,7 +114,9 @@ def find_coordinates(element: PlyElement) -> list[int]:
     """Find which properties of the corners are x, y, z. Raises Finding."""
     names = [p.name for p in element.properties]
     if not {"x", "y", "z"} <= set(names) or any(p.length_kind for p in element.properties):
-        raise mesh_file_finding("the corners have no x, y, z alone", "property float x, y, z of element vertex")
+        raise mesh_file_finding(
+            "the vertices do not have plain x, y, z coordinates", "give property float x, y, z in element vertex"
+        )
     return [names.index(axis) for axis in "xyz"]
 
 
@@ -121,7 +125,7 @@ def find_corner_list(element: PlyElement) -> int:
     found = [i for i, p in enumerate(element.properties) if p.length_kind and p.name in CORNER_LIST_NAMES]
     if len(found) != 1:
         raise mesh_file_finding(
-            "the faces have no list of corners", "property list uchar int vertex_indices of element face"
+            "the faces do not have one list of vertices", "give property list uchar int vertex_indices in element face"
         )
     return found[0]
 
@@ -129,7 +133,8 @@ def find_corner_list(element: PlyElement) -> int:
 def truncated_finding(element: PlyElement) -> Finding:
     """Make the error for a file that ends too early."""
     return mesh_file_finding(
-        f"it breaks off: its head announces {element.item_count} of '{element.name}', there are fewer", SAVE_AGAIN_HINT
+        f"the file is truncated: its header declares {element.item_count} of '{element.name}', it has fewer",
+        SAVE_AGAIN_HINT,
     )
 
 
@@ -160,12 +165,12 @@ class _TextBody:
         rows = [line.split() for line in lines]
         if any(len(row) < len(element.properties) for row in rows):
             raise truncated_finding(element)
-        return np.stack([parse_floats([row[k] for row in rows], "corner") for k in places], axis=-1)
+        return np.stack([parse_floats([row[k] for row in rows], "vertex") for k in places], axis=-1)
 
     def read_faces(self, element: PlyElement) -> IndexArray:
         """Read the triangles (m, 3)."""
         if any(p.length_kind for p in element.properties[: find_corner_list(element)]):
-            raise mesh_file_finding("the faces have another list before that of their corners", SAVE_AGAIN_HINT)
+            raise mesh_file_finding("the faces have another list before their vertex list", SAVE_AGAIN_HINT)
         first, lines = find_corner_list(element), self.take_lines(element)
         rows_at_once = parse_rows(lines, np.int64)
         if rows_at_once is not None and first == 0 and (rows_at_once[:, 0] == rows_at_once.shape[1] - 1).all():
@@ -204,7 +209,7 @@ class _BinaryBody:
     def skip(self, element: PlyElement) -> None:
         """Skip an element."""
         if any(p.length_kind for p in element.properties):
-            raise mesh_file_finding(f"lists of '{element.name}' stand before the faces", SAVE_AGAIN_HINT)
+            raise mesh_file_finding(f"lists of '{element.name}' precede the faces", SAVE_AGAIN_HINT)
         self.position += self.view_rows(element).nbytes
 
     def read_corners(self, element: PlyElement) -> Array:
@@ -217,7 +222,7 @@ class _BinaryBody:
         """Read the triangles (m, 3): at once if all faces have three corners, else face by face."""
         k = find_corner_list(element)
         if sum(p.length_kind is not None for p in element.properties) > 1:
-            raise mesh_file_finding("the faces have lists beside that of their corners", SAVE_AGAIN_HINT)
+            raise mesh_file_finding("the faces have lists other than their vertex list", SAVE_AGAIN_HINT)
         try:
             rows = self.view_rows(element, 3)
         except Finding:

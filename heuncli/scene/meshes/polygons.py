@@ -29,7 +29,9 @@ def require_faces(counts: IndexArray) -> None:
     is_wrong = (counts < 3) | (counts > MAX_CORNERS)
     if is_wrong.any():
         k = int(is_wrong.argmax())
-        raise mesh_file_finding(f"face {k + 1} has {int(counts[k])} corners", "a face has three corners, or some more")
+        raise mesh_file_finding(
+            f"face {k + 1} has {int(counts[k])} vertices", f"a face must have 3 to {MAX_CORNERS} vertices"
+        )
 
 
 def triangulate(faces: IndexArray) -> IndexArray:

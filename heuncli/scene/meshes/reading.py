@@ -24,7 +24,7 @@ UNREAD_FORMATS = {
     "step": "STEP", "stp": "STEP", "iges": "IGES", "igs": "IGES", "dae": "COLLADA", "3mf": "3MF", "glb": "glTF",
     "gltf": "glTF", "off": "OFF", "amf": "AMF",
 }  # fmt: skip
-FORMAT_HINT = "STL, OBJ or PLY, named so: rod.stl"
+FORMAT_HINT = "STL, OBJ or PLY, with that file name extension: rod.stl"
 
 
 def read_closed_mesh(content: bytes | bytearray, name: str) -> TriangleMesh:
@@ -38,9 +38,7 @@ def read_closed_mesh(content: bytes | bytearray, name: str) -> TriangleMesh:
         soup = weld_near_corners(soup, open_corners)
         edges = find_edges(soup.triangles)
         if len(soup.corners) < corner_count and not len(find_open_corners(edges)):
-            notes.append(
-                f"corners less than {coordinate_resolution(soup.corners):.2g} of its units apart were taken as one"
-            )
+            notes.append(f"vertices closer than {coordinate_resolution(soup.corners):.2g} of its units were merged")
     _require_triangles(soup)
     edge_neighbours = find_edge_neighbours(soup, edges)
     V = make_tetrahedra(soup.corners, soup.triangles, middle_of_extent(soup.corners))[1]
@@ -48,7 +46,7 @@ def read_closed_mesh(content: bytes | bytearray, name: str) -> TriangleMesh:
     require_no_crossing(*separate_fans(soup.corners, outward, edge_neighbours), coordinate_resolution(soup.corners))
     shells = find_shells(soup, edge_neighbours, V)
     if shells.is_reversed:
-        notes.append("its triangles were turned inward; they are taken as outward")
+        notes.append("its triangles point inward; they were reversed")
     return TriangleMesh(
         soup.corners, shells.triangles, len(shells.volumes), float(shells.volumes.sum()),
         soup.corners.min(axis=0), soup.corners.max(axis=0), tuple(notes),
@@ -60,18 +58,20 @@ def read_soup(content: bytes, name: str) -> TriangleSoup:
     soup = _find_reader(content, name)(content)
     _require_triangles(soup)
     if len(soup.triangles) > MAX_TRIANGLES:
-        message = f"{len(soup.triangles):,} triangles; at most {MAX_TRIANGLES:,} are read"
-        raise Finding("too-large", message, "a coarser mesh will do: mass and inertia err as the square of its size")
+        message = f"{len(soup.triangles):,} triangles; at most {MAX_TRIANGLES:,} are allowed"
+        raise Finding(
+            "too-large", message, "use a coarser mesh: errors of mass and inertia go with the square of the edge length"
+        )
     used_corners = soup.corners[soup.triangles.ravel()] if len(soup.corners) > 3 * len(soup.triangles) else soup.corners
     is_not_finite = ~np.isfinite(used_corners)
     if is_not_finite.any() or not are_in_range(used_corners).all():
-        raise mesh_file_finding("a coordinate is no finite number, or beyond what is computed with", "save it again")
+        raise mesh_file_finding("a coordinate is not a finite number, or is outside the allowed range", "save it again")
     return soup
 
 
 def _require_triangles(soup: TriangleSoup) -> None:
     if not len(soup.triangles):
-        raise mesh_file_finding("there are no triangles in it", "a solid's surface, in triangles")
+        raise mesh_file_finding("the file has no triangles", "give the surface of a solid as triangles")
 
 
 def _find_reader(content: bytes, name: str) -> Callable[[bytes], TriangleSoup]:
@@ -84,7 +84,7 @@ def _find_reader(content: bytes, name: str) -> Callable[[bytes], TriangleSoup]:
     if end == "ply":
         raise mesh_file_finding("a PLY file begins with 'ply'", FORMAT_HINT)
     if end in UNREAD_FORMATS:
-        raise mesh_file_finding(f"{UNREAD_FORMATS[end]} is not read", f"export its surface as {FORMAT_HINT}")
+        raise mesh_file_finding(f"{UNREAD_FORMATS[end]} cannot be read", f"export its surface as {FORMAT_HINT}")
     if content.lstrip()[:5].lower() == b"solid":
         return read_stl
-    raise mesh_file_finding("of which kind it is cannot be told", FORMAT_HINT)
+    raise mesh_file_finding("the file format cannot be identified", FORMAT_HINT)

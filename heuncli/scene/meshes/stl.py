@@ -44,10 +44,10 @@ def read_stl(content: bytes) -> TriangleSoup:
     if content.lstrip()[:5].lower() == b"solid":
         return _make_soup(_read_text(content))
     if count < 0:
-        raise mesh_file_finding("an STL file has a head of 84 bytes", SAVE_AGAIN_HINT)
+        raise mesh_file_finding("an STL file needs a header of 84 bytes", SAVE_AGAIN_HINT)
     missing = HEADER_SIZE + FACET_SIZE * count - len(content)
-    what = f"it breaks off: {missing} bytes are missing" if missing > 0 else f"{-missing} bytes more than these"
-    raise mesh_file_finding(f"its head announces {count} triangles, but {what}", SAVE_AGAIN_HINT)
+    what = f"{missing} bytes are missing" if missing > 0 else f"the file has {-missing} bytes more"
+    raise mesh_file_finding(f"its header declares {count} triangles, but {what}", SAVE_AGAIN_HINT)
 
 
 def _make_soup(places: Array) -> TriangleSoup:
@@ -101,7 +101,7 @@ def _parse_words(words: list[bytes]) -> Array:
             wrong_facet = next(i for i, each in enumerate(found) if each.lower() != word)
             raise _facet_finding(wrong_facet + 1, word)
     if len(words) % len(FACET_TOKENS):
-        raise mesh_file_finding(f"it breaks off in triangle {facet_count + 1}", SAVE_AGAIN_HINT)
+        raise mesh_file_finding(f"the file is truncated in triangle {facet_count + 1}", SAVE_AGAIN_HINT)
     numbers = [k for k, word in enumerate(FACET_TOKENS) if word is None][3:]
     return np.stack([parse_floats(words[k :: len(FACET_TOKENS)], "triangle") for k in numbers], axis=-1).reshape(
         -1, 3, 3
@@ -109,5 +109,5 @@ def _parse_words(words: list[bytes]) -> Array:
 
 
 def _facet_finding(number: int, word: bytes) -> Finding:
-    hint = "facet normal x y z, outer loop, vertex x y z three times, endloop, endfacet; or save it as binary STL"
-    return mesh_file_finding(f"triangle {number} is not written as in STL: '{word.decode()}' is missing", hint)
+    hint = "write facet normal x y z, outer loop, vertex x y z three times, endloop, endfacet; or save it as binary STL"
+    return mesh_file_finding(f"triangle {number} is not valid STL: '{word.decode()}' is missing", hint)

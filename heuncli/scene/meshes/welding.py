@@ -88,7 +88,7 @@ def find_near_pairs(points: Array, distance: float) -> tuple[IndexArray, IndexAr
         count = np.maximum(high - low, 0)
         if count.sum() > MAX_PAIRS:
             raise mesh_file_finding(
-                "its corners lie closer than seven digits of them tell apart", "a coarser mesh will do"
+                "its vertices are closer together than seven digits can resolve", "use a coarser mesh"
             )
         one = np.repeat(np.arange(len(ordered)), count)
         other = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)

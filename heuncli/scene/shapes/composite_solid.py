@@ -29,7 +29,7 @@ MAX_PLANES_AT_ONCE = 2_000  # planes; all cuts of a long run through a box would
 def require_value(value: Value | None) -> Value:
     """Return a value that validation guarantees for this type of shape. Raises TypeError without it."""
     if value is None:
-        raise TypeError("a shape without one of its measures")
+        raise TypeError("a shape lacks one of its dimensions")
     return value
 
 

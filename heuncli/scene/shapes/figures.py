@@ -41,7 +41,7 @@ def find_frustum_figure(part: Frustum, planes: CuttingPlanes) -> Figure:
     if not are_parallel(part.axis, planes.n):
         low, high = part.extent(planes.n)
         return UnknownFigure(
-            (low < planes.shifted_d) & (planes.shifted_d < high), "a cylinder, tube or cone is cut askew"
+            (low < planes.shifted_d) & (planes.shifted_d < high), "a cylinder, tube or cone is cut obliquely"
         )
     c = float(part.axis @ planes.n)
     z, shifted_z = ((d - planes.n @ part.start) / c for d in (planes.d, planes.shifted_d))
@@ -55,12 +55,12 @@ def find_box_figure(part: Box, planes: CuttingPlanes) -> Figure:
     h = planes.d - planes.n @ part.center
     if not are_parallel(part.axes[:, i], planes.n):
         low, high = part.extent(planes.n)
-        return UnknownFigure((low < planes.shifted_d) & (planes.shifted_d < high), "a box is cut askew")
+        return UnknownFigure((low < planes.shifted_d) & (planes.shifted_d < high), "a box is cut obliquely")
     is_met = np.abs(planes.shifted_d - planes.n @ part.center) < part.half_size[i]
     parallel_axes = [j for j in range(3) if j != i and are_parallel(part.axes[:, j], planes.e1)]
     if not parallel_axes:
         side = ", ".join(f"{x:.6g}" for x in (part.axes[:, (i + 1) % 3] + 0.0).tolist())
-        return UnknownFigure(is_met, f"e1 is not along a side of the box (as first_axis: [{side}] is)")
+        return UnknownFigure(is_met, f"e1 is not parallel to a side of the box (use first_axis: [{side}])")
     width, height = (2.0 * float(part.half_size[j]) for j in (parallel_axes[0], 3 - i - parallel_axes[0]))
     return RectangleFigure(is_met, part.center + h[:, None] * planes.n, width, height)
 

@@ -126,9 +126,9 @@ def profile_properties(
             missing[i] = f"the outline of the mesh has {int(parts[i])} parts"
         elif not coupling_ratio[i] <= tolerances.OUTLINE_PRINCIPAL:
             axis = _format_principal_axis(I1[i], I2[i], I12[i], local)
-            missing[i] = f"e1 is no principal axis of the outline (as first_axis: [{axis}] is)"
+            missing[i] = f"e1 is not a principal axis of the outline (use first_axis: [{axis}])"
         elif not asymmetry[i] <= tolerances.OUTLINE_SYMMETRIC:
-            missing[i] = "shear forces twist the outline, which is not the same turned by 180 degrees"
+            missing[i] = "the outline is not symmetric under rotation by 180 degrees, so shear forces may twist it"
     return np.array([A, I1, I2, J, c1, c2]), missing
 
 

@@ -92,7 +92,7 @@ def integrate_adaptively(
         np.add.at(total, owner[done], sum_of_halves[done])
         is_open = np.repeat(~done, 2)
         if is_open.sum() > MAX_OPEN_HALVES * len(low):
-            message = "a shape is so thin against its size that rounding decides what a cut takes of it"
-            raise Finding("thin-shape", message, "give it its thickness, or leave it out of the body that is cut")
+            message = "a shape is so thin relative to its size that rounding errors determine the cut"
+            raise Finding("thin-shape", message, "give its real thickness, or remove it from the body that is cut")
         interval, owner, whole = halves[is_open], owners[is_open], parts[is_open]
     return total

@@ -25,4 +25,4 @@ def height_departures(plane_view: PlaneView, height: float, body: int, point: Ar
     """Yield a departure if a body's point, described by `what`, does not lie in the plane."""
     distance = abs(plane_view.point_height(body, point) - height)
     if distance > tolerances.FLAT * plane_view.reach:
-        yield Departure(f"{what} lies {distance:.1g} m beside it", distance / plane_view.reach)
+        yield Departure(f"{what} is {distance:.1g} m off the plane", distance / plane_view.reach)

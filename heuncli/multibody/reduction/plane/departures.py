@@ -55,7 +55,7 @@ def _plane_height(plane_view: PlaneView) -> float:
 def _vector_departures(what: str, component: float, size: float, unit: str, acts: bool = False) -> Iterator[Departure]:
     """Yield a departure if a vector of length `size` has a nonzero `component` out of the plane."""
     if component > tolerances.FLAT * size:
-        yield Departure(f"{what} leaves it by {component:.1g} {unit}", component / size, acts)
+        yield Departure(f"{what} has an out-of-plane component of {component:.1g} {unit}", component / size, acts)
 
 
 def _joint_departures(plane_view: PlaneView) -> Iterator[Departure]:
@@ -136,19 +136,19 @@ def _load_departures(plane_view: PlaneView, height: float) -> Iterator[Departure
         elif isinstance(load, BushingLoad):
             yield from _bushing_departures(plane_view, load, height)
         elif isinstance(load, ThreadLoad):
-            yield Departure(f"couplings.{load.name} rubs along its axis", 1.0, True)
+            yield Departure(f"couplings.{load.name} has friction along its axis", 1.0, True)
         elif not isinstance(load, JointLoad):
-            yield Departure(f"couplings.{load.name} may run out of it", 1.0, True)
+            yield Departure(f"couplings.{load.name} may leave the plane", 1.0, True)
         elif load.kind == "turn_spring":
             if not plane_view.orientations[load.joint].turns_in_plane and not _cannot_tilt(
                 plane_view, mechanism.joints[load.joint]
             ):
-                yield Departure(f"{name} turns about an axis in it", 1.0, True)
+                yield Departure(f"{name} acts about an axis in the plane", 1.0, True)
         elif load.kind == "torque" and load.value is not None and load.value.constant != 0.0:
             joint = mechanism.joints[load.joint]
             turns = "turning" in JOINTS[joint.kind].motions
             if turns != plane_view.orientations[load.joint].is_normal and not _cannot_tilt(plane_view, joint):
-                yield Departure(f"{name} acts out of it", 1.0, True)
+                yield Departure(f"{name} acts out of the plane", 1.0, True)
 
 
 def _bushing_departures(plane_view: PlaneView, load: BushingLoad, height: float) -> Iterator[Departure]:
@@ -164,10 +164,10 @@ def _bushing_departures(plane_view: PlaneView, load: BushingLoad, height: float)
     k = int(np.argmax(np.abs(along[0])))
     misalignment = float(np.abs(along[0] - along[1]).max() + np.abs(np.delete(along[0], k)).max())
     if misalignment > tolerances.FLAT:
-        yield Departure(f"{name} has no axis along the normal", misalignment, True)
+        yield Departure(f"{name} has no axis along the plane normal", misalignment, True)
     shift, turn = (np.array([e.constant != 0.0 for e in part.extra_load]) for part in (load.shift, load.turn))
     if shift[k] or np.delete(turn, k).any():
-        yield Departure(f"{name} pushes out of it", 1.0, True)
+        yield Departure(f"{name} has an out-of-plane load", 1.0, True)
 
 
 def _component_departures(what: str, vector: Sequence[Expression], n: Array, kind: str) -> Iterator[Departure]:
@@ -182,7 +182,7 @@ def _component_departures(what: str, vector: Sequence[Expression], n: Array, kin
     for k, e in enumerate(vector):
         part = float(np.sqrt(np.sum(np.square(projection[:, k]))))
         if e.constant is None and part > tolerances.FLAT:
-            yield Departure(f"{what} varies along {'xyz'[k]}, {part:.1g} of which points out of it", part, True)
+            yield Departure(f"{what} varies along {'xyz'[k]}, of which {part:.1g} points out of the plane", part, True)
 
 
 def _impulse_departures(plane_view: PlaneView, height: float) -> Iterator[Departure]:
@@ -207,12 +207,12 @@ def _fixed_coordinate_departures(plane_view: PlaneView) -> Iterator[Departure]:
     for k, joint in enumerate(mechanism.joints):
         drive = joint.drive
         if drive is not None and drive.value.constant is None and plane_view.is_fixed_coordinate(k, drive.quantity):
-            yield Departure(f"drives.{drive.name} moves joints.{joint.name} out of it", 1.0, True)
+            yield Departure(f"drives.{drive.name} moves joints.{joint.name} out of the plane", 1.0, True)
     for stop in mechanism.stops:
         if plane_view.is_fixed_coordinate(stop.joint, stop.quantity):
-            yield Departure(f"{stop.path} limits a coordinate out of it", 1.0, True)
+            yield Departure(f"{stop.path} limits an out-of-plane coordinate", 1.0, True)
     base = {"rate": "angle", "speed": "travel"}
     for load in mechanism.loads:
         for name, quantity in dict.fromkeys(use for e in load.values for use in e.uses if use[0] in numbers):
             if plane_view.is_fixed_coordinate(numbers[name], base.get(quantity, quantity)):
-                yield Departure(f"forces.{load.name} names {name}.{quantity}, a coordinate out of it", 1.0, True)
+                yield Departure(f"forces.{load.name} uses {name}.{quantity}, an out-of-plane coordinate", 1.0, True)

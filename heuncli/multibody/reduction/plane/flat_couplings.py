@@ -78,7 +78,7 @@ def _coordinate_departures(plane_view: PlaneView, coupling: Coupling, name: str)
     joints = plane_view.scene.mechanism.joints
     for k, quantity in dict.fromkeys(x[:2] for row in coupling.rows for part in row.parts for x in part.coordinates):
         if plane_view.is_fixed_coordinate(k, quantity):
-            yield Departure(f"{name} counts {joints[k].name}.{quantity}, a coordinate out of it", 1.0, True)
+            yield Departure(f"{name} uses {joints[k].name}.{quantity}, an out-of-plane coordinate", 1.0, True)
 
 
 def _point_departures(plane_view: PlaneView, part: CouplingPart, name: str, height: float) -> Iterator[Departure]:
@@ -91,7 +91,7 @@ def _direction_departures(plane_view: PlaneView, part: CouplingPart, name: str) 
     """Yield the directions out of the plane of a part between bodies that could tilt."""
     kind = part.kind
     if kind == "dot":
-        yield Departure(f"{name} turns alike what bends out of it", 1.0, True)
+        yield Departure(f"{name} couples shafts that bend out of the plane", 1.0, True)
     directions = {
         "e": (first_direction_body(part), np.asarray(part.e)),
         "g": (second_direction_body(part), np.asarray(part.g)),
@@ -105,11 +105,11 @@ def _direction_departures(plane_view: PlaneView, part: CouplingPart, name: str) 
     for body, x in in_plane:
         along, _ = _split_direction(plane_view, body, x)
         if along > tolerances.FLAT:
-            yield Departure(f"the force of {name} points out of it by {along:.1g} (sine)", along, True)
+            yield Departure(f"the force of {name} points out of the plane by {along:.1g} (sine)", along, True)
     for body, x in normal:
         _, across = _split_direction(plane_view, body, x)
         if across > tolerances.FLAT:
-            yield Departure(f"an axis of {name} is off its normal by {across:.1g} (sine)", across, True)
+            yield Departure(f"an axis of {name} deviates from the plane normal by {across:.1g} (sine)", across, True)
 
 
 def _split_direction(plane_view: PlaneView, body: int, x: Array) -> tuple[float, float]:

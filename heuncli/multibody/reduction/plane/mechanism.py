@@ -192,7 +192,7 @@ class FlatSceneBuilder:
         expression = weighted_sum(list(zip(factors, load.vector, strict=True)))
         if expression is None:
             raise UnrepresentableLoadError(
-                f"forces.{load.name}.vector branches, and no axis of the plane is one of its own"
+                f"forces.{load.name}.vector is defined by cases, and its axes are not axes of the plane"
             )
         return expression
 

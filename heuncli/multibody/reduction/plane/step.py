@@ -45,7 +45,7 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
         return ()
     what = "; ".join(departure.what for departure in leaving[:MAX_LISTED])
     more = " and more" if len(leaving) > MAX_LISTED else ""
-    return (f"not solved in the plane across {_format_normal(plane_view)}: {what}{more}",)
+    return (f"not solved in the plane normal to {_format_normal(plane_view)}: {what}{more}",)
 
 
 def _severity(leaving: list[Departure]) -> tuple[int, float]:
@@ -78,14 +78,16 @@ def _make_reduction(plane_view: PlaneView) -> Reduction | tuple[str, ...]:
     try:
         flat = make_flat_scene(plane_view)
     except UnrepresentableLoadError as missing:
-        return (f"not solved in the plane across {_format_normal(plane_view)}: {missing}",)
+        return (f"not solved in the plane normal to {_format_normal(plane_view)}: {missing}",)
     states = PlaneStateMap(plane_view, flat)
-    where = f"solved in the plane across {_format_normal(plane_view)}: "
+    where = f"solved in the plane normal to {_format_normal(plane_view)}: "
     if all(plane_view.upright):
-        reason = "the joints leave no other motion than turns about that direction and shifts across it"
+        reason = "the joints allow only rotations about that direction and displacements perpendicular to it"
         return Reduction(flat, states.embed, states.restrict, (where + reason,))
-    reason = "the scene is its own mirror image in it, and so is its motion, were it stable against leaving it or not"
-    hidden = "whether the motion in the plane is stable against leaving it: what is integrated cannot leave it"
+    reason = "model and motion are symmetric about this plane; stability out of the plane is not considered"
+    hidden = (
+        "whether the planar motion is stable against out-of-plane disturbances: the solved model cannot leave the plane"
+    )
     return Reduction(flat, states.embed, states.restrict, (where + reason,), (hidden,))
 
 

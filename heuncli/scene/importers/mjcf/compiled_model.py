@@ -96,12 +96,12 @@ def _import_mujoco(file: str) -> Any:
     try:
         import mujoco
     except ImportError:
-        message = f"{file} is a model of MuJoCo's, which the package mujoco reads; it is not installed"
-        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL_COMMAND} installs it")) from None
+        message = f"{file} is a MuJoCo model; reading it needs the package mujoco, which is not installed"
+        raise SpecError(Problem("missing-extra", message, hint=f"install it: {INSTALL_COMMAND}")) from None
     if tuple(map(int, str(mujoco.__version__).split(".")[:2])) < MIN_VERSION:
         oldest = ".".join(map(str, MIN_VERSION))
-        message = f"{file}: the package mujoco is of version {mujoco.__version__}; the oldest understood is {oldest}"
-        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL_COMMAND} --upgrade"))
+        message = f"{file}: the package mujoco has version {mujoco.__version__}; {oldest} or later is needed"
+        raise SpecError(Problem("missing-extra", message, hint=f"upgrade it: {INSTALL_COMMAND} --upgrade"))
     return mujoco
 
 
@@ -109,7 +109,7 @@ def _decode(content: bytes, file: str) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        message = "not in UTF-8, which is what MuJoCo reads"
+        message = "the file is not in UTF-8, the only encoding that MuJoCo reads"
         raise SpecError(Problem("not-xml", message, SourceLocation(file, 1, 1), "save it as UTF-8")) from None
 
 
@@ -119,8 +119,10 @@ def _compile_problem(text: str, file: str) -> Problem:
     reason = " ".join(text.split()).removeprefix("Error: ").removeprefix("XML Error: ").removeprefix("Error: ")
     reason = re.sub(r"Element name '', id \d+, |,? ?line \d+$", "", reason).rstrip(", ")
     line = max(int(found[1]), 1) if found else 1
-    message = f"MuJoCo does not compile it: {reason}"
-    return Problem("import-mjcf", message, SourceLocation(file, line, 1), "MuJoCo says so of the file by itself, too")
+    message = f"MuJoCo cannot compile it: {reason}"
+    return Problem(
+        "import-mjcf", message, SourceLocation(file, line, 1), "MuJoCo alone reports the same error for this file"
+    )
 
 
 def _find_lines(spec: Any) -> dict[str, dict[int, int]]:

@@ -24,7 +24,7 @@ from heuncli.scene.importers.names import format_original_name
 from heuncli.scene.importers.spec_text import format_decimal, format_number
 from heuncli.scene.importers.usage_comments import explain_motion
 
-UNHELD_HINT = "drives hold what moves by itself; of this coupling neither joint does"
+UNHELD_HINT = "drives hold independent joints; neither joint of this coupling is independent"
 
 
 class JointLaws(NamedTuple):
@@ -101,8 +101,10 @@ class _LawBuilder:
             return
         argument = None if coupling in self.leaderless else self.format_argument(coupling)
         if argument is None or coupling.follower in self.driven_joints:
-            unheld = "a joint that nothing else holds"
-            reason = f"{step.name} follows {unheld if argument is None else 'twice, by another equality, too'}"
+            unheld = "a joint that nothing else drives"
+            reason = (
+                f"{step.name} follows {unheld if argument is None else 'two joints: another equality drives it, too'}"
+            )
             self.left_out.append(make_left_out_problem(c, "equality", coupling.equality, reason, UNHELD_HINT))
             return
         law = format_polynomial(coupling.polynomial if argument else coupling.polynomial[:1], argument)
@@ -110,7 +112,7 @@ class _LawBuilder:
         law_note = (
             ""
             if coupling.leader is None
-            else f"; of a motion its law is {self.steps[coupling.leader].name}'s, by this rule"
+            else f"; for a motion, put the law of {self.steps[coupling.leader].name} into this formula"
         )
         self.add_drive(coupling.follower, law, f"{c.describe_part('equality', coupling.equality)}{law_note}")
 
@@ -121,11 +123,11 @@ class _LawBuilder:
         c, step = self.c, self.steps[coupling.follower]
         start, slope, *higher_terms = (*coupling.polynomial, 0.0, 0.0)
         if coupling.leader is None or slope == 0.0 or any(higher_terms) or coupling.follower in self.couplings:
-            message = f"joint {step.name} follows another by more than a ratio, which free joints do not"
-            place = c.location("equality", coupling.equality)
-            raise SpecError(
-                Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
+            message = (
+                f"joint {step.name} follows another by more than a fixed ratio, which is not possible with free joints"
             )
+            place = c.location("equality", coupling.equality)
+            raise SpecError(Problem("import-mimic", message, place, "leave out --free: drives then keep the relation"))
         # the spec counts coordinates from the drawn pose, so MuJoCo's are taken minus their drawn values
         leader = self.steps[coupling.leader].name
         keys = {"type": "ratio", "of": (step.name, leader), "factors": (1.0, -slope), "is": start}

@@ -45,7 +45,7 @@ def _make_damper(step: TreeJoint, damping: float, assign_name: AssignName) -> De
     if damping > 0.0:
         return DescribedEntry(entry_name, {"type": "damper", "joint": step.name, "coefficient": damping})
     law = f"{format_decimal(-damping)}*{step.name}.{RATE_KEYS[step.kind]}"
-    return DescribedEntry(entry_name, {"type": "torque", "joint": step.name, "value": law}, "a damping below 0")
+    return DescribedEntry(entry_name, {"type": "torque", "joint": step.name, "value": law}, "negative damping")
 
 
 def _make_spring(step: TreeJoint, stiffness: float, free_position: float, assign_name: AssignName) -> DescribedEntry:
@@ -61,7 +61,7 @@ def _make_spring(step: TreeJoint, stiffness: float, free_position: float, assign
     if free_position:
         displacement = f"({displacement} {'-' if free_position > 0.0 else '+'} {format_number(abs(free_position))})"
     keys = {"type": "torque", "joint": step.name, "value": f"{format_number(-stiffness)}*{displacement}"}
-    remark = "a spring along the slide" if stiffness > 0.0 else "a stiffness below 0"
+    remark = "a spring along the slide" if stiffness > 0.0 else "negative stiffness"
     return DescribedEntry(assign_name(f"spring_{step.name}"), keys, remark)
 
 

@@ -102,10 +102,10 @@ class ClosureBuilder:
             kind = int(c.model.eq_type[number])
             if not c.model.eq_active0[number] or c.is_disabled("EQUALITY", "CONSTRAINT"):
                 self.header_lines.append(
-                    f"{c.describe_part('equality', number)} is not active at the start, and left out"
+                    f"{c.describe_part('equality', number)} is not active at the start and is left out"
                 )
             elif kind not in handler_by_type:
-                self.leave_out(number, f"of the type {names[kind]} there is none in a spec")
+                self.leave_out(number, f"a spec has no equality of type {names[kind]}")
             else:
                 handler_by_type[kind](number)
         joints, couplings = tuple(self.joints), tuple(self.couplings)
@@ -113,7 +113,7 @@ class ClosureBuilder:
         return LoopClosures(joints, couplings, *sets, tuple(self.left_out), tuple(self.header_lines))
 
     def leave_out(
-        self, number: int, reason: str, hint: str = "what it holds is free in the spec: add what holds it there"
+        self, number: int, reason: str, hint: str = "what it constrains is free in the spec: add a constraint there"
     ) -> None:
         """Report that an equality is left out."""
         self.left_out.append(make_left_out_problem(self.c, "equality", number, reason, hint))
@@ -130,7 +130,7 @@ class ClosureBuilder:
         """Add a joint between two ends, unless both are on the same body."""
         bodies = [self.body_name(end) for end in ends]
         if bodies[0] == bodies[1]:
-            self.header_lines.append(f"{remark} holds {bodies[0]} to itself, and is left out")
+            self.header_lines.append(f"{remark} connects {bodies[0]} to itself and is left out")
             return
         name = self.assign_name(original)
         points = [self.add_point(end, name) for end in ends]
@@ -184,8 +184,10 @@ class ClosureBuilder:
         elif np.abs(np.array(attitude) - np.array(other.attitude)).max() > ROTATION_TOLERANCE:
             cosine = (np.trace(np.array(attitude).T @ np.array(other.attitude)) - 1.0) / 2.0
             angle = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
-            reason = f"a weld that turns its bodies by {angle:.3g} degrees against how they are drawn is not in a spec"
-            self.leave_out(number, reason, "draw the bodies as they are welded, at the zero of the joints")
+            reason = f"a spec has no weld that rotates its bodies by {angle:.3g} degrees from their given start"
+            self.leave_out(
+                number, reason, "in the model, give the bodies their welded orientation with all joints at zero"
+            )
         else:
             self.add_equality(number, "weld", (one, other))
 
@@ -200,7 +202,7 @@ class ClosureBuilder:
         tendon, other = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         sites = find_straight_tendon_sites(self.c, tendon)
         if other >= 0:
-            self.leave_out(number, "the lengths of two tendons, coupled, are not in a spec")
+            self.leave_out(number, "a spec cannot couple the lengths of two tendons")
         elif sites is None:
             self.leave_out(
                 number, f"{self.c.describe_part('tendon', tendon)} does not run straight from one site to another"

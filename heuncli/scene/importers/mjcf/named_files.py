@@ -28,7 +28,7 @@ COUNT_ATTRIBUTES = {  # elements, and their attributes that are counts
     "size": ("nkey", "njmax", "nconmax", "nuserdata", "nuser_body", "nuser_jnt", "nuser_geom", "nuser_site",
              "nuser_cam", "nuser_tendon", "nuser_actuator", "nuser_sensor"),
 }  # fmt: skip
-COUNT_HINT = "MuJoCo makes them all before anything is said of them"
+COUNT_HINT = "MuJoCo would create all of them before any check"
 
 
 class ModelFiles(NamedTuple):
@@ -118,7 +118,7 @@ def _iter_folders(root: XmlElement) -> Iterator[str]:
 
 def _require_countable(element: XmlElement, count: int, file: str) -> None:
     if count > MAX_COUNT:
-        message = f"<{element.tag}> asks for {count:,}; at most {MAX_COUNT:,} are made"
+        message = f"<{element.tag}> requests {count:,}; at most {MAX_COUNT:,} are allowed"
         raise _make_error("too-large", element, file, message, COUNT_HINT)
 
 
@@ -129,11 +129,9 @@ def _require_readable(path: Path, element: XmlElement, file: str) -> None:
         return
     name = escape(element.attributes["file"])
     if not stat.S_ISREG(file_status.st_mode):
-        raise _make_error("import-file", element, file, f"{name} is no regular file", "name a file")
+        raise _make_error("import-file", element, file, f"{name} is not a regular file", "give the name of a file")
     if file_status.st_size > MAX_SIZE:
-        raise _make_error(
-            "too-large", element, file, f"{name} has more than {MAX_SIZE:,} bytes", "a coarser mesh will do"
-        )
+        raise _make_error("too-large", element, file, f"{name} has more than {MAX_SIZE:,} bytes", "use a coarser mesh")
 
 
 def _make_error(code: str, element: XmlElement, file: str, message: str, hint: str) -> SpecError:

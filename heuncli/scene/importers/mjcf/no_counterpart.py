@@ -74,16 +74,16 @@ def _model_problems(c: CompiledModel) -> Iterator[Problem]:
     """Yield the problems that concern the whole model."""
     option, place = c.model.opt, SourceLocation(c.file, 1, 1)
     if float(option.density) or float(option.viscosity):
-        message = "the forces of a fluid (density, viscosity, wind) are not in a spec"
-        yield Problem(LEFT_OUT_CODE, message, place, "drag on a point is a force by its velocity: -c*points.tip.vx")
+        message = "fluid forces (density, viscosity, wind) are left out"
+        yield Problem(LEFT_OUT_CODE, message, place, "model drag on a point by a force: -c*points.tip.vx")
     touching_count = _count_touching_geoms(c)
     if touching_count:
-        message = f"contacts are not in a spec: {touching_count} of {c.count('geom')} geoms may touch others"
-        hint = "a floor under a point is a force by its place; ends of a joint's range are stops (--limits)"
+        message = f"contacts are left out: {touching_count} of {c.count('geom')} geoms may touch others"
+        hint = "model a floor under a point by a force that depends on its position, joint limits by stops (--limits)"
         yield Problem(LEFT_OUT_CODE, message, place, hint)
     if int(c.model.nplugin):
-        message = f"plugins of MuJoCo's ({int(c.model.nplugin)}) have no counterpart in a spec"
-        yield Problem(LEFT_OUT_CODE, message, place, "say what they do by forces of the spec")
+        message = f"MuJoCo plugins ({int(c.model.nplugin)}) are left out"
+        yield Problem(LEFT_OUT_CODE, message, place, "model their effect by forces in the spec")
 
 
 def _joints_where(c: CompiledModel, values: Any, mask: Any = True) -> list[int]:
@@ -208,71 +208,73 @@ UNSUPPORTED_FEATURES = (
     UnsupportedFeature(
         "joint",
         lambda c: _joints_with_nonzero_rates(c, c.model.dof_armature),
-        "the inertia of a motor (armature) is left out: at rest it adds nothing",
-        "a motion takes armature * acceleration more than its drive tells",
+        "the rotor inertia of motors (armature) is left out: it has no effect at rest",
+        "in motion, add armature * acceleration to the reported drive torque",
     ),
     UnsupportedFeature(
         "joint",
         lambda c: [] if c.is_disabled("FRICTIONLOSS") else _joints_with_nonzero_rates(c, c.model.dof_frictionloss),
         "dry friction (frictionloss) is left out",
-        "a force of type friction has it, with the speed at which it is full",
+        "use a force of type friction, with the speed at which it is fully developed",
     ),
     UnsupportedFeature(
         "joint",
         lambda c: _joints_where(c, c.model.jnt_stiffness, _joint_type_mask(c, "mjJNT_BALL", "mjJNT_FREE")),
-        "springs in a ball or free joint are not in a spec",
-        "springs between points have their effect",
+        "springs in ball or free joints are left out",
+        "use springs between points",
     ),
     UnsupportedFeature(
         "joint",
         _unsupported_damping,
-        "damping of a free joint, or below 0 of a ball, is not in a spec",
-        "drag on a point is a force by its velocity: -c*points.tip.vx",
+        "damping of free joints, and negative damping of ball joints, is left out",
+        "model drag on a point by a force: -c*points.tip.vx",
     ),
     UnsupportedFeature(
         "joint",
         _nonlinear_joints,
-        "springs and dampers that are not linear: their linear part alone is in the spec",
-        "a torque has any law in the joint's angle and rate",
+        "nonlinear springs and dampers: only their linear part is in the spec",
+        "use a torque with any law in the joint's angle and rate",
     ),
     UnsupportedFeature(
         "actuator",
         _unsupported_actuators,
-        "actuators with dynamics, or with a feedback of their own, are left out",
-        "joints are held by drives, which tell the torque that is needed",
+        "actuators with dynamics or feedback are left out",
+        "drives hold the joints and report the required torque",
     ),
     UnsupportedFeature(
         "equality",
         _softened_equalities,
-        "softness of equalities (solref, solimp) is not in a spec, where they hold",
-        "an elastic coupling is a spring or turn_spring",
+        "softness of equalities (solref, solimp) is left out: they are exact in the spec",
+        "for an elastic coupling use a spring or turn_spring",
     ),
     UnsupportedFeature(
         "flex",
         lambda c: range(c.count("flex")),
-        "flexible bodies are not in a spec",
-        "a spec has rigid bodies",
+        "flexible bodies are left out",
+        "a spec has only rigid bodies",
     ),
     UnsupportedFeature(
         "body",
         lambda c: [int(k) for k in np.flatnonzero(np.asarray(c.model.body_mocapid) >= 0)],
-        "bodies that a program moves (mocap) stand still in the spec",
-        "move what they hold by a drive",
+        "bodies moved by a program (mocap) are fixed in the spec",
+        "use a drive to move what is attached to them",
     ),
 )
 TENDONS = UnsupportedFeature(
-    "tendon", lambda c: (), "tendons are in a spec where they run straight between two sites, as springs or rods of "
-    "a given length; left out",
-    "rods, springs and actuators run between points",
+    "tendon", lambda c: (), "tendons are left out unless they run straight between two sites, as springs or rods of "
+    "given length",
+    "use rods, springs or actuators between points",
 )  # fmt: skip
 TENDON_SPRINGS = UnsupportedFeature(
-    "tendon", lambda c: (), "limits, friction and armature of tendons, and what is not linear in them, are left out; "
+    "tendon", lambda c: (), "limits, friction and armature of tendons, and their nonlinear parts, are left out; "
     "their springs and dampers are in the spec",
-    "an actuator between two points has any law in its length",
+    "use an actuator between two points, with any law in its length",
 )  # fmt: skip
 SHARED_WEIGHTS = UnsupportedFeature(
-    "body", lambda c: (), "weights that motors take off (actuatorgravcomp) in some of the joints that carry them: in "
-    "the spec no joint carries them",
-    "the motor of such a joint takes what its drive tells, and the torque of the weight",
+    "body", lambda c: (), "gravity compensation by motors (actuatorgravcomp) in only some of the supporting joints: "
+    "in the spec no joint carries this weight",
+    "the motor of such a joint takes the reported drive torque plus the torque of the weight",
 )  # fmt: skip
-BALL_LIMITS = UnsupportedFeature("joint", lambda c: (), "limits of a ball's turn are not in a spec", "pins have stops")
+BALL_LIMITS = UnsupportedFeature(
+    "joint", lambda c: (), "rotation limits of ball joints are left out", "use stops on pins"
+)

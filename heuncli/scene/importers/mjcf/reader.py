@@ -47,7 +47,7 @@ def described(content: bytes, file: str, root: XmlElement, options: ImportOption
     c = compile_model(content, file, collect_model_files(root, file))
     _require_finite(c)
     if not any(compute_frames(c.model).owners):
-        message = "nothing moves in it: no body has a joint"
+        message = "nothing can move: no body has a joint"
         raise SpecError(Problem("import-mass", message, SourceLocation(file, 1, 1), "is it the right file?"))
     return _MachineBuilder(c, options).build(sha256)
 
@@ -108,7 +108,7 @@ class _MachineBuilder:
             forces=forces,
             stops=limits,
             header_lines=tuple(self.iter_header_lines()),
-            remarks={"parameters": "where the joints stand"},
+            remarks={"parameters": "joint positions"},
             left_out=left_out,
         )
 
@@ -159,8 +159,8 @@ class _MachineBuilder:
                 carried_mass = mass_properties(self.c.model, self.frames, self.tree.carriers[name])
                 carried_name = self.tree.names[self.tree.carriers[name]]
                 remark = (
-                    f"between the joints of {carried_name}: no body of the file; its mass, "
-                    f"{CARRIER_MASS_RATIO:g} of that, adds nothing"
+                    f"auxiliary body between the joints of {carried_name}; its mass, "
+                    f"{CARRIER_MASS_RATIO:g} of that body's, is negligible"
                 )
                 yield DescribedBody(
                     name,
@@ -192,15 +192,15 @@ class _MachineBuilder:
         c, model = self.c, self.c.model
         yield from self.laws.header_lines
         if self.tree.carriers:
-            yield "MuJoCo stacks joints on one body; here a body without weight stands between any two of them."
+            yield "MuJoCo stacks joints on one body; here auxiliary bodies of negligible mass connect them."
         free = [step.child for step in self.tree.steps if step.kind == FREE]
         if free:
-            yield f"On no joint of the tree (freejoint): {', '.join(free)}."
+            yield f"Free bodies (freejoint): {', '.join(free)}."
         ground = sum(float(model.body_mass[body]) for body, owner in enumerate(self.frames.owners) if owner == 0)
         if ground > 0.0:
-            yield f"What does not move is the ground; its {ground:.6g} kg are not in the load on the foundation."
+            yield f"Fixed bodies belong to the ground; their {ground:.6g} kg are not in the load on the foundation."
         if self.closures.joints:
-            yield "Equalities, soft in MuJoCo, are rigid joints here."
+            yield "Equalities are soft in MuJoCo and rigid joints here."
         yield from self.closures.header_lines
         yield from (f"MuJoCo warns: {text}" for text in c.warning_texts)
 
@@ -217,8 +217,8 @@ def _find_start_values(c: CompiledModel, keyframe: str | None) -> tuple[Any, Any
     if keyframe in names or keyframe in numbers:
         number = names.index(keyframe) if keyframe in names else int(keyframe)
         return np.array(model.key_qpos[number]), np.array(model.key_qvel[number])
-    hint = suggest(keyframe, [name for name in names if name], "keyframes") if any(names) else "leave --keyframe out"
-    message = f"no keyframe is called {keyframe!r}; there are {len(names)}"
+    hint = suggest(keyframe, [name for name in names if name], "keyframes") if any(names) else "leave out --keyframe"
+    message = f"there is no keyframe {keyframe!r}; number of keyframes: {len(names)}"
     raise SpecError(Problem("import-keyframe", message, SourceLocation(c.file, 1, 1), hint))
 
 
@@ -230,11 +230,11 @@ def _require_finite(c: CompiledModel) -> None:
         wrong.append("gravity")
     if wrong:
         message = f"numbers that are not finite: {', '.join(wrong)}"
-        hint = "the program that wrote it divided by 0: its source needs the number"
+        hint = "the exporting program may have divided by 0: correct the value in its source"
         raise SpecError(Problem("import-number", message, SourceLocation(c.file, 1, 1), hint))
 
 
 def _read_title(c: CompiledModel) -> str:
     """Return the model's own name, which is the first of its names."""
     text = bytes(c.model.names).split(b"\0", 1)[0].decode("utf-8", "replace")
-    return text or "A model of MuJoCo's"
+    return text or "MuJoCo model"

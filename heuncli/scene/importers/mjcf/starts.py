@@ -85,7 +85,11 @@ def _make_near_start(pose: BodyPose, drawn_pose: BodyPose, can_shift: bool) -> S
     if not (can_shift or attitude or distance > DRAWN_TOLERANCE * float(np.abs(drawn_pose.p).max(initial=1.0))):
         return StartKeys({}, {})
     rates = bool(np.any(pose.v) or np.any(pose.sigma))
-    notes = {"near": "its rates follow from what holds it, else it starts at rest"} if rates else {}
+    notes = (
+        {"near": "its start velocities follow from its constraints; without constraints it starts at rest"}
+        if rates
+        else {}
+    )
     return StartKeys({"near": {"position": round_vector(to_vec(pose.p)), **attitude}}, notes)
 
 

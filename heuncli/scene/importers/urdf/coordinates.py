@@ -117,7 +117,7 @@ class RobotCoordinates:
         if self.options.free:
             if relation.multiplier == 0.0:
                 self._add_drive(
-                    name, quantity, format_decimal(relation.offset), f"mimic: stands, whatever {leader} does"
+                    name, quantity, format_decimal(relation.offset), f"mimic: fixed, independent of {leader}"
                 )
                 return
             keys = {
@@ -128,7 +128,7 @@ class RobotCoordinates:
                 quantity.key: format_mimic(leader, relation.multiplier, relation.offset, same_quantity)
             }
             return
-        remark = f"mimic: follows {leader} by this rule; of a motion the law of hold_{leader} stands here, too"
+        remark = f"mimic: follows {leader}; for a motion, put the law of hold_{leader} into this formula"
         self._add_drive(
             name, quantity, format_mimic(leader, relation.multiplier, relation.offset, same_quantity), remark
         )
@@ -137,7 +137,7 @@ class RobotCoordinates:
         if joint.limits is None or joint.kind == "continuous":
             return ""
         lower, upper = joint.limits
-        outside = "" if lower <= 0.0 <= upper else "; 0 lies outside"
+        outside = "" if lower <= 0.0 <= upper else "; 0 is outside"
         return f"limits {format_number(lower)} to {format_number(upper)} {quantity.unit}{outside}"
 
     def _start_value(self, joint: UrdfJoint, quantity: JointQuantity) -> str:
@@ -151,16 +151,18 @@ class RobotCoordinates:
             return
         lower, upper = joint.limits
         if lower >= upper:
-            message = f"its limits, {lower:g} to {upper:g}, leave no room"
-            self.fields.report("import-limits", joint.element, joint.path, message, "leave --limits out, or mend them")
+            message = f"its limits, {lower:g} to {upper:g}, leave no range of motion"
+            self.fields.report(
+                "import-limits", joint.element, joint.path, message, "leave out --limits, or correct them"
+            )
             return
         keys = {"joint": name, quantity.key: (lower, upper)}
         self.stops.append(DescribedEntry(self.namer.assign(f"limits_{name}"), keys))
 
     def _leave_out_friction(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         law = f"{{type: friction, joint: {name}, {quantity.friction}: {format_number(joint.friction)}, speed: 0.01}}"
-        message = f'friction="{joint.friction:g}" is not taken over'
-        hint = f"a friction has a rate at which it is full: forces: {{friction_{name}: {law}}}"
+        message = f'friction="{joint.friction:g}" is left out'
+        hint = f"add it with the speed at which it is fully developed: forces: {{friction_{name}: {law}}}"
         self.left_out.append(self.fields.make_problem(LEFT_OUT_CODE, joint.element, joint.path, message, hint))
 
 

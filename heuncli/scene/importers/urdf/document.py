@@ -23,7 +23,9 @@ NON_MECHANICAL_TAGS = ("material", "gazebo", "transmission", "sensor", "plugin",
 LINK_PARTS = ("inertial", "visual", "collision")
 INERTIAL_PARTS = ("origin", "mass", "inertia")
 JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")
-JOINT_TYPE_HINT = "known: " + ", ".join(JOINT_TYPES) + "; a ball joint is three revolute ones with links between"
+JOINT_TYPE_HINT = (
+    "known: " + ", ".join(JOINT_TYPES) + "; for a ball joint use three revolute joints with links between them"
+)
 
 
 class LinkPose(NamedTuple):
@@ -137,7 +139,7 @@ def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:
         elif element.tag in NON_MECHANICAL_TAGS:
             ignored_tags[element.tag] += 1
         else:
-            message = f"<{element.tag}> is no part of a robot that is read"
+            message = f"<{element.tag}> is not a known part of a robot"
             hint = suggest(element.tag, ("link", "joint", *sorted(NON_MECHANICAL_TAGS)), "parts")
             fields.report("import-part", element, f"robot {root.attributes.get('name', '')}".strip(), message, hint)
     is_complete = len(links) + len(joints) + sum(ignored_tags[tag] for tag in NON_MECHANICAL_TAGS) == len(root.children)
@@ -150,12 +152,10 @@ def _require_readable(root: XmlElement, fields: UrdfFields) -> None:
     """Raise SpecError for macros that are not expanded, and for files that are too large."""
     macro = next((element for element in root.children if element.tag.startswith("xacro:")), None)
     if macro is not None:
-        raise SpecError(
-            fields.make_problem("import-xacro", macro, "", f"<{macro.tag}> is a macro of xacro", XACRO_HINT)
-        )
+        raise SpecError(fields.make_problem("import-xacro", macro, "", f"<{macro.tag}> is a xacro macro", XACRO_HINT))
     links = len(root.find_all("link"))
     if links > MAX_LINKS:
-        message = f"{links:,} links; at most {MAX_LINKS:,} are read"
+        message = f"{links:,} links; at most {MAX_LINKS:,} are allowed"
         raise SpecError(fields.make_problem("too-large", root, "", message, "split the robot"))
 
 
@@ -164,8 +164,8 @@ def _check_is_new(
 ) -> bool:
     previous = earlier.get(element.name)
     if previous is not None:
-        message = f"the name is taken, first in line {previous.element.line}"
-        fields.report("import-twice", element.element, element.path, message, "give the two names of their own")
+        message = f"the name is already used, first in line {previous.element.line}"
+        fields.report("import-twice", element.element, element.path, message, "give each its own name")
     return previous is None
 
 
@@ -177,7 +177,7 @@ def _read_link(element: XmlElement, fields: UrdfFields, ignored_tags: Counter[st
     suggestions = dict(find_misspelt(dict.fromkeys([part.tag for part in element.children]), LINK_PARTS))
     for part in element.children:
         if part.tag in suggestions:
-            message = f"<link> has a part <{part.tag}>, which is not read"
+            message = f"<link> has an unknown part <{part.tag}>"
             fields.report("import-part", part, f"link {name}", message, f"did you mean {suggestions[part.tag]}?")
     ignored_tags.update(f"{tag} in links" for tag in others if tag not in suggestions)
     inertial = fields.find_child(element, "inertial", f"link {name}")
@@ -190,7 +190,7 @@ def _read_inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inerti
     parts = {tag: fields.find_child(element, tag, path) for tag in ("mass", "inertia")}
     for tag, part in parts.items():
         if part is None:
-            hint = "mass and inertia stand in it; a frame without mass has no <inertial>"
+            hint = "give both mass and inertia; leave out <inertial> for a frame without mass"
             fields.report("import-missing", element, path, f"<inertial> has no <{tag}>", hint)
     pose = read_pose(element, path, fields)
     mass_part, inertia_part = parts["mass"], parts["inertia"]
@@ -230,7 +230,7 @@ def _read_joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
         fields.read_word(axis_part, "xyz", path)
     axis = fields.read_vector(axis_part, "xyz", path, X_AXIS)
     if axis == ZERO and kind not in (None, "fixed", "floating"):
-        fields.report("import-joint", axis_part or element, path, "the axis is 0 0 0", "it needs a direction: 0 0 1")
+        fields.report("import-joint", axis_part or element, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
     mimic = _read_mimic(element, path, fields, kind)
     limits, effort = _read_limits(element, path, fields)
     damping, friction = _read_dynamics(element, path, fields)
@@ -243,7 +243,7 @@ def _read_joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
 def _read_end(element: XmlElement, tag: str, path: str, fields: UrdfFields) -> str | None:
     part = fields.find_child(element, tag, path)
     if part is None:
-        fields.report("import-missing", element, path, f"<{tag}> is missing", f'as <{tag} link="..."/>')
+        fields.report("import-missing", element, path, f"<{tag}> is missing", f'add <{tag} link="..."/>')
         return None
     return fields.read_word(part, "link", path)
 
@@ -253,7 +253,7 @@ def _read_mimic(element: XmlElement, path: str, fields: UrdfFields, kind: str | 
     if part is None:
         return None
     if kind == "fixed":
-        message = "it is fixed, and what it is to follow is left out"
+        message = "the joint is fixed; its <mimic> is left out"
         fields.left_out.append(fields.make_problem(LEFT_OUT_CODE, part, path, message, "delete the <mimic>"))
         return None
     fields.report_unknown_attributes(part, path, "joint", "multiplier", "offset")
@@ -284,5 +284,5 @@ def _read_dynamics(element: XmlElement, path: str, fields: UrdfFields) -> tuple[
     damping, friction = (fields.read_number(part, name, path, 0.0) for name in ("damping", "friction"))
     for name, value in (("damping", damping), ("friction", friction)):
         if value is not None and value < 0.0:
-            fields.report("import-joint", part, path, f"{name} is {value:g}", "it resists with a number above 0")
+            fields.report("import-joint", part, path, f"{name} is {value:g}", "give a value of 0 or above")
     return damping or 0.0, friction or 0.0

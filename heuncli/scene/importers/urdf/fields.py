@@ -58,7 +58,7 @@ class UrdfFields:
         """Return the child element of a tag that may occur once."""
         children = element.find_all(tag)
         if len(children) > 1:
-            message = f"<{tag}> is given {len(children)} times, first in line {children[0].line}"
+            message = f"<{tag}> occurs {len(children)} times, first in line {children[0].line}"
             self.report("import-twice", children[1], path, message, "keep one of them")
         return children[0] if children else None
 
@@ -66,21 +66,21 @@ class UrdfFields:
         """Report attributes that are not read: they might change the meaning of the others."""
         for name in element.attributes:
             if name not in names and ":" not in name:  # with a prefix it belongs to another program
-                message = f"<{element.tag}> has the attribute {name}, which is not read"
-                hint = f"read are: {', '.join(names)}"
+                message = f"<{element.tag}> has an unknown attribute {name}"
+                hint = f"known attributes: {', '.join(names)}"
                 self.report("import-attribute", element, path, message, hint)
 
     def report_unknown_parts(self, element: XmlElement, path: str, *tags: str) -> None:
         """Report child elements that are not read: each might change the meaning of the element."""
         for part in element.children:
             if part.tag not in tags and ":" not in part.tag:  # with a prefix it is of another program
-                message = f"<{element.tag}> has a part <{part.tag}>, which is not read"
+                message = f"<{element.tag}> has an unknown part <{part.tag}>"
                 self.report("import-part", part, path, message, suggest(part.tag, tags, "parts"))
 
     def report_misspelt(self, element: XmlElement, path: str, *names: str) -> None:
         """Report attributes that resemble a known one that is missing. Other attributes belong to other programs."""
         for name, suggestion in find_misspelt(element.attributes, names):
-            message = f"<{element.tag}> has the attribute {name}, which is not read"
+            message = f"<{element.tag}> has an unknown attribute {name}"
             self.report("import-attribute", element, path, message, f"did you mean {suggestion}?")
 
     def read_word(self, element: XmlElement, name: str, path: str) -> str | None:
@@ -89,7 +89,7 @@ class UrdfFields:
         if text is None or not text.strip():
             what = "is missing" if text is None else "is empty"
             message = f"the attribute {name} of <{element.tag}> {what}"
-            self.report("import-missing", element, path, message, f'as <{element.tag} {name}="...">')
+            self.report("import-missing", element, path, message, f'write <{element.tag} {name}="...">')
             return None
         return text
 
@@ -170,7 +170,7 @@ def suggest_number_fix(text: str) -> str:
     if "${" in text or "$(" in text:
         return XACRO_HINT
     if NOT_FINITE.match(text):
-        return "the program that wrote it divided by 0: its source needs the number"
+        return "the exporting program may have divided by 0: correct the value in its source"
     if "," in text:
-        return "numbers stand apart by spaces, with points in them: 0.1 0 0"
-    return "plain numbers in SI units, as 0.1 or 1e-3"
+        return "separate numbers by spaces and use decimal points: 0.1 0 0"
+    return "write plain numbers in SI units, e.g. 0.1 or 1e-3"

@@ -66,8 +66,8 @@ def _make_shape(
     if form is None:
         parts = [part.tag for geometry in element.find_all("geometry") for part in geometry.children]
         geometry_text = f"a {parts[0]}" if parts else "nothing"
-        message = f"it has no <inertial>, and its {element.tag} is {geometry_text}: no shape that --density can fill"
-        hint = "give it an <inertial>; boxes, cylinders and spheres are filled, and meshes where all of it are"
+        message = f"it has no <inertial>, and its {element.tag} is {geometry_text}: not a shape that --density can fill"
+        hint = "give it an <inertial>; --density fills boxes, cylinders and spheres, and links made only of meshes"
         fields.report("import-shape", element, link.path, message, hint)
         return None
     sizes = _read_sizes(form, link, fields)
@@ -101,7 +101,7 @@ def _read_sizes(form: XmlElement, link: UrdfLink, fields: UrdfFields) -> tuple[f
             return None
         values += found
     if min(values) <= 0.0:
-        message = f"the {form.tag} measures {', '.join(f'{value:g}' for value in values)}"
-        fields.report("import-shape", form, link.path, message, "each measure is above 0")
+        message = f"the dimensions of the {form.tag} are {', '.join(f'{value:g}' for value in values)}"
+        fields.report("import-shape", form, link.path, message, "each dimension must be above 0")
         return None
     return tuple(values)

@@ -48,7 +48,7 @@ def iter_spec_joints(
     root = tree.root.name
     if is_grounded and placed_links[root].carrier == root:
         ends = points.add(GROUND, "link", root, ZERO), points.add(root, "link", root, ZERO)
-        yield SpecJoint(f"{root}_on_ground", "weld", *ends, {}, ("the root stands on the ground",))
+        yield SpecJoint(f"{root}_on_ground", "weld", *ends, {}, ("the root is fixed to the ground",))
     for link in islice(tree.links, 1, None):
         joint = tree.parent_joints[link.name]
         placed_link, parent = placed_links[link.name], placed_links[joint.parent]
@@ -74,13 +74,13 @@ def _iter_joints(
     axis = rotate_vector(placed_link.R, joint.axis)
     remarks = [joint.kind] if joint.kind == "continuous" else []
     if abs(vector_length(joint.axis) - 1.0) > UNIT_LENGTH_TOLERANCE:
-        remarks.append(f"the axis of the file has the length {vector_length(joint.axis):.6g}")
+        remarks.append(f"the axis in the file has length {vector_length(joint.axis):.6g}")
     if joint.kind != "planar":
         if joint.effort is not None:
-            remarks.append(f"effort at most {joint.effort:g} {'N' if joint.kind == 'prismatic' else 'N m'}")
+            remarks.append(f"maximum effort {joint.effort:g} {'N' if joint.kind == 'prismatic' else 'N m'}")
         yield SpecJoint(joint.name, TYPES[joint.kind], start, end, {"axis": axis}, tuple(remarks), joint)
         return
-    remarks.append("planar: three points of it stay in the plane")
+    remarks.append("planar: three of its points stay in the plane")
     for number, arm in enumerate((ZERO, *_perpendicular_directions(axis)), 1):
         name = f"{joint.name}_{number}"
         corner = points.add(placed_link.carrier, "joint", name, add_vectors(placed_link.offset, arm))

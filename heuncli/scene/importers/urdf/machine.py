@@ -86,7 +86,7 @@ def build_machine(
         stops=tuple(coordinates.stops),
         couplings=tuple(coordinates.couplings),
         header_lines=(*_header_lines(validated_robot, fields), *coordinates.header_lines),
-        remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
+        remarks={"gravity": "URDF defines none; z is up", "parameters": "joint positions"},
         left_out=(*fields.left_out, *coordinates.left_out, *_unsupported_damping(validated_robot, fields)),
     )
 
@@ -98,7 +98,7 @@ def _make_body(
     mass = validated_robot.masses.get(link)
     if mass is None:
         source, shapes = validated_robot.shapes[link]
-        notes = {"shapes": f"of the {source} elements" + (": what overlaps counts twice" if len(shapes) > 1 else "")}
+        notes = {"shapes": f"from the {source} elements" + (": overlaps count twice" if len(shapes) > 1 else "")}
         return DescribedBody(name, None, None, None, points.get_points(link), shapes, start, remark, notes)
     inertia = rotate_tensor(compose_rotations(R, rotation_from_roll_pitch_yaw(mass.rpy)), mass.inertia)
     center = rotate_vector(R, mass.center)
@@ -142,8 +142,8 @@ def _report_moving_planes(validated_robot: ValidatedRobot, fields: UrdfFields) -
         while ancestor is not None and ancestor.kind in ("fixed", "prismatic"):
             ancestor = above.get(ancestor.parent)
         if ancestor is not None and ancestor.kind in ("revolute", "continuous"):
-            message = f"a planar joint behind {ancestor.name}, which turns its plane, has no counterpart yet"
-            hint = "two prismatic joints and a revolute one say the same"
+            message = f"a planar joint after {ancestor.name}, which rotates its plane, is not supported yet"
+            hint = "use two prismatic joints and a revolute joint instead"
             fields.report("import-joint", joint.element, joint.path, message, hint)
 
 
@@ -151,8 +151,8 @@ def _unsupported_damping(validated_robot: ValidatedRobot, fields: UrdfFields) ->
     """Report damping and friction in joints that do not have exactly one coordinate."""
     for joint in validated_robot.tree.parent_joints.values():
         if joint.is_movable and not joint.has_one_coordinate and (joint.damping or joint.friction):
-            message = f"the damping and friction of a joint of type {joint.kind} are not taken over"
-            hint = "a force of type damper resists in a plane, a couple in time what floats"
+            message = f"damping and friction of a joint of type {joint.kind} are left out"
+            hint = "use a force of type damper in a plane, and a time-dependent couple on a floating link"
             yield fields.make_problem(LEFT_OUT_CODE, joint.element, joint.path, message, hint)
 
 
@@ -160,24 +160,24 @@ def _header_lines(validated_robot: ValidatedRobot, fields: UrdfFields) -> Iterat
     """Yield the remarks that concern the whole robot."""
     root = validated_robot.tree.root.name
     if not validated_robot.is_grounded:
-        yield f'The root, link "{root}", is free; without --base free it stands on the ground.'
+        yield f'The root, link "{root}", is free; without --base free it is fixed to the ground.'
     elif validated_robot.placed_links[root].carrier == GROUND:
         yield f'The root, link "{root}", is the ground.'
     else:
-        yield f'The root, link "{root}", stands on the ground by a weld, whose load is told as that of a joint.'
+        yield f'The root, link "{root}", is welded to the ground; the load of the weld is reported as a joint load.'
     floating = [
         link.name for link in validated_robot.tree.links if _joint_kind(validated_robot, link.name) == "floating"
     ]
     if floating:
-        yield f"Free by joints of type floating: {list_words(floating)}."
+        yield f"Free links (joints of type floating): {list_words(floating)}."
     if fields.nearly_right_angled:
-        what = "taken for right angles (--repair right-angles)" if fields.repair_right_angles else "kept as they are"
-        yield f"Angles like 1.5708, nearly right ones, are {what}: {list_words(fields.nearly_right_angled)}."
+        what = "read as right angles (--repair right-angles)" if fields.repair_right_angles else "kept unchanged"
+        yield f"Nearly right angles, such as 1.5708, are {what}: {list_words(fields.nearly_right_angled)}."
     for link in fields.links_without_inertia:
-        yield f'Repaired (massless): the link "{link}" has the mass 0; its inertia is left out.'
+        yield f'Repaired (massless): the link "{link}" has mass 0; its inertia is left out.'
     if validated_robot.robot.ignored_tags:
         counts = ", ".join(f"{count} {tag}" for tag, count in validated_robot.robot.ignored_tags.items())
-        yield f"Not taken over, as it says nothing of the mechanics: {counts}."
+        yield f"Left out, as not relevant to the mechanics: {counts}."
 
 
 def _joint_kind(validated_robot: ValidatedRobot, link: str) -> str:

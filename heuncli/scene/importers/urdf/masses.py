@@ -52,7 +52,7 @@ def validate_mass(link: UrdfLink, repair: frozenset[str], fields: UrdfFields) ->
         return None
     if inertial.mass <= 0.0:
         message = "the mass is 0, the inertia is not" if inertial.mass == 0.0 else f"the mass is {inertial.mass:g} kg"
-        hint = "a link that moves has a mass above 0; a frame without mass has no <inertial>"
+        hint = "a moving link needs a mass above 0; leave out <inertial> for a frame without mass"
         if inertial.mass == 0.0:
             hint += "; --repair massless leaves the inertia out"
         fields.report("import-mass", inertial.element, link.path, message, hint)
@@ -77,13 +77,17 @@ class _InertiaValidation:
         """Check that some moment is not 0. A moment of 0 about one axis is a thin rod, which is a valid body."""
         if not any(self.inertial.moments):
             if "zero" in self.repair:
-                self.notes["inertia"] = "repaired (zero): a point mass; the file has 0 for all moments"
+                self.notes["inertia"] = "repaired (zero): a point mass; all moments are 0 in the file"
             else:
-                self.report(f"all moments are 0, of a mass of {self.inertial.mass:g} kg", "zero", "takes a point mass")
+                self.report(
+                    f"all moments of inertia are 0, but the mass is {self.inertial.mass:g} kg",
+                    "zero",
+                    "makes it a point mass",
+                )
         elif (moments := symmetric_eigenvalues(self.inertia))[0] == 0.0 and moments[2] - moments[1] <= self.tolerance(
             "triangle"
         ):
-            self.notes["inertia"] = "a thin rod: no moment about its axis"
+            self.notes["inertia"] = "a thin rod: no moment of inertia about its axis"
 
     def check_negative(self) -> None:
         """Check that no principal moment is below 0."""
@@ -95,7 +99,9 @@ class _InertiaValidation:
             self.replace_moments("negative", (least, middle, most))
         else:
             self.report(
-                f"a principal moment is negative: {_format_moments(moments)} kg m^2", "negative", "sets it to 0"
+                f"a principal moment of inertia is negative: {_format_moments(moments)} kg m^2",
+                "negative",
+                "sets it to 0",
             )
 
     def check_triangle(self) -> None:
@@ -107,10 +113,9 @@ class _InertiaValidation:
         if "triangle" in self.repair:
             self.replace_moments("triangle", (least + excess / 2.0, middle + excess / 2.0, most))
         else:
-            message = (
-                f"no body has the principal moments {_format_moments(moments)} kg m^2: each is at most the sum of two"
-            )
-            self.report(message, "triangle", "raises the smaller two")
+            message = f"no body has the principal moments {_format_moments(moments)} kg m^2: "
+            message += "none may exceed the sum of the others"
+            self.report(message, "triangle", "increases the two smaller ones")
 
     def tolerance(self, word: str) -> float:
         """Return the accepted violation of a rule [kg m^2]; after a repair, it is that of typed digits."""
@@ -118,7 +123,7 @@ class _InertiaValidation:
         return share * max(map(abs, symmetric_eigenvalues(self.inertia)))
 
     def report(self, message: str, word: str, effect: str) -> None:
-        hint = f"look into what wrote the file; --repair {word} {effect}, and says so beside the number"
+        hint = f"check the exporting program; --repair {word} {effect} and notes this next to the value"
         self.fields.report("import-inertia", self.inertial.element, self.link.path, message, hint)
 
     def replace_moments(self, word: str, moments: Vec) -> None:
@@ -156,6 +161,6 @@ def _format_moments(moments: Vec) -> str:
 
 def make_repaired_mass(link: UrdfLink) -> LinkMass:
     """Make the mass properties that the repair `massless` gives a link without mass."""
-    reason = "has no mass" if link.inertial is None else "has the mass 0"
+    reason = "has no mass" if link.inertial is None else "has mass 0"
     notes = {"mass": f"repaired (massless): the link {reason} in the file"}
     return LinkMass(REPAIRED_MASS, ZERO, ZERO, (ZERO, ZERO, ZERO), notes)

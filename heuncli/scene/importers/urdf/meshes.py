@@ -52,7 +52,7 @@ def compute_mesh_mass(link: UrdfLink, tag: str, density: float, fields: UrdfFiel
     mass, center, inertia = split_pseudo_inertia(np.sum(known, axis=0))
     x, y, z = center.tolist()
     a, b, c = ((p, q, r) for p, q, r in inertia.tolist())
-    note = f"of the {tag} meshes, at {density:g} kg/m^3" + (": what overlaps counts twice" if len(known) > 1 else "")
+    note = f"from the {tag} meshes, at {density:g} kg/m^3" + (": overlaps count twice" if len(known) > 1 else "")
     return LinkMass(mass, (x, y, z), ZERO, (a, b, c), {"mass": note})
 
 
@@ -70,9 +70,13 @@ def _mesh_pseudo_inertia(element: XmlElement, density: float, link: UrdfLink, fi
         path = find_mesh_file(name, fields.file)
         mesh = read_closed_mesh(read_bytes(str(path), MAX_FILE_SIZE), path.name)
         if not all(scale):
-            raise Finding("import-shape", "its scale is 0 along an axis", "one mesh's unit in m: 0.001 0.001 0.001")
+            raise Finding(
+                "import-shape",
+                "its scale is 0 along an axis",
+                "give the length of one mesh unit in m: 0.001 0.001 0.001",
+            )
     except Finding as finding:
-        message = f"it has no <inertial>, and its {element.tag} {escape(name)} has no mass: {finding.message}"
+        message = f"it has no <inertial>, and its {element.tag} {escape(name)} cannot give a mass: {finding.message}"
         fields.report("import-shape", form, link.path, message, f"give it an <inertial>; or {finding.hint}")
         return None
     corners = mesh.corners * np.array(scale)
@@ -101,6 +105,6 @@ def find_mesh_file(name: str, model: str) -> Path:
         found = None
     if found is None:
         raise Finding(
-            "import-shape", "there is no such file", "put it where the model names it; package://NAME is NAME/"
+            "import-shape", "there is no such file", "put it at the path given in the model; package://NAME is NAME/"
         )
     return found

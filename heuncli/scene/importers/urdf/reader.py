@@ -46,8 +46,8 @@ def _validate(
     masses = masses | {name: mass for name, mass in meshes.items() if mass is not None}
     is_grounded = not options.base_free
     if options.base_free and tree.root.name == WORLD_LINK:
-        message = "the root is the world itself, which --base free would let go"
-        hint = "leave --base out; a joint of type floating lets a link go"
+        message = "the root is the world itself, which --base free cannot release"
+        hint = "leave out --base; to release a link use a joint of type floating"
         fields.report("import-tree", tree.root.element, tree.root.path, message, hint)
     link_places, uncarried = place_links(tree, attitudes, {*masses, *shapes, *meshes}, is_grounded)
     heads = find_group_heads(tree)
@@ -59,7 +59,9 @@ def _validate(
         _report_uncarried(uncarried_heads, robot, tree, fields)
     if not masses and not shapes and not fields.problems:
         message = "no link has a mass"
-        fields.report("import-mass", robot.element, "", message, "give the links that move an <inertial>, or --density")
+        fields.report(
+            "import-mass", robot.element, "", message, "give the moving links an <inertial>, or use --density"
+        )
     return None if fields.problems else ValidatedRobot(robot, tree, masses, shapes, link_places, is_grounded)
 
 
@@ -68,7 +70,7 @@ def _report_uncarried(uncarried_heads: list[str], robot: Robot, tree: LinkTree, 
     for name in uncarried_heads:
         joint = tree.parent_joints.get(name)
         reason = "is to be free" if joint is None else f"is moved by the joint {joint.name} ({joint.kind})"
-        message = f"it has no mass, nor has anything fixed to it, and {reason}"
+        message = f"neither it nor anything fixed to it has mass, and it {reason}"
         link = robot.links[name]
         fields.report("import-massless", link.element, link.path, message, MASSLESS_HINT)
 

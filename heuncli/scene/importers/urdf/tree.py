@@ -46,8 +46,8 @@ def build_tree(robot: Robot, fields: UrdfFields) -> LinkTree | None:
     roots = [link for name, link in robot.links.items() if name not in parent_joints]
     if len(roots) > 1:
         names = list_words([link.name for link in roots[1:]])
-        message = f"{len(roots)} links are nobody's child: {roots[0].name}, {names}"
-        hint = f'join them by a joint of type fixed, or delete what is not used: <parent link="{roots[0].name}"/>'
+        message = f"{len(roots)} links have no parent, but only one may be the root: {roots[0].name}, {names}"
+        hint = f'connect them by a joint of type fixed, or delete unused links: <parent link="{roots[0].name}"/>'
         fields.report("import-tree", roots[1].element, roots[1].path, message, hint)
     order = _order_outward(robot, parent_joints, roots)
     unreached = [link for name, link in robot.links.items() if name not in order]
@@ -65,11 +65,11 @@ def _find_parent_joints(robot: Robot, fields: UrdfFields) -> dict[str, UrdfJoint
         for tag, name in ends:
             if name not in robot.links and robot.is_complete:
                 hint = suggest(name, robot.links, "links")
-                fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is no link", hint)
+                fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is not a link", hint)
         first = parent_joints.setdefault(joint.child, joint)
         if first is not joint and joint.child in robot.links:
-            message = f"the link {joint.child} has two parents: it is the child of {first.name}, too"
-            hint = "URDF has no loops: cut the loop, and close it in the spec by a joint of heun"
+            message = f"the link {joint.child} has two parents: it is also the child of joint {first.name}"
+            hint = "URDF has no loops: cut the loop, and close it in the spec by a joint"
             fields.report("import-tree", joint.element, joint.path, message, hint)
     return parent_joints
 
@@ -98,8 +98,8 @@ def _report_cycle(start: UrdfLink, parent_joints: dict[str, UrdfJoint], fields: 
     names = list(seen)
     cycle = [*reversed(names[names.index(name) :])]
     joint = seen[name]
-    message = f"a circle of links: {list_words([name, *cycle])}"
-    hint = "one link stands on none of the others: cut the circle, and close it in the spec by a joint of heun"
+    message = f"the links form a loop: {list_words([name, *cycle])}"
+    hint = "one link must not depend on the others: cut the loop, and close it in the spec by a joint"
     fields.report("import-tree", joint.element, joint.path, message, hint)
 
 
@@ -126,9 +126,15 @@ def _resolve_mimics(robot: Robot, fields: UrdfFields) -> dict[str, MimicRelation
         )
         if current is not None and current.mimic is not None and current.name in chain:
             message = "it follows itself" + (
-                "" if current.mimic.joint == current.name else f", by {list_words([*chain])}"
+                "" if current.mimic.joint == current.name else f", through {list_words([*chain])}"
             )
-            fields.report("import-mimic", current.mimic.element, current.path, message, "one joint of a chain leads it")
+            fields.report(
+                "import-mimic",
+                current.mimic.element,
+                current.path,
+                message,
+                "one joint of the chain must not follow another",
+            )
         for name, follower in reversed(chain.items()):
             mimic = follower.mimic
             if relation is not None and mimic is not None:
@@ -148,14 +154,14 @@ def _find_leader(joint: UrdfJoint, mimic: Mimic, robot: Robot, fields: UrdfField
     leader = robot.joints.get(mimic.joint)
     if leader is None:
         hint = suggest(mimic.joint, robot.joints, "joints")
-        fields.report("import-mimic", mimic.element, joint.path, f"it follows '{mimic.joint}', which is no joint", hint)
+        fields.report(
+            "import-mimic", mimic.element, joint.path, f"it follows '{mimic.joint}', which is not a joint", hint
+        )
         return None
     unsuitable = next((one for one in (joint, leader) if not one.has_one_coordinate), None)
     if unsuitable is not None:
-        message = (
-            f"it follows {leader.name}, but {unsuitable.name} is {unsuitable.kind}: it has no position of one number"
-        )
-        hint = "revolute, continuous and prismatic joints follow, and are followed"
+        message = f"it follows {leader.name}, but {unsuitable.name} is {unsuitable.kind}: it has no single coordinate"
+        hint = "only revolute, continuous and prismatic joints can follow and be followed"
         fields.report("import-mimic", mimic.element, joint.path, message, hint)
         return None
     return leader
