@@ -46,6 +46,7 @@ def test_a_starter_runs_and_holds_what_it_expects(heun: Heun, folder: Path, kind
     assert (run.returncode, run.stderr) == (0, "")
     assert heun("check", f"{kind}.yaml").returncode == 0
     text = (folder / f"{kind}.yaml").read_text()
+    assert "\n# Question  " in text and "\n# Answer    " in text and f"\n# Look at   heun run {kind}.yaml" in text
     assert text.startswith("# yaml-language-server: $schema=heun.schema.json\n")
     assert max(map(len, text.splitlines())) <= 120
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -55,9 +56,13 @@ def study_of(name: str) -> Study:
 
 @each
 def test_it_says_what_to_look_at(name: str) -> None:
+    """A question, its answer, the command that shows it, and what it was checked against."""
     comment = [line for line in Path(path_of(name)).read_text().splitlines() if line.startswith("#")]
     heads = [line[2:].split()[0] for line in comment[1:] if line.startswith("# ") and line[2:3] != " "]
-    assert {"Question", "Look", "Checked"} <= set(heads)
+    assert {"Question", "Answer", "Look", "Checked"} <= set(heads)
+    assert heads.index("Question") < heads.index("Answer") < heads.index("Look") < heads.index("Checked")
+    look = next(line for line in comment if line.startswith("# Look at   "))
+    assert re.match(rf"# Look at   heun \w+ specs/{name}\.yaml( |$)", look)
     assert load(path_of(name)).warnings == ()
 
 

@@ -40,9 +40,9 @@ STRANGE_NAMES = (
 )  # fmt: skip
 KINDS = {
     "joints": ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod", "curve", "hinge",
-    "fixed"),
+    "fixed", "pivot"),
     "forces": ("force", "couple", "torque", "actuator", "spring", "damper", "friction", "distributed", "turn_spring",
-    "motor", "bushing"),
+    "torsion_spring", "motor", "bushing"),
     "couplings": tuple(COUPLINGS),
     "shapes": ("rod", "cylinder", "cone", "box", "sphere", "point", "mesh", "ball"),
     "analysis": ("motion", "state", "impulse", "rest", "modes"),

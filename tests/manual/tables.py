@@ -23,6 +23,7 @@ from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.foreign_words import FORCE_WORDS, SHAPE_WORDS
+from heuncli.scene.file_format.type_aliases import list_aliases
 from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations
@@ -111,9 +112,18 @@ def words() -> Iterator[tuple[str, str]]:
 
 
 def joints() -> Iterator[tuple[str, ...]]:
-    """What each kind of joint holds and takes."""
+    """What each kind of joint is called, holds and takes."""
     for kind in TYPES.values():
-        yield f"`{kind.name}`", str(kind.row_count), quoted(driven(kind)), quoted(kind.loads), ", ".join(kind.synonyms)
+        accepted = list_aliases("joints", kind.name)
+        refused = [word for word in kind.synonyms if word not in accepted]
+        yield (
+            f"`{kind.name}`",
+            quoted(accepted),
+            str(kind.row_count),
+            quoted(driven(kind)),
+            quoted(kind.loads),
+            ", ".join(refused),
+        )
 
 
 def driven(kind: JointKind) -> list[str]:
@@ -151,13 +161,15 @@ def keys() -> Iterator[tuple[str, str]]:
 def types() -> Iterator[tuple[str, str]]:
     """What `type` may be, with the words of others for it, and where each is described."""
     blocks = (
-        ("a joint", f.JOINTS, SYNONYMS, "Joints"),
-        ("a load", f.LOADS, FORCE_WORDS, None),
-        ("a shape", fs.SHAPES, SHAPE_WORDS, "Shapes"),
+        ("a joint", "joints", f.JOINTS, SYNONYMS, "Joints"),
+        ("a load", "forces", f.LOADS, FORCE_WORDS, None),
+        ("a shape", "shapes", fs.SHAPES, SHAPE_WORDS, "Shapes"),
     )
-    for what, models, meant, heading in blocks:
+    for what, block, models, meant, heading in blocks:
         for name in models:
-            others = [word for word, kind in meant.items() if kind == name]
+            accepted = list_aliases(block, name)
+            refused = [word for word, kind in meant.items() if kind == name and word not in accepted]
+            others = [*(f"`{word}`" for word in accepted), *refused]
             link = f"[{heading or name}](format.md#{anchor(heading or name)})"
             yield ", ".join([f"`{name}`", *others]), f"{link}, {what}"
 
@@ -217,7 +229,7 @@ TABLES = (
     Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
-    Table("format", "Joints", ("type", "conditions", "may be driven", "takes", "also called"), list(joints())),
+    Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),

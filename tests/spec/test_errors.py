@@ -46,7 +46,7 @@ bodies:
   low: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 3], points: {top: [0, 0, 0]}}
   odd: {shapes: [{type: tube, from: [0, 0, 0]}, {type: box, center: [0, 0, 0], size: [1, 1]}, 5]}
 joints:
-  pivot: {type: hinge, from: ground.O, to: upper.topp}
+  pivot: {type: joint, from: ground.O, to: upper.topp}
   elbow: {type: ball, from: upper.endd, to: lower.top}
   knee: {type: pin, from: low.top, to: low.top}
 forces:

@@ -17,8 +17,10 @@ from heuncli.base.joint_kinds import TYPES
 from heuncli.output.tables.export import to_json
 from heuncli.output.tables.results_json_schema import make_results_schema
 from heuncli.results.results_schema import REPORTS, SHARES
+from heuncli.scene.file_format.format import JOINTS
 from heuncli.scene.file_format.json_schema import make_spec_schema
 from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.type_aliases import list_aliases
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.manual.keys import PLACES
@@ -111,13 +113,17 @@ def test_entries_have_examples_that_are_such_entries() -> None:
 
 
 def test_joint_kinds_are_named() -> None:
-    text = json.dumps(of_specs().schema)
-    assert all(f'"const": "{kind}"' in text for kind in TYPES)
+    """Each with the other words that are accepted for it."""
+    schema = of_specs().schema
+    assert isinstance(schema, dict)
+    for kind in TYPES:
+        words = schema["definitions"][JOINTS[kind].__name__]["properties"]["type"]
+        assert words.get("enum", [words.get("const")]) == [kind, *list_aliases("joints", kind)]
 
 
 @pytest.mark.parametrize(
     "change",
-    [{"bodys": {}}, {"gravity": 9.81}, {"heun": None}, {"expect": {}}, {"joints": {"a": {"type": "hinge"}}},
+    [{"bodys": {}}, {"gravity": 9.81}, {"heun": None}, {"expect": {}}, {"joints": {"a": {"type": "pivot"}}},
      {"analysis": {"durations": 1}}, {"cases": {"a": {}}}, {"drives": {"m": {"angle": [1]}}}],
     ids=lambda change: next(iter(change)),
 )  # fmt: skip

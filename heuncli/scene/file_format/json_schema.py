@@ -20,6 +20,7 @@ from heuncli.scene.file_format.entries import Entry
 from heuncli.scene.file_format.key_rows import KeyRow, read_rows_by_chapter
 from heuncli.scene.file_format.pydantic_models import make_model
 from heuncli.scene.file_format.source import read_source
+from heuncli.scene.file_format.type_aliases import TYPE_ALIASES, list_aliases, replace_type_aliases
 
 STARTERS = Path(__file__).parents[2] / "starters"
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -42,6 +43,7 @@ def make_spec_schema() -> dict[str, Any]:
     for model, (heading, key) in INLINE.items():
         description = next(row.description for row in rows[heading] if key in row.keys)
         definitions[model.__name__].setdefault("description", description)
+    _accept_type_aliases(definitions)
     spatial_conditions = [_require_keys(kind, keys) for kind, keys in _make_planar_directions_optional(definitions)]
     shapes = [_make_reference(model) for model in fs.SHAPES.values()]
     shapes_block = definitions[f.BodyEntry.__name__]["properties"]["shapes"]
@@ -61,6 +63,16 @@ def make_spec_schema() -> dict[str, Any]:
     return schema
 
 
+def _accept_type_aliases(definitions: dict[str, Any]) -> None:
+    """Accept the other words for the types of joints and loads."""
+    for block, models in ((block, f.ENTRY_BLOCKS[block]) for block in TYPE_ALIASES):
+        for kind, model in models.items() if isinstance(models, Mapping) else ():
+            aliases = list_aliases(block, kind)
+            type_schema = definitions[model.__name__]["properties"]["type"]
+            if aliases:
+                type_schema["enum"] = [type_schema.pop("const"), *aliases]
+
+
 def _make_planar_directions_optional(definitions: dict[str, Any]) -> Iterator[tuple[str, list[str]]]:
     """Make those directions of joints optional that a planar scene implies; yield them by type of joint."""
     for kind, model in f.JOINTS.items():
@@ -73,7 +85,8 @@ def _make_planar_directions_optional(definitions: dict[str, Any]) -> Iterator[tu
 
 def _require_keys(kind: str, keys: list[str]) -> dict[str, Any]:
     """Return the condition that a joint of a type has these keys."""
-    return {"if": {"properties": {"type": {"const": kind}}, "required": ["type"]}, "then": {"required": keys}}
+    words = {"enum": [kind, *list_aliases("joints", kind)]}
+    return {"if": {"properties": {"type": words}, "required": ["type"]}, "then": {"required": keys}}
 
 
 def _iter_models() -> Iterator[type[Entry]]:
@@ -91,7 +104,7 @@ def _iter_models() -> Iterator[type[Entry]]:
 def _iter_examples() -> Iterator[tuple[type[Entry], Any]]:
     """Yield entries of the starter specs, with the models that read them."""
     for path in sorted(STARTERS.glob("*.yaml")):
-        spec = read_source(str(path), None).data
+        spec = replace_type_aliases(read_source(str(path), None).data)
         for block, models_of_block in f.ENTRY_BLOCKS.items():
             for entry in spec.get(block, {}).values():
                 yield models_of_block[entry["type"]] if isinstance(models_of_block, Mapping) else models_of_block, entry

@@ -28,6 +28,7 @@ from heuncli.scene.file_format.resolve import ResolveInputs, resolve
 from heuncli.scene.file_format.rules.every import RULES, DraftDocument, Rule, Violation, iter_violations
 from heuncli.scene.file_format.semantics import list_instants
 from heuncli.scene.file_format.source import Path_, SourceFile, format_path, read_source
+from heuncli.scene.file_format.type_aliases import replace_type_aliases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -145,7 +146,8 @@ class SpecLoader:
         return [rule for rule in RULES if self.checking or not rule.for_check]
 
     def complete_data(self, data: dict[str, Any]) -> dict[str, Any]:
-        """Return the data to read; a planar scene is completed to one in space."""
+        """Return the data to read: with heun's words as types; a planar scene is completed to one in space."""
+        data = replace_type_aliases(data)
         return complete_planar_scene(data) if data.get("space") == "planar" else data
 
     def find_location(self, path: Path_, key: bool = False) -> SourceLocation:

@@ -23,6 +23,7 @@ from heuncli.scene.file_format.hints import (
 )
 from heuncli.scene.file_format.quantity import DependentError, describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
+from heuncli.scene.file_format.type_aliases import TYPE_ALIASES
 
 KINDS = {  # pydantic's error types for a value of the wrong kind
     "dict_type": "a mapping", "model_type": "a mapping", "model_attributes_type": "a mapping", "list_type": "a list",
@@ -168,7 +169,7 @@ def unknown_type_error(entry: Any, block: str, known_types: list[str]) -> tuple[
     hint = (
         f"{indefinite_article(tag)} {tag} is type: {word}"
         if word
-        else misplaced_word_hint(tag) or suggest(tag, known_types, "types")
+        else misplaced_word_hint(tag) or suggest(tag, [*known_types, *TYPE_ALIASES.get(block, ())], "types")
     )
     return code, Violation(("type",), f"'{tag}' is not {description}; known: {listed}", hint)
 
