@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS, Command
-from heuncli.app.commands.explain.command import PAGES, read_summary
+from heuncli.app.commands.explain.pages import PAGES, read_summary
 from heuncli.base import units as u
 from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.method_rows import METHODS
