@@ -13,6 +13,7 @@ import pytest
 
 from heuncli.app.commands.explain.codes import parse_codes
 from heuncli.app.commands.explain.pages import PAGES, find_section, read_sections
+from heuncli.app.commands.explain.paths import MEANINGS
 from heuncli.results.results_schema import NAMES, ROWS, Quantity
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
@@ -100,7 +101,7 @@ def test_the_term_of_an_engineer_is_translated(heun: Heun) -> None:
 
 
 def test_a_word_of_the_results_shows_its_path(heun: Heun) -> None:
-    assert heun("explain", "tilting").stdout.startswith("joints.JOINT.tilting\nmeaning  ")
+    assert heun("explain", "tilting").stdout.startswith("joints.JOINT.tilting\nmeaning   ")
 
 
 @pytest.mark.parametrize("topic", ["format stops", "format#stops", "format Stops", "format sto"])
@@ -196,14 +197,34 @@ def test_every_path_of_the_results_is_explained(heun: Heun, row: Quantity) -> No
         return
     told = heun("explain", path)
     assert told.returncode == 0
-    assert told.stdout.startswith(f"{path}\nmeaning  ")
+    assert told.stdout.startswith(f"{path}\nmeaning   ")
     assert all(unit in told.stdout for unit in row.units if unit != "1")
 
 
-def test_a_path_that_leads_nowhere(heun: Heun) -> None:
-    done = heun("explain", "joints.main.titling")
-    assert (done.returncode, "heun explain joints.NAME lists" in done.stderr) == (2, True)
+@pytest.mark.parametrize(
+    ("path", "hint"),
+    [
+        ("joints.main.titling", "did you mean heun explain joints.main.tilting?"),
+        ("energy.kin", "energy has kinetic, potential, work"),
+        ("foundation.total", "foundation has about, force, moment, axis"),
+        ("joints.main.tilting.x", "the path ends before: heun explain joints.main.tilting"),
+    ],
+)
+def test_a_path_that_leads_nowhere(heun: Heun, path: str, hint: str) -> None:
+    done = heun("explain", path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"explain {path}: there is no such result [unknown-path]" in done.stderr and hint in done.stderr
+
+
+def test_a_block_lists_its_quantities(heun: Heun) -> None:
     assert "tilting" in heun("explain", "joints.main").stdout
+
+
+def test_quantities_of_one_row_have_their_own_meanings(heun: Heun) -> None:
+    assert set(MEANINGS) <= {row.path for row in ROWS}
+    assert "moment perpendicular to the joint's axis" in heun("explain", "joints.main.tilting").stdout
+    assert "force along the joint's axis" in heun("explain", "joints.main.axial").stdout
+    assert "bending moment about e2" in heun("explain", "sections.boom.M2@0.28").stdout
 
 
 def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> None:

@@ -84,13 +84,13 @@ def find_page(topic: str) -> str | None:
 
 def _explain_path(topic: str) -> str | None:
     """Return the text on a path of the results, None if it is no path. Raises UsageError if it leads nowhere."""
-    from heuncli.app.commands.explain.paths import explain_path
+    from heuncli.app.commands.explain.paths import explain_path, suggest_path
 
     text = explain_path(topic)
     block, _, rest = topic.partition(".")
     if text is None and block in TREE and rest:
-        hint = f"heun explain {block}.NAME lists what there is"
-        raise UsageError(Problem("unknown-path", f"explain {topic}: this leads to no result", hint=hint))
+        message = f"explain {topic}: there is no such result"
+        raise UsageError(Problem("unknown-path", message, hint=suggest_path(topic)))
     return text
 
 
