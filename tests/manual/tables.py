@@ -220,9 +220,9 @@ TABLES = (
     Table("format", "Joints", ("type", "conditions", "may be driven", "takes", "also called"), list(joints())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
-    Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),
-    Table("index", "Types", ("type", "stands in"), list(types())),
-    Table("index", "Units, functions, methods", ("words", "stand in"), list(words_of_expressions())),
+    Table("index", "Keys of a spec", ("key", "see"), list(keys())),
+    Table("index", "Types", ("type", "see"), list(types())),
+    Table("index", "Units, functions, methods", ("words", "see"), list(words_of_expressions())),
     Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
     Table("index", "Options", ("option", "of"), list(options_by_word())),
 )

@@ -25,9 +25,9 @@ from heuncli.results.results_schema import TREE
 OTHERS = (
     ("SECTION", 'A section of a page, such as "format stops".'),
     ("WORD", "A key, an option, a result or an engineering term, such as stops, tilting, hardpoint."),
-    ("CODE", "An error or a warning, such as unknown-key: what it says, why, an example, the cure."),
-    ("PATH", "A number of the results, such as joints.main.tilting: meaning, unit, sign, frame, error."),
-    ("NUMBER", "An equation of the paper, such as 31."),
+    ("CODE", "An error or a warning, such as unknown-key: meaning, what to do, an example."),
+    ("PATH", "A result, such as joints.main.tilting: meaning, unit, sign, axes, error."),
+    ("NUMBER", "An equation of Heun's paper, such as 31."),
 )
 LISTED = "heun explain lists the pages, heun explain words engineering terms"
 
