@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.commands.explain.codes import parse_codes
-from heuncli.app.commands.explain.command import PAGES
+from heuncli.app.commands.explain.pages import PAGES, find_section, read_sections
+from heuncli.app.commands.explain.paths import MEANINGS
 from heuncli.results.results_schema import NAMES, ROWS, Quantity
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
@@ -33,7 +34,9 @@ def test_without_a_topic_the_pages_are_listed(heun: Heun) -> None:
     done = heun("explain")
     assert (done.returncode, done.stderr) == (0, "")
     assert [line.split()[0] for line in done.stdout.split("\n\n")[0].splitlines()] == list(PAGES)
-    assert [line.split()[0] for line in done.stdout.split("\n\n")[1].splitlines()] == ["CODE", "PATH", "NUMBER"]
+    assert [line.split()[0] for line in done.stdout.split("\n\n")[1].splitlines()] == [
+        "SECTION", "WORD", "CODE", "PATH", "NUMBER",
+    ]  # fmt: skip
     assert max(map(len, done.stdout.splitlines())) <= 120
 
 
@@ -57,25 +60,91 @@ def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("topic", "told"),
+    ("word", "begins", "also"),
     [
-        ("side", "see heun explain format (Sections)"),
-        ("rope", "see heun explain howto (Rope) and heun explain format (Joints)"),
-        ("spring", "see heun explain format (turn_spring, spring)"),
-        ("axes", "see heun explain signs (Joints) and heun explain commands (heun run, heun plot"),
-        ("tilting", "see heun explain results (Paths)"),
-        ("rpm", "see heun explain format (Units, Expressions)"),
-        ("RK4", "see heun explain methods (The list)"),
-        ("formt", "did you mean format?"),
-        ("Modes", "did you mean modes?"),
-        ("xyzzy", "known topics: commands, format"),
+        ("stops", "## Stops\n", "format top level"),
+        ("Stop", "## Stops\n", "format top level"),
+        ("friction", "### friction\n", "accuracy smoothed friction"),
+        ("hollow", "term     hollow shaft", "format properties"),
+        ("hardpoint", "term     hardpoint", ""),
+        ("bore", "term     bearing pressure, bore pressure", ""),
+        ("rope", "## Rope\n", "format joints"),
+        ("side", "## Sections\n", ""),
+        ("force", "### force\n", "format forces"),
+        ("spring", "### spring\n", "format turn_spring"),
+        ("axes", "## heun run\n", "signs joints"),
+        ("rpm", "### Units\n", "format expressions"),
+        ("RK4", "## The list\n", ""),
+        ("redundant supports", "# Open reactions\n", ""),
     ],
 )
-def test_an_unknown_topic_is_told(heun: Heun, topic: str, told: str) -> None:
+def test_a_word_shows_the_section_that_treats_it(heun: Heun, word: str, begins: str, also: str) -> None:
+    done = heun("explain", word)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith(begins)
+    assert "\nThis is from: heun explain " in done.stdout
+    assert f'  heun explain "{also}"\n' in done.stdout if also else True
+
+
+@pytest.mark.parametrize("word", ["stops", "friction", "hollow"])
+def test_what_see_also_says_can_be_typed(heun: Heun, word: str) -> None:
+    lines = heun("explain", word).stdout.partition("See also:\n")[2].splitlines()
+    for line in lines:
+        topic = line.removeprefix("  heun explain ").strip('"')
+        assert heun("explain", topic).returncode == 0, topic
+
+
+def test_the_term_of_an_engineer_is_translated(heun: Heun) -> None:
+    told = heun("explain", "hardpoint").stdout.splitlines()
+    assert told[0].startswith("term     hardpoint") and told[1].startswith("in heun  a named point: `points`")
+    assert "## Bodies" in told
+
+
+def test_a_word_of_the_results_shows_its_path(heun: Heun) -> None:
+    assert heun("explain", "tilting").stdout.startswith("joints.JOINT.tilting\nmeaning   ")
+
+
+@pytest.mark.parametrize("topic", ["format stops", "format#stops", "format Stops", "format sto"])
+def test_a_section_is_shown_alone(heun: Heun, topic: str) -> None:
+    done = heun("explain", topic)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("## Stops\n") and "\n## " not in done.stdout
+    assert done.stdout in TEXTS["format"]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_each_section_is_found_by_its_request(page: str) -> None:
+    for section in read_sections(page)[1:]:
+        topic = section.request.removeprefix("heun explain ").strip('"')
+        found = find_section(*topic.split(" ", 1))
+        assert found is not None and found.heading == section.heading
+
+
+@pytest.mark.parametrize(
+    ("topic", "wrong", "hint"),
+    [
+        ("formt", 'there is no manual page "formt"', "did you mean: heun explain format?"),
+        ("xyzzy", 'there is no manual page "xyzzy"', "heun explain lists the pages"),
+        ("wall", 'there is no manual page "wall"', "The word occurs in: heun explain "),
+        ("format stopps", 'the manual page "format" has no section "stopps"', 'heun explain "format stops"?'),
+        ("methods xyzzy", 'the manual page "methods" has no section "xyzzy"', "its sections: auto, the list"),
+    ],
+)
+def test_an_unknown_topic_is_reported(heun: Heun, topic: str, wrong: str, hint: str) -> None:
     done = heun("explain", topic)
     assert (done.returncode, done.stdout) == (2, "")
-    assert f"explain {topic}: no page of the manual is called that [bad-option]" in done.stderr
-    assert told in done.stderr
+    assert f"heun: {wrong} [bad-option]\n  hint: " in done.stderr
+    assert hint in done.stderr
+
+
+def test_a_page_is_found_in_any_case(heun: Heun) -> None:
+    assert heun("explain", "Modes").stdout == TEXTS["modes"]
+
+
+def test_a_code_that_is_also_a_word_leads_to_its_sections(heun: Heun) -> None:
+    told = heun("explain", "motor").stdout
+    assert told.startswith("# motor\n") and '  heun explain "format motor"\n' in told
+    assert told.startswith(heun("explain", "[motor]").stdout)
 
 
 def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
@@ -113,7 +182,7 @@ def test_a_code_is_told_with_its_example_and_cure(heun: Heun) -> None:
     assert "- pivott\n+ pivot\n" in told
     assert heun("explain", "[unknown-joint]").stdout == told
     done = heun("explain", "unknown-jiont")
-    assert (done.returncode, "did you mean unknown-joint?" in done.stderr) == (2, True)
+    assert (done.returncode, "did you mean: heun explain unknown-joint?" in done.stderr) == (2, True)
 
 
 @pytest.mark.parametrize(
@@ -128,14 +197,34 @@ def test_every_path_of_the_results_is_explained(heun: Heun, row: Quantity) -> No
         return
     told = heun("explain", path)
     assert told.returncode == 0
-    assert told.stdout.startswith(f"{path}\nmeaning  ")
+    assert told.stdout.startswith(f"{path}\nmeaning   ")
     assert all(unit in told.stdout for unit in row.units if unit != "1")
 
 
-def test_a_path_that_leads_nowhere(heun: Heun) -> None:
-    done = heun("explain", "joints.main.titling")
-    assert (done.returncode, "heun explain joints.NAME lists" in done.stderr) == (2, True)
+@pytest.mark.parametrize(
+    ("path", "hint"),
+    [
+        ("joints.main.titling", "did you mean heun explain joints.main.tilting?"),
+        ("energy.kin", "energy has kinetic, potential, work"),
+        ("foundation.total", "foundation has about, force, moment, axis"),
+        ("joints.main.tilting.x", "the path ends before: heun explain joints.main.tilting"),
+    ],
+)
+def test_a_path_that_leads_nowhere(heun: Heun, path: str, hint: str) -> None:
+    done = heun("explain", path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"explain {path}: there is no such result [unknown-path]" in done.stderr and hint in done.stderr
+
+
+def test_a_block_lists_its_quantities(heun: Heun) -> None:
     assert "tilting" in heun("explain", "joints.main").stdout
+
+
+def test_quantities_of_one_row_have_their_own_meanings(heun: Heun) -> None:
+    assert set(MEANINGS) <= {row.path for row in ROWS}
+    assert "moment perpendicular to the joint's axis" in heun("explain", "joints.main.tilting").stdout
+    assert "force along the joint's axis" in heun("explain", "joints.main.axial").stdout
+    assert "bending moment about e2" in heun("explain", "sections.boom.M2@0.28").stdout
 
 
 def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> None:
@@ -143,6 +232,7 @@ def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> N
     env = {**os.environ, "PAGER": "sed s/^/paged:/", "TERM": "dumb"}
     assert "paged:" in on_a_terminal(["explain", "signs"], folder, env)
     assert "paged:" not in on_a_terminal(["explain", "signs", "--no-pager"], folder, env)
+    assert on_a_terminal(["explain", "signs"], folder, env).startswith("paged:Sections of this page; heun explain ")
     assert "heun explain unknown-key tells more" in on_a_terminal(["run", "wrong.yaml"], folder, env).replace("\r", "")
     piped = subprocess.run(
         [sys.executable, "-m", "heuncli", "run", "wrong.yaml"], cwd=folder, capture_output=True, text=True

@@ -61,4 +61,4 @@ def test_either_side_of_the_rate_from_which_on_friction_is_full(
     assert ("smoothed friction" in done.stderr) is marked
     assert float(done.stdout) == pytest.approx((8.35 - 2.95 * math.tanh(share * full_friction_rate())) / 2.0, rel=1e-12)
     assert ("†" in heun("run", "s.yaml", "--only", "motion").stdout) is marked
-    assert heun("run", "s.yaml", "--measure", "max coordinates.guide.speed").stderr == ""
+    assert heun("run", "s.yaml", "--measure", "max coordinates.guide.speed").stderr == "unit: m/s\n"

@@ -13,7 +13,7 @@ from tests.shared.broken import FILES, body, cures, head, is_in_words
 from tests.shared.folders import ROOT
 
 PAGE = ROOT / "heuncli" / "manual" / "codes.md"
-GENERATED = "Each with a spec that runs into it, what heun says of it, and the cure.\n"
+GENERATED = "Each with a spec that causes it, heun's message, and the cure.\n"
 WIDEST = 120
 SHORTENED = 60
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS, Command
-from heuncli.app.commands.explain.command import PAGES, read_summary
+from heuncli.app.commands.explain.pages import PAGES, read_summary
 from heuncli.base import units as u
 from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.method_rows import METHODS
@@ -232,9 +232,9 @@ TABLES = (
     Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
-    Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),
-    Table("index", "Types", ("type", "stands in"), list(types())),
-    Table("index", "Units, functions, methods", ("words", "stand in"), list(words_of_expressions())),
+    Table("index", "Keys of a spec", ("key", "see"), list(keys())),
+    Table("index", "Types", ("type", "see"), list(types())),
+    Table("index", "Units, functions, methods", ("words", "see"), list(words_of_expressions())),
     Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
     Table("index", "Options", ("option", "of"), list(options_by_word())),
 )

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.app.cli.entry import EXIT_CODE_PRIORITY, INTERRUPTED
 from heuncli.app.cli.registry import COMMANDS
-from heuncli.app.commands.explain.command import PAGES
+from heuncli.app.commands.explain.pages import PAGES
 from heuncli.base.files import ReaderGoneError
 from heuncli.base.units import UNITS
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS

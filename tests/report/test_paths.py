@@ -138,7 +138,7 @@ def test_what_was_meant_by_a_path_is_found(path: str, meant: str) -> None:
         ("sections.root.mises", "did you mean sections.root.stress.mises?"),
         ("rope.tension", "did you mean joints.rope.tension?"),
         ("along.M2.3", "did you mean sections.along.M2.3?"),
-        ("coordinates.rope.length", "known words here: slew"),
+        ("coordinates.rope.length", "known names in coordinates: slew"),
         ("mag", "known names: jib"),
         ("stops.buffer.force", "the model has no stops"),
         ("shaft.angle", "known names: jib, load, slew, rope, root, along"),

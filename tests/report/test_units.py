@@ -111,7 +111,7 @@ def test_causes_add_up_in_any_unit(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_data_stay_in_si(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("--measure", "max joints.elbow.force")
+    words = ("--measure", "max joints.elbow.force", "--format", "json")
     plain = report(capsys, "double", *words)
     assert report(capsys, "double", *words, "--units", "kN") == plain
     assert enter(["run", str(SPECS / "door.yaml"), "--format", "csv", "--units", "kN"]) == 0

@@ -27,9 +27,9 @@ PATIENCE = 2.0  # seconds from the request to end until the pager is killed
 KEYS = ("SIGINT", "SIGQUIT")  # signals that a terminal sends for a key, to heun and to the pager
 
 
-def write_paged(text: str, output: str | None, use_pager: bool = True) -> None:
+def write_paged(text: str, output: str | None, use_pager: bool = True, contents: str = "") -> None:
     """Write a text to a file or a pipe as it is, and to a terminal through the pager if it has more lines than the
-    screen.
+    screen; there the list of its contents comes first.
     """
     command = _find_pager() if output is None and use_pager and terminal.is_terminal() else None
     if command is None or text.count("\n") < shutil.get_terminal_size().lines:
@@ -37,7 +37,7 @@ def write_paged(text: str, output: str | None, use_pager: bool = True) -> None:
         return
     try:
         with _ignore_key_signals():
-            _run_pager(command, text.encode())
+            _run_pager(command, (f"{contents}\n{text}" if contents else text).encode())
     except OSError:
         emit(text)
 

@@ -15,6 +15,7 @@ from heuncli.app.python.locked_run import LockedRun, UnknownPath, find_distinct_
 from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
+from heuncli.output.snapshots.measure_units import SUMS, find_sum_unit
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from heuncli.app.python.number import Number
 
 LISTS = (IMPULSES, "certain_sums")  # blocks of the results that are lists of blocks
-SUMS = "certain_sums"
 
 
 def make_signal(run: LockedRun, path: str) -> Signal:
@@ -102,7 +102,7 @@ class Signal(NDArrayOperatorsMixin):
         """The SI unit: "N", "N·m", "rad", ...; "1" if dimensionless."""
         keys = self._numbers.keys
         if SUMS in keys:
-            return _find_sum_unit(self._run.results, keys)
+            return find_sum_unit(self._run.results, keys)
         return find_unit(self.path, self._run.study.spec)
 
     @cached_property
@@ -266,14 +266,3 @@ class Signal(NDArrayOperatorsMixin):
 def _make_read_only(values: Array) -> Array:
     values.flags.writeable = False
     return values
-
-
-def _find_sum_unit(results: Results, keys: Sequence[str]) -> str:
-    """Return the unit of a determinate sum: that of a moment if no force is among its terms; of an impulse times
-    seconds.
-    """
-    block: Any = vars(results)
-    for key in keys[:-1]:
-        block = block[int(key) if isinstance(block, list) else key]
-    row = find_quantity(tuple(keys))
-    return "" if row is None else row.select_unit(turning=not any(".force." in term for term in block["terms"]))

@@ -41,6 +41,8 @@ SYNONYMS = {
     "amplitude": "max abs", "t": "at",
 }  # fmt: skip
 
+KINDS = {"tension": "rod", "torque": "cv", "contact_point": "curve"}  # the only kinds of joints with these
+
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
 EXAMPLE_HINT = "such as {} 'max abs sections.middle.M1'"
 
@@ -88,8 +90,27 @@ def require_known_paths(requests: Sequence[MeasureRequest], spec: Spec, option: 
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
     problems = [found for request in requests if (found := find_path_error(request.path, names, runs)) is not None]
     problems += [found for request in requests if (found := find_place_problem(request.path, spec)) is not None]
+    problems += [found for request in requests if (found := find_absent_quantity(request.path, spec)) is not None]
     if problems:
         raise SpecError(*(Problem("unknown-path", f"{option}: {what}", hint=hint) for what, hint in problems))
+
+
+def find_absent_quantity(path: str, spec: Spec) -> tuple[str, str] | None:
+    """Return what is wrong with a path to a quantity that this kind of joint, or this section, does not have, and a
+    hint; None if nothing is.
+    """
+    block, name, word = [*split_path(path), "", ""][:3]
+    if block == "sections" and word == "stress" and name in spec.sections and not spec.sections[name].properties:
+        return f"'{path}': the section has no properties", "stresses need `properties`: heun explain stresses"
+    joint = spec.joints.get(name) if block == "joints" else None
+    if joint is not None and word in KINDS and joint.kind != KINDS[word]:
+        return (
+            f"'{path}': a {joint.kind} has no {word}",
+            f"only a {KINDS[word]} has it: heun explain joints.JOINT.{word}",
+        )
+    if joint is not None and word == "pressure" and joint.bearing is None:
+        return f"'{path}': the joint has no bearing", "give it `bearing: {diameter, width}`"
+    return None
 
 
 def check_with_others(
@@ -122,25 +143,28 @@ def find_place_problem(path: str, spec: Spec) -> tuple[str, str] | None:
     return None
 
 
-def format_measures(requests: Sequence[MeasureRequest], study: Study, form: str) -> str:
-    """Format each number on a line with all its digits; for "json" with its instant, several as a list.
+def format_measures(
+    requests: Sequence[MeasureRequest], study: Study, form: str, sizes: Sequence[float] | None = None
+) -> str:
+    """Format each number on a line with all its digits; for "json" in SI with its instant, several as a list.
 
-    A number beyond the horizon is `?`.
+    A number beyond the horizon is `?`. sizes: how many of the unit in which each number is printed make one SI unit
     """
     if form == "json":
         blocks = collect_results([partial(to_json_block, request, study) for request in requests])
         return dump_json(blocks[0] if len(blocks) == 1 else blocks)
-    return "".join(collect_results([partial(format_line, request, study) for request in requests]))
+    pairs = zip(requests, sizes or [1.0] * len(requests), strict=True)
+    return "".join(collect_results([partial(format_line, request, study, size) for request, size in pairs]))
 
 
-def format_line(request: MeasureRequest, study: Study) -> str:
-    """Format one number as text."""
+def format_line(request: MeasureRequest, study: Study, size: float = 1.0) -> str:
+    """Format one number as text, times `size`."""
     peak, horizon = measure_number(request, study)
     if horizon is not None:
         return f"{UNKNOWN}\n"
     if math.isnan(peak.value):
         return f"{UNKNOWN if peak.time in study.unknown else OPEN}\n"
-    return f"{peak.value!r}\n"
+    return f"{peak.value * size!r}\n"
 
 
 def to_json_block(request: MeasureRequest, study: Study) -> dict[str, Any]:

@@ -6,12 +6,12 @@ measures: the option that prints single numbers
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.spelling import find_similar, suggest
+from heuncli.base.spelling import find_similar, list_words, suggest
 from heuncli.output.tables.page import TABLE_DEFAULT
 from heuncli.results.results_schema import IMPULSES, REPORT_OF, REPORTS, ROWS, SHARES, add_shared_reports, find_quantity
 from heuncli.scene.file_format.models import Spec
@@ -74,6 +74,7 @@ def _find_entry(path: str, spec: Spec, request: ReportChoice) -> EntryKeys:
         if block[0] == words[0]
         for name in entry_names
     ]
+    _require_similar(path, words, names, request)
     message = f"{request.option} {path}: not an entry of the results"
     if entry is not None:
         hint = f"say {'.'.join(entry)}; {request.measures} prints single numbers"
@@ -87,10 +88,30 @@ def _find_entry(path: str, spec: Spec, request: ReportChoice) -> EntryKeys:
     raise UsageError(Problem("bad-option", message, hint=hint))
 
 
+def _require_similar(path: str, words: Sequence[str], names: Sequence[str], request: ReportChoice) -> None:
+    """Raise UsageError with the list of a block's entries if a path names none of them, and resembles none.
+
+    The name alone is compared: all entries of a block begin alike.
+    """
+    block, *last = words
+    known = [name.split(".", 1)[1] for name in names]
+    if not last or not known or find_quantity(words) is not None or words[:-1] == ["foundation", "axis"]:
+        return
+    below = [name for name in names if name.startswith(f"{path}.")]
+    if below or (find_similar(".".join(last), known) is None and not set(".".join(words[1:]).split(".")) & set(known)):
+        message = f"{request.option} {path}: not an entry of the results"
+        hint = f"{request.option} {block} shows all of it; entries: {list_words(below or names)}"
+        raise UsageError(Problem("bad-option", message, hint=hint))
+
+
 def _make_hint(path: str, entries: Mapping[EntryKeys, Mapping[str, Any]], option: str) -> str:
     """Return a hint on a path that begins with no block of results."""
     from heuncli.results.path_hints import find_similar_path  # only for an error message
 
+    block, _, name = path.partition(".")
+    near = find_similar(block, [first for first, *_ in entries])
+    if near is not None and name.split(".")[0] in entries.get((near,), {}):
+        return f"did you mean {near}.{name.split('.')[0]}?"
     similar = find_similar(path, (*REPORTS, SHARES))
     if "." not in path and not similar:
         rows = (row.path.split(".") for row in ROWS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.snapshots import searches
+from heuncli.output.snapshots.pins_note import add_pins_note
 from heuncli.output.tables.cut_runs import LOADS
 from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, DoubtfulInstants
 from heuncli.output.tables.page import make_page
@@ -65,6 +66,7 @@ def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[TextTa
             tables.append(TextTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + RUN_EXTREMES_SUFFIX,)))
         if AXIS in query.selection.entries:
             tables.append(TextTable("", notes=(AXIS_NOTE,)))
+    tables = add_pins_note(tables, study)
     if not tables:
         tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(reports))}: the scene has none",))]
     return tables

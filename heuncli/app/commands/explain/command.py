@@ -1,72 +1,119 @@
-"""`heun explain TOPIC`: print a page of the manual; without a topic list the pages."""
+"""`heun explain TOPIC`: show a page of the manual, a section, a code, a path or a word; without a topic a list."""
 
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.pager import write_paged
-from heuncli.app.cli.registry import COMMANDS, find_command
+from heuncli.app.cli.registry import find_command
 from heuncli.app.commands.explain.codes import parse_codes
+from heuncli.app.commands.explain.pages import (
+    PAGES,
+    find_section,
+    list_sections,
+    make_request,
+    read_page,
+    read_sections,
+    read_summary,
+)
 from heuncli.app.commands.explain.request import ExplainRequest
 from heuncli.base.errors import Problem
-from heuncli.base.spelling import suggest
+from heuncli.base.spelling import find_similar, list_words
 from heuncli.results.results_schema import TREE
 
-FOLDER = Path(__file__).parents[3] / "manual"
-# in reading order; the pages of commands in the order of COMMANDS
-PAGES = tuple(dict.fromkeys((
-    "commands", "format", "howto", "elements", "python", "results", "signs", "open", "stresses", "collectives", "rest",
-    *(command.page for command in COMMANDS), "accuracy", "codes", "impacts", "limits", "theory", "equations",
-    "references", "decisions", "speed", "developing", "contributing", "index",
-)))  # fmt: skip
-
 OTHERS = (
-    ("CODE", "An error or a warning, such as unknown-key: what it says, why, an example, the cure."),
-    ("PATH", "A number of the results, such as joints.main.tilting: meaning, unit, sign, frame, error."),
-    ("NUMBER", "An equation of the paper, such as 31."),
+    ("SECTION", 'A section of a page, such as "format stops".'),
+    ("WORD", "A key, an option, a result or an engineering term, such as stops, tilting, hardpoint."),
+    ("CODE", "An error or a warning, such as unknown-key: meaning, what to do, an example."),
+    ("PATH", "A result, such as joints.main.tilting: meaning, unit, sign, axes, error."),
+    ("NUMBER", "An equation of Heun's paper, such as 31."),
 )
+LISTED = "heun explain lists the pages, heun explain words engineering terms"
 
 
 def main(request: ExplainRequest) -> int:
     """Run the command; returns the exit code."""
-    write_paged(
-        list_pages() if request.topic is None else explain_topic(request.topic), request.output, not request.no_pager
-    )
+    topic = request.topic
+    text = list_pages() if topic is None else explain_topic(topic)
+    page = None if topic is None else find_page(topic)
+    contents = list_sections(page) if page is not None and len(read_sections(page)) > 2 else ""
+    write_paged(text, request.output, not request.no_pager, contents)
     return 0
 
 
 def explain_topic(topic: str) -> str:
-    """Return the text on a code, a path of the results, or a topic of the manual. Raises UsageError if it is none."""
-    codes = parse_codes((FOLDER / "codes.md").read_text(encoding="utf-8"))
+    """Return the text on a page, section, code, path, equation or word. Raises UsageError if it is none."""
+    topic = topic.strip()
+    codes = parse_codes(read_page("codes"))
     if (code := topic.strip("[]")) in codes:
-        return codes[code]
-    if "." in topic:
-        from heuncli.app.commands.explain.paths import explain_path
-
-        if (text := explain_path(topic)) is not None:
-            return text
-        if (block := topic.split(".", 1)[0]) in TREE:
-            hint = f"heun explain {block}.NAME lists what there is"
-            raise UsageError(Problem("unknown-path", f"explain {topic}: this leads to no result", hint=hint))
-    if topic not in PAGES and "-" in topic:
-        near = suggest(topic, codes, "codes")
-        raise UsageError(Problem("bad-option", f"explain {topic}: there is no such code", hint=f"{near}; or a page"))
-    return read_page(topic)
-
-
-def read_page(topic: str) -> str:
-    """Read a page, by its name or that of a command. Raises UsageError if there is none."""
-    command = find_command(topic)
-    if command is not None:
-        topic = command.page
+        return codes[code] + ("" if "-" in topic or code != topic else _list_places(topic))
+    if "." in topic and (text := _explain_path(topic)) is not None:
+        return text
+    if (page := find_page(topic)) is not None:
+        return read_page(page)
     if (number := re.fullmatch(r"\(?(\d+)\)?", topic)) is not None:
         return format_equation(number[1])
-    if topic not in PAGES:
-        hint = f"{find_in_index(topic) or suggest(topic, PAGES, 'topics')}; heun explain lists the pages"
-        raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))
-    return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+    name, separator, heading = topic.replace("#", " ", 1).partition(" ")
+    page = find_page(name)
+    if page is not None and separator and (section := find_section(page, heading)) is not None:
+        return section.text
+    from heuncli.app.commands.explain.word import explain_word
+
+    if (text := explain_word(topic)) is not None:
+        return text
+    if page is not None and separator:
+        raise UsageError(_make_unknown_section(page, heading.strip()))
+    raise UsageError(_make_unknown_topic(topic, tuple(codes)))
+
+
+def _list_places(word: str) -> str:
+    """List what to type to see the places that treat a word which is also an error code."""
+    from heuncli.app.commands.explain.lookup import find_places
+    from heuncli.app.commands.explain.word import list_requests
+
+    return list_requests(find_places(word))
+
+
+def find_page(topic: str) -> str | None:
+    """Return the page with a name, in any case, or that of a command; None if there is none."""
+    command = find_command(topic)
+    name = topic.lower() if command is None else command.page
+    return name if name in PAGES else None
+
+
+def _explain_path(topic: str) -> str | None:
+    """Return the text on a path of the results, None if it is no path. Raises UsageError if it leads nowhere."""
+    from heuncli.app.commands.explain.paths import explain_path, suggest_path
+
+    text = explain_path(topic)
+    block, _, rest = topic.partition(".")
+    if text is None and block in TREE and rest:
+        message = f"explain {topic}: there is no such result"
+        raise UsageError(Problem("unknown-path", message, hint=suggest_path(topic)))
+    return text
+
+
+def _make_unknown_section(page: str, heading: str) -> Problem:
+    """Describe a section that a page does not have."""
+    names = [section.heading.lower() for section in read_sections(page)[1:]]
+    near = find_similar(heading.lower(), names)
+    known = f"its sections: {list_words(names)}"
+    hint = f"did you mean: {make_request(page, near)}?" if near else known
+    return Problem("bad-option", f'the manual page "{page}" has no section "{heading}"', hint=hint)
+
+
+def _make_unknown_topic(topic: str, codes: tuple[str, ...]) -> Problem:
+    """Describe a topic that the manual does not know, with the most similar one, or where the word occurs."""
+    from heuncli.app.commands.explain.lookup import find_mentions, list_names
+
+    near = find_similar(topic, (*PAGES, *codes, *list_names()))
+    quoted = f'"{near.lower()}"' if near and " " in near else near
+    hints = [f"did you mean: heun explain {quoted}?"] if near else []
+    if mentions := find_mentions(topic):
+        hints.append(f"The word occurs in: {', '.join(mentions)}.")
+    hint = " ".join((*hints, LISTED))
+    return Problem("bad-option", f'there is no manual page "{topic}"', hint=hint)
 
 
 def format_equation(number: str) -> str:
@@ -81,25 +128,8 @@ def format_equation(number: str) -> str:
     return "".join(f"{head:<{width}}  {cell}\n" for head, cell in zip(heads, row_found, strict=True))
 
 
-def find_in_index(word: str) -> str:
-    """Return where a key, an option, a word of the results or a subject stands by the index; empty if unknown."""
-    named = re.compile(rf"(?<!\w){re.escape(word)}s?(?!\w)", re.IGNORECASE)
-    places: dict[str, dict[str, None]] = {}
-    for row in re.findall(r"^\| .*", read_page("index"), re.MULTILINE):
-        name, _, where = row[2:].partition(" |")
-        for part, topic in re.findall(r"\[([^]]*)\]\((\w+)\.md", where) if named.search(name) else ():
-            places.setdefault(topic, {})[part] = None
-    pages = (f"heun explain {topic} ({', '.join(parts)})" for topic, parts in places.items())
-    return f"see {' and '.join(pages)}" if places else ""
-
-
 def list_pages() -> str:
     """List the name of each page and its subject."""
     width = max(map(len, PAGES))
     pages = "".join(f"{name:<{width}}  {read_summary(name)}\n" for name in PAGES)
     return pages + "\n" + "".join(f"{name:<{width}}  {text}\n" for name, text in OTHERS)
-
-
-def read_summary(topic: str) -> str:
-    """Return the subject of a page: the line below its title."""
-    return read_page(topic).split("\n", 3)[2]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+from heuncli.base.spelling import find_similar, list_words
 from heuncli.results.results_schema import (
     ESTIMATE_OF_ERROR_KIND,
     IMPULSES,
@@ -23,29 +24,94 @@ WORLD = "components in world axes"
 SIGNS = {
     "joints": f"of `from` ON `to`, moments about the `to` point; {WORLD}, or --axes from, to",
     "foundation": f"of the machine ON the ground, moments about foundation.about; {WORLD}",
-    "sections": "of the piece that the normal points into ON the remainder; N along the normal, > 0 where it pulls",
-    "stops": "of the stop ON `to`, along the coordinate that it limits",
-    "forces": "as in the spec: > 0 along its vector, or where it pushes its two points apart",
-    "coordinates": "of `to` against `from`, about or along the joint's axis, right-handed",
+    "sections": "of the far side ON the near side of the cut (the normal points to the far side); N > 0 in tension",
+    "stops": "of the stop ON `to`, along the limited coordinate",
+    "forces": "as in the spec: > 0 along its vector, or if it pushes its two points apart",
+    "coordinates": "of `to` relative to `from`, about or along the joint's axis, right-handed",
     "bodies": WORLD,
     "points": WORLD,
     "momentum": f"{WORLD}; moments about foundation.about",
     "system_vector": WORLD,
-    IMPULSES: f"as in the block of the same name; {WORLD}; forces are impulses there",
+    IMPULSES: f"as in the block of the same name; {WORLD}; forces are impulses",
+}
+SHAPES = {"space": "x, y, z", "cut": "one number for each cut of a run"}
+# of quantities that share one row of the manual's table
+MEANINGS = {
+    "joints.JOINT.axial": "force along the joint's axis",
+    "joints.JOINT.radial": "size of the force perpendicular to the joint's axis",
+    "joints.JOINT.tilting": "size of the moment perpendicular to the joint's axis: what tilts the bearing",
+    "sections.SECTION.normal": "n, normal of the cut, towards the far side",
+    "sections.SECTION.first_axis": "e1, first axis in the plane of the cut; e2 = n × e1",
+    "sections.SECTION.force": "force of the far side on the near side of the cut",
+    "sections.SECTION.moment": "moment of the far side on the near side of the cut",
+    "sections.SECTION.N": "normal force, along n; > 0 in tension",
+    "sections.SECTION.Q1": "shear force along e1",
+    "sections.SECTION.Q2": "shear force along e2",
+    "sections.SECTION.T": "torsional moment, about n",
+    "sections.SECTION.M1": "bending moment about e1",
+    "sections.SECTION.M2": "bending moment about e2",
+    "sections.SECTION.stress.normal_max": "largest normal stress over the section, > 0 in tension",
+    "sections.SECTION.stress.normal_min": "smallest normal stress over the section, < 0 in compression",
+    "sections.SECTION.stress.shear_torsion": "largest shear stress from the torsional moment alone",
+    "sections.SECTION.stress.shear_mean": "shear force over area",
+    "sections.SECTION.stress.shear_max": "largest shear stress from torsion and shear force together",
+    "sections.SECTION.stress.mises": "largest equivalent stress (von Mises) over the section",
+    "sections.SECTION.stress.utilisation": "mises over strength",
+    "couplings.COUPLING.tension": "rope tension; with sheaves that grip the rope, on its first part",
+    "couplings.COUPLING.last_tension": "rope tension on the last part, beyond the last sheave that grips the rope",
+    "couplings.COUPLING.tight": "tension of the tight strand of a belt",
+    "couplings.COUPLING.slack": "tension of the slack strand of a belt",
+    "foundation.about": "point about which the moment on the ground is taken",
+    "foundation.force": "total force ON the ground",
+    "foundation.moment": "total moment ON the ground, about foundation.about",
+    "foundation.axis.point": "point of the central axis nearest to foundation.about",
+    "foundation.axis.direction": "direction of the central axis",
+    "foundation.axis.pitch": "pitch of the central axis: moment over force",
+    "energy.kinetic": "kinetic energy",
+    "energy.potential": "potential energy of gravity, from the world's origin, and of springs",
+    "energy.work": "work of all other loads and drives; kinetic + potential - work is constant",
+    "impulses.NUMBER.energy_before": "kinetic energy before the impulse",
+    "impulses.NUMBER.energy_after": "kinetic energy after the impulse",
+    "impulses.NUMBER.energy_jump": "change of the kinetic energy at the impulse",
 }
 
 
 def explain_path(path: str) -> str | None:
-    """Return the explanation of a path, or None if it leads to nothing."""
-    words = path.split(".")
+    """Return the explanation of a path, or None if it leads to nothing; without the place along a run of cuts."""
+    words = path.partition("@")[0].split(".")
     for word_count in range(len(words), 0, -1):
         for keys in _iter_keys(words[:word_count]):
             node = find_node(keys)
-            if isinstance(node, Quantity) and set(words[word_count:]) <= {*XYZ, *map(str, range(len(words)))}:
-                return "".join(f"{label:<9}{text}\n" for label, text in _describe_quantity(path, keys, node))
+            if isinstance(node, Quantity) and set(words[word_count:]) <= _list_selectors(node, len(words)):
+                return "".join(f"{label:<10}{text}\n" for label, text in _describe_quantity(path, keys, node))
             if node is not None and word_count == len(words) and not isinstance(node, Quantity) and len(keys) > 1:
                 return f"{path}: a block of\n" + "".join(f"  {line}\n" for line in _describe_members(node))
     return None
+
+
+def suggest_path(path: str) -> str:
+    """Return a hint for a path that leads nowhere: the most similar one, or what stands below its block."""
+    words = path.partition("@")[0].split(".")
+    for word_count in range(len(words) - 1, 0, -1):
+        node = find_node(words[:word_count])
+        block = ".".join(words[:word_count])
+        if not isinstance(node, dict):
+            continue
+        known = [key for key in node if key not in NAMES]
+        near = find_similar(words[word_count], known)
+        if near == words[word_count]:
+            return f"the path ends before: heun explain {block}.{near}"
+        if near is not None:
+            return f"did you mean heun explain {'.'.join((block, near, *words[word_count + 1 :]))}?"
+        names = [key for key in node if key in NAMES]
+        return f"{block} has {list_words(known + names)}" + (f"; {names[0]} is a name of the spec" if names else "")
+    return "heun explain results lists all paths"
+
+
+def _list_selectors(row: Quantity, count: int) -> set[str]:
+    """List the words that may follow a quantity: components of a vector, numbers in a list."""
+    letters = {letter for axis in row.shape for letter in axis.letters}
+    return letters | (set(map(str, range(count))) if row.shape else set())
 
 
 def _iter_keys(words: Sequence[str]) -> Iterator[tuple[str, ...]]:
@@ -56,28 +122,33 @@ def _iter_keys(words: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterator[tuple[str, str]]:
-    meaning = LINK.sub(r"\1", row.meaning).replace("`", "").replace("\\|", "|")
+    meaning = _describe_meaning(row).replace("`", "").replace("\\|", "|")
     yield path, ""
     yield "meaning", meaning
     if row.units:
-        twofold = ", of what slides or of what turns" if len(row.units) > 1 else ""
+        twofold = ", for sliding or for rotation" if len(row.units) > 1 else ""
         yield "unit", " or ".join(row.units).replace("1", "none") + twofold
     if row.is_words:
-        yield "form", "words"
+        yield "form", "text"
         return
     if (sign := SIGNS.get(keys[0])) is not None:
         yield "sign", f"{sign}: heun explain signs"
-    shape = " by ".join("x, y, z" if axis.letters == XYZ else axis.name for axis in row.shape) or "one number"
+    shape = " by ".join(SHAPES.get(axis.name, axis.name) for axis in row.shape) or "one number"
     yield "shape", shape + (" at each instant" if row.is_timed else "")
     kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
     yield (
         "error",
-        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, of the largest of its kind: "
+        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, relative to the largest number of its kind: "
         "heun explain accuracy",
     )
     report = REPORT_OF.get(keys[0], keys[0])
     component = f"{path}.x" if row.shape and row.shape[-1].letters == XYZ and path.split(".")[-1] not in XYZ else path
-    yield "told by", f'heun run SPEC --only {report}; heun run SPEC --measure "max {component}"'
+    yield "shown by", f'heun run SPEC --only {report}; heun run SPEC --measure "max {component}"'
+
+
+def _describe_meaning(row: Quantity) -> str:
+    """Return what a quantity is, without links."""
+    return LINK.sub(r"\1", MEANINGS.get(row.path, row.meaning))
 
 
 def _describe_members(node: Node) -> Iterator[str]:
@@ -85,7 +156,6 @@ def _describe_members(node: Node) -> Iterator[str]:
     for key, member in node.items():
         if isinstance(member, Quantity):
             unit = " or ".join(member.units).replace("1", "") or "-"
-            meaning = LINK.sub(r"\1", member.meaning)
-            yield f"{key:<22}{unit:<12}{meaning[:80]}"
+            yield f"{key:<22}{unit:<12}{_describe_meaning(member)[:80]}"
         else:
             yield f"{key if key not in NAMES else key + ', a name':<22}..."

@@ -7,11 +7,16 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ExplainRequest(NamedTuple):
-    """Tell of a code, a path of the results, a topic of the manual; or list them."""
+    """Show a page or section of the manual, a word, a code."""
 
     topic: Annotated[
         str | None,
-        Option((), "A page, a command, a code, a path of results, an equation's number; without it, a list.", "TOPIC"),
+        Option(
+            (),
+            "A page, 'PAGE SECTION', a word, a command, a code, a result path or an equation's number. "
+            "Default: a list of the pages.",
+            "TOPIC",
+        ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
-    no_pager: Annotated[bool, Option(("--no-pager",), "All at once on a terminal, too.")] = False
+    no_pager: Annotated[bool, Option(("--no-pager",), "Print everything at once, on a terminal too.")] = False

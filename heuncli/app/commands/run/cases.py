@@ -10,7 +10,7 @@ from heuncli.app.cli.entry import select_exit_code
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.units import TABLES, note_si_format
-from heuncli.app.commands.run.scene import RunTask, finish, solve_and_render
+from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
 from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
@@ -40,7 +40,10 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
             runs[name] = take_run_snapshot(study, task.selection.reports, whole_course=False)
         codes.append(finish(task, scene, study, f"heun: case {name}"))
     emit(_render_text(task, cases, texts, runs), task.request.output)
-    note_si_format(task.request.units, "--measure" if task.measures else task.form, task.request.quiet)
+    if task.measures:
+        note_measure_units(task, study)
+    else:
+        note_si_format(task.request.units, task.form, task.request.quiet)
     return select_exit_code(codes)
 
 

@@ -13,7 +13,7 @@ from heuncli.app.cli.solving import make_solver_options, parse_overrides, requir
 from heuncli.app.cli.target import choose_format
 from heuncli.app.cli.units import TABLES, note_si_format, parse_units
 from heuncli.app.commands.run.request import FORMATS, RunRequest
-from heuncli.app.commands.run.scene import RunTask, finish, solve_and_render
+from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.output.snapshots.selection import find_default_reports, parse_choice, select_reports
@@ -53,7 +53,10 @@ def main(request: RunRequest) -> int:
         options, memory_budget=MemoryBudget(*memory.result_memory("table" if measures or collectives else form))
     )
     if measures:
+        from heuncli.output.snapshots import measure_units
+
         measure.require_known_paths(measures, spec)
+        measure_units.require_fitting_units(measures, spec, units_shown, request.units)
     if collectives is not None:
         from heuncli.app.commands.run.collective import require_paths
 
@@ -73,7 +76,10 @@ def main(request: RunRequest) -> int:
         return run_all(task, spec, cases)
     study, pieces = solve_and_render(task, spec)
     emit(pieces, request.output)
-    note_si_format(request.units, "--measure" if measures else form, request.quiet)
+    if measures:
+        note_measure_units(task, study)
+    else:
+        note_si_format(request.units, form, request.quiet)
     return finish(task, spec, study)
 
 

@@ -13,7 +13,6 @@ from heuncli.app.cli.options import (
     STEP,
     TIME_LIMIT,
     TOLERANCE,
-    UNITS,
     Option,
 )
 from heuncli.base.named_tuples import NamedTuple
@@ -100,7 +99,12 @@ class RunRequest(NamedTuple):
         str | None,
         Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
     ] = None
-    units: Annotated[str | None, UNITS] = None
+    units: Annotated[
+        str | None,
+        Option(
+            ("--units",), "Units of tables and --measure, such as kN,mm,deg,rpm; JSON and CSV stay in SI.", "UNIT,..."
+        ),
+    ] = None
     watch: Annotated[bool, Option(("--watch",), "Again at each save of the spec, until Ctrl-C.")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None

@@ -10,10 +10,11 @@ import numpy as np
 from heuncli.app.api import solve_spec
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import format_timings, parse_instants, print_warnings
-from heuncli.app.cli.units import TABLES
+from heuncli.app.cli.units import TABLES, note_si_format
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
+from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.tables import TablesQuery, make_tables
 from heuncli.output.tables.heading import format_heading, format_heading_markdown
 from heuncli.output.tables.page_width import split_to_width
@@ -57,9 +58,7 @@ def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
     study = solve_spec(spec, task.options)
     with attach_locations(spec):
         if task.measures:
-            from heuncli.output.snapshots import measure
-
-            return study, [measure.format_measures(task.measures, study, task.form)]
+            return study, [_render_measures(task, study)]
         if task.collective is not None:
             from heuncli.app.commands.run.collective import render_collectives
 
@@ -71,6 +70,26 @@ def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
         if task.form not in TABLES:
             return study, _export(request, task.form, study, labels)
         return study, [_report(request, task.form, study, labels, selection, details=is_explicit)]
+
+
+def _render_measures(task: RunTask, study: Study) -> str:
+    """Render the measured numbers, in the units of --units where these apply."""
+    from heuncli.output.snapshots import measure, measure_units
+
+    shown = measure_units.choose_units(task.measures, study, task.units, task.request.units)
+    return measure.format_measures(task.measures, study, task.form, [size for _, size in shown])
+
+
+def note_measure_units(task: RunTask, study: Study) -> None:
+    """Print the units of the measured numbers to standard error, or that JSON stays in SI."""
+    from heuncli.output.snapshots import measure_units
+
+    if task.form == "json" or task.request.quiet:
+        note_si_format(task.request.units, task.form, task.request.quiet)
+        return
+    shown = measure_units.choose_units(task.measures, study, task.units, task.request.units)
+    for line in measure_units.describe_units(task.measures, shown):
+        print_stderr(escape(line))
 
 
 def finish(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:

@@ -15,6 +15,7 @@ from heuncli.results.results_schema import (
     CUT,
     IMPULSES,
     INSTANT,
+    NAMES,
     TREE,
     Node,
     Quantity,
@@ -261,7 +262,9 @@ def names_hint(path: list[str], unknown: UnknownWord, names: SceneNames) -> str:
             if find_similar(block, all_names)
             else f"{suggestion}; a path begins with one of {', '.join(first_words)}"
         )
-    return suggest(unknown.word, unknown.valid_words, "words here") or ""
+    node = TREE.get(block)
+    is_name = further_words[:1] == [unknown.word] and isinstance(node, dict) and not {*NAMES}.isdisjoint(node)
+    return suggest(unknown.word, unknown.valid_words, f"names in {block}" if is_name else "quantities") or ""
 
 
 def list_continuations(path: str, names: SceneNames) -> list[str]:
