@@ -38,7 +38,7 @@ def make_problem(mechanism: Mechanism, coupling: Coupling, drives: Sequence[str]
     """Make the problem, with the coupling and its drives."""
     names = f"{', '.join(drives[:-1])} and {drives[-1]}"
     coupling_text = f"coupling {coupling.name} ({coupling.entry.type})"
-    message = f"at t = {t:.9g} s the drives {names} begin to ask for what {coupling_text} does not allow together"
+    message = f"at t = {t:.9g} s the drives {names} begin to violate {coupling_text}"
     hint = "leave out one of them: its joint follows the coupling"
     return Problem("rates-do-not-fit", message, hint=hint, entry_path=f"couplings.{coupling.name}")
 
