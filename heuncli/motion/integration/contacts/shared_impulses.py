@@ -136,7 +136,7 @@ def format_sharing(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impac
 
 def format_sharing_sentence(time: float, shared_group: SharedImpulse, count: int, impacts: ImpactModel) -> str:
     """Say how contacts share an impulse, and what is assumed."""
-    several = f"{count} impacts, the first" if count > 1 else "the impact"
+    several = f"{count} impulses, the first" if count > 1 else "the impulse"
     lead = (
         f"{join_names(shared_group.names)} share {several} at t = {time:.6g} s; "
         f"the split is a model assumption (impacts: {impacts}): "
@@ -148,7 +148,7 @@ def format_sharing_sentence(time: float, shared_group: SharedImpulse, count: int
             "all act at the same time, impacting contacts each use their own restitution, resting ones do not rebound"
         )
     elif struck_names:
-        number = f"{shared_group.impacts} single impacts" if shared_group.impacts != 1 else "one single impact"
+        number = f"{shared_group.impacts} impacts" if shared_group.impacts != 1 else "one impact"
         parts.append(
             f"they impact one after another, as across equal small gaps, each with its own restitution ({number})"
         )
