@@ -127,7 +127,7 @@ def test_a_ball_comes_to_rest(e: float, floor: float) -> None:
     assert run.impulse_events[-1].time == pytest.approx(first * (1.0 + 2.0 * e / (1.0 - e)), abs=1e-5)
     assert run.holding[-1].tolist() == [1.0]
     assert run.states[-1][:2].tolist() == pytest.approx([floor, 0.0], abs=1e-13)
-    assert any("rests" in note for note in run.notes)
+    assert any("comes to rest" in note for note in run.notes)
     count = math.log(1e14) / (2.0 * math.log(1.0 / e))  # heights from 1 to the rounding of places
     assert len(run.impulse_events) == pytest.approx(count, abs=4)
 

@@ -323,7 +323,7 @@ def _make_pieces(
         warnings.append(f"sections.{name}: {what}")
     if (cross_sections.regions > 1).any():
         most = int(cross_sections.regions.max())
-        what = f"meets the body {section.body} in {most} separate areas; the loads are their sum"
+        what = f"meets the body {section.body} in {most} separate places; the loads are their sum"
         warnings.append(f"sections.{name}: the plane {what}")
     if form.has_rod_in_plane(n, d).any():
         what = f"runs along a rod of the body {section.body}; the rod's mass counts to the chosen side"
