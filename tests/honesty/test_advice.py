@@ -150,7 +150,7 @@ def test_in_the_plane() -> None:
     joints = {name: {**pin, **end} for name, end in ends.items()}
     scene = {"space": "planar", "gravity": [0, -9.81, 0], "bodies": {"beam": beam}, "joints": joints}
     assert tried(to_yaml(scene)) == (
-        "determinate with a as line (axis [1, 0.5, 0]): the same motion, and no reaction is open"
+        "statically determinate with a as line (axis [1, 0.5, 0]): the same motion, and no reaction is open"
     )
 
 
@@ -181,5 +181,5 @@ def with_(joint: Mapping[str, Any], **more: Any) -> dict[str, Any]:
 )
 def test_a_joint_in_use_keeps_its_kind(joint: dict[str, Any], more: dict[str, Any]) -> None:
     """B would be advised, but for the start value, damper, stop, force or condition that needs it as a pin."""
-    assert tried(to_yaml(with_({}))).startswith("determinate with B")
-    assert tried(to_yaml(with_(joint, **more))).startswith("determinate with C")
+    assert tried(to_yaml(with_({}))).startswith("statically determinate with B")
+    assert tried(to_yaml(with_(joint, **more))).startswith("statically determinate with C")
