@@ -1,7 +1,7 @@
 """Kinetostatics of rigid bodies and linked chains: `import heuncli; study = heuncli.solve("scene.yaml")`.
 
-What follows is all that users may rely on; the page "python" of the manual tells of it. Names are loaded when they are
-asked for: the command line, which runs through here, does without most of them.
+The names below are the whole public interface; the manual page "python" describes them. Each is loaded on first use,
+because the command line, which also imports this package, needs only a few of them.
 """
 
 from __future__ import annotations

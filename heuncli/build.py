@@ -64,11 +64,11 @@ SANITIZED_FLAGS = (
 CHECKED = {"boundscheck": True, "initializedcheck": True}
 MSVC_FLAGS = ("/O2", "/fp:precise")
 # Messages of the build.
-COMPILES = "heun: the kernel is compiled, which takes about a minute on two cores"
-QUICKLY = "heun: the kernel is compiled quickly, to be tried: it runs slower than it can"
+COMPILES = "heun: compiling the kernel; takes about a minute on two cores"
+QUICKLY = "heun: compiling the kernel quickly, for trials: it runs slower than a full build"
 PLAIN = (
-    "heun: the kernel is not compiled ({reason}): plain Python is installed, with the same numbers some hundred times "
-    "slower; with a C compiler and Python's headers (Debian: apt install gcc python3-dev) install heun again"
+    "heun: the kernel is not compiled ({reason}): plain Python is installed, same results, about a hundred times "
+    "slower; install heun again with a C compiler and Python's headers (Debian: apt install gcc python3-dev)"
 )
 TERMINAL = "CONOUT$" if os.name == "nt" else "/dev/tty"
 # Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
@@ -120,7 +120,7 @@ class BuildKernel(build_ext):
         super().finalize_options()
         self.kernel = os.environ.get("HEUN_KERNEL", "")
         if self.kernel not in ("", "require", "compiled", "pure"):
-            raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
+            raise SystemExit(f"HEUN_KERNEL={self.kernel}: accepted: require, compiled, pure")
         for extension in self.extensions or []:
             extension.optional = not self.is_required
         self.cython_directives = DIRECTIVES | (CHECKED if self.sanitized else {})

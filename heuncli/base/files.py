@@ -26,20 +26,20 @@ if TYPE_CHECKING:
 STDOUT = "-"  # what stands for standard output where a file is named
 MAX_LINKS = 40  # that lead to one file; the system follows no more
 HINTS = {
-    errno.ENOSPC: "make room, or name a place on another disk",
-    errno.EDQUOT: "make room, or name a place on another disk",
-    errno.EFBIG: "raise the limit on the size of files (ulimit -f), or ask for less: --only, fewer samples",
-    errno.EACCES: "look at the permissions, or name another place",
-    errno.EPERM: "look at the permissions, or name another place",
-    errno.EROFS: "name a place that may be written",
-    errno.ENAMETOOLONG: "name it shorter",
-    errno.ELOOP: "look where its links lead: ls -l",
-    errno.ENOENT: "name a folder that exists",
-    errno.ENOTDIR: "name a folder that exists",
-    errno.EBADF: "open it for writing, such as: heun run scene.yaml -o /dev/fd/3 3> results",
+    errno.ENOSPC: "free some space, or choose a file on another disk",
+    errno.EDQUOT: "free some space, or choose a file on another disk",
+    errno.EFBIG: "raise the file size limit (ulimit -f), or request less: --only, fewer samples",
+    errno.EACCES: "check the permissions, or choose another location",
+    errno.EPERM: "check the permissions, or choose another location",
+    errno.EROFS: "choose a writable location",
+    errno.ENAMETOOLONG: "use a shorter name",
+    errno.ELOOP: "check where its links lead: ls -l",
+    errno.ENOENT: "choose a folder that exists",
+    errno.ENOTDIR: "choose a folder that exists",
+    errno.EBADF: "open it for writing, for example: heun run scene.yaml -o /dev/fd/3 3> results",
 }
 FOLDER_NAMES = ("", ".", "..")  # after the last / of a folder's name
-OTHER_HINT = "name another file"
+OTHER_HINT = "choose another file name"
 # Errors of a system or a file system without nameless files.
 NO_TMPFILE_ERRORS = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL, errno.ENOENT, errno.ENOSYS, errno.EPERM)
 CAN_CHMOD_DESCRIPTOR = os.chmod in os.supports_fd  # whether the rights of an open file may be changed
@@ -92,13 +92,15 @@ def find_target(name: str) -> FileTarget:
     try:
         target = _resolve_target(name)
         if target.state is not None and stat.S_ISDIR(target.state.st_mode):
-            raise OutputError(Problem("output-failed", f"{name}: this is a folder", hint="name a file in it"))
+            raise OutputError(Problem("output-failed", f"{name}: this is a folder", hint="give a file name in it"))
         if target.is_replaceable:
             _require_replaceable(name, target)
     except OSError as reason:
         raise OutputError(write_problem(name, reason)) from None
     except ValueError:
-        raise OutputError(Problem("output-failed", f"{name}: a name holds no NUL", hint=OTHER_HINT)) from None
+        raise OutputError(
+            Problem("output-failed", f"{name}: a file name cannot contain NUL", hint=OTHER_HINT)
+        ) from None
     return target
 
 
@@ -266,14 +268,18 @@ def _require_replaceable(name: str, target: FileTarget) -> None:
     path = _path(target.path)
     folder = (path if _path(name).is_symlink() else _path(name)).parent
     if not path.parent.is_dir():
-        hint = "make it first, or name another place"
+        hint = "create it first, or choose another location"
         raise OutputError(Problem("output-failed", f"{name}: there is no folder {folder}", hint=hint))
     if os.path.split(name)[1] in FOLDER_NAMES:
-        raise OutputError(Problem("output-failed", f"{name}: this is the name of a folder", hint="name a file in it"))
+        raise OutputError(
+            Problem("output-failed", f"{name}: this is the name of a folder", hint="give a file name in it")
+        )
     if target.state is not None and not os.access(path, os.W_OK):
-        raise OutputError(Problem("output-failed", f"{name}: the file may not be written", hint=HINTS[errno.EACCES]))
+        raise OutputError(
+            Problem("output-failed", f"{name}: no permission to write the file", hint=HINTS[errno.EACCES])
+        )
     if not os.access(path.parent, os.W_OK | os.X_OK):
         hint = HINTS[errno.EACCES]
         if target.state is not None:  # which could be written, but not replaced as a whole
-            hint = f"name a file elsewhere, or > {name} in place of -o, which writes as it goes"
-        raise OutputError(Problem("output-failed", f"{name}: the folder {folder} may not be written", hint=hint))
+            hint = f"choose another folder, or use > {name} instead of -o, which overwrites the file in place"
+        raise OutputError(Problem("output-failed", f"{name}: no permission to write in the folder {folder}", hint=hint))

@@ -27,65 +27,71 @@ class MethodRow(NamedTuple):
 
 
 AUTO, DEFAULT = "auto", "DOP853"
-SMOOTH_ONLY = "method: auto does, and every method that is not SciPy's"  # a hint, where these are refused a scene
+SMOOTH_ONLY = "use method: auto, or any method other than SciPy's"  # the hint where SciPy's methods are refused
 METHODS = (
     MethodRow(
         "Euler", 1, "explicit", "fixed", "quaternion",
-        "a warning: a digit more takes ten times the steps", "explicit.EULER",
+        "a warning example: one more digit takes ten times the steps", "explicit.EULER",
     ),
     MethodRow(
         "Heun2", 2, "explicit", "fixed", "quaternion",
-        "Heun's mean of two slopes, 1900: to teach, to compare", "explicit.HEUN2",
+        "Heun's mean of two slopes, 1900: for teaching and comparison", "explicit.HEUN2",
     ),
-    MethodRow("Heun3", 3, "explicit", "fixed", "quaternion", "Heun's third order, 1900: the same", "explicit.HEUN3"),
+    MethodRow(
+        "Heun3", 3, "explicit", "fixed", "quaternion",
+        "Heun's third-order method, 1900: for teaching and comparison", "explicit.HEUN3",
+    ),
     MethodRow(
         "RK4", 4, "explicit", "fixed", "quaternion",
-        "the classical one: in real time, and to compare", "explicit.RK4",
+        "the classical method: for real time and comparison", "explicit.RK4",
     ),
     MethodRow(
         "DOPRI5", 5, "explicit", "adaptive", "quaternion",
-        "coarse tolerances, 1e-3 to 1e-5, and loads that jump often", "explicit.DOPRI5",
+        "coarse tolerances, 1e-3 to 1e-5, and frequent load jumps", "explicit.DOPRI5",
     ),
     MethodRow(
         "DOP853", 8, "explicit", "adaptive", "quaternion",
-        "the default: smooth motions to six digits and more", "dop853.DOP853",
+        "the default: smooth motions, six digits and more", "dop853.DOP853",
     ),
     MethodRow(
         "Verner98", 9, "explicit", "adaptive", "quaternion",
-        "smooth motions to 1e-12 and below", "verner.VERNER98",
+        "smooth motions, tolerance 1e-12 and below", "verner.VERNER98",
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's no. 20: attitudes from the drawn one; ends at half turns", "rodrigues.DOP853_GLOBAL",
+        "Heun's no. 20: rotations from the start orientation; ends at 180 deg", "rodrigues.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "attitudes from each step's start: as good as quaternions", "rodrigues.DOP853_RECENTRED",
+        "rotations from each step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",
-        "long runs without damping: symmetric, no drift of the energy", "collocation.GAUSS4",
+        "long runs without damping: symmetric, no energy drift", "collocation.GAUSS4",
     ),
     MethodRow(
         "Gauss6", 6, "implicit", "fixed", "quaternion",
-        "the same to more digits", "collocation.GAUSS6",
+        "long runs without damping, more digits", "collocation.GAUSS6",
     ),
     MethodRow(
         "Radau5", 5, "implicit", "adaptive", "quaternion",
-        "stiff motions to a few digits: hard springs, dry friction", "collocation.RADAU5",
+        "stiff systems, a few digits: hard springs, dry friction", "collocation.RADAU5",
     ),
     MethodRow(
         "Radau9", 9, "implicit", "adaptive", "quaternion",
-        "stiff motions to six digits and more", "collocation.RADAU9",
+        "stiff systems, six digits and more", "collocation.RADAU9",
     ),
     MethodRow(
         "SciPy-Radau", 5, "SciPy", "adaptive", "quaternion",
-        "an independent check of stiff motions", "scipy_methods.RADAU",
+        "independent check of stiff systems", "scipy_methods.RADAU",
     ),
-    MethodRow("SciPy-BDF", 5, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 5", "scipy_methods.BDF"),
     MethodRow(
-        "SciPy-LSODA", 12, "SciPy", "adaptive", "quaternion", "the same, of orders 1 to 12; takes what it finds",
-        "scipy_methods.LSODA",
+        "SciPy-BDF", 5, "SciPy", "adaptive", "quaternion",
+        "independent check, orders 1 to 5", "scipy_methods.BDF",
+    ),
+    MethodRow(
+        "SciPy-LSODA", 12, "SciPy", "adaptive", "quaternion",
+        "independent check, orders 1 to 12; detects stiffness itself", "scipy_methods.LSODA",
     ),
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 
 ACCEPTED = f"0, or {tolerances.LEAST_MAGNITUDE:.0e} to {tolerances.MOST_MAGNITUDE:.0e} in SI units".replace("+", "")
-TOO_SMALL = "look at its unit; what is meant to be nothing is written 0"
-TOO_LARGE = "look at its unit; what has no bound is left out"
+TOO_SMALL = "check its unit; for zero write 0"
+TOO_LARGE = "check its unit; for no bound leave the entry out"
 
 
 def is_in_range(value: float) -> bool:
@@ -37,5 +37,5 @@ def range_error(value: float, what: str = "") -> Finding:
     """
     is_small = abs(value) < 1.0
     subject = f"{what} is {value:g}, " if what else f"{value:g} is "
-    message = f"{subject}too {'small' if is_small else 'large'} to be computed with; accepted: {ACCEPTED}"
+    message = f"{subject}too {'small' if is_small else 'large'} for the computation; accepted: {ACCEPTED}"
     return Finding("magnitude", message, TOO_SMALL if is_small else TOO_LARGE)

@@ -128,10 +128,10 @@ SPELLINGS = {
     "kp": "kgf",
 }  # fmt: skip
 HINTS = {
-    "Hz": "as an angular velocity write 2*pi*50 for 50 turns a second, or 3000 rpm",
+    "Hz": "as an angular velocity write 2*pi*50 for 50 revolutions per second, or 3000 rpm",
     "t": "a thousand kilograms are '1 tonne'; t is the time: write 2*t for a multiple of it",
-    "grad": "a degree is deg",
-    "Grad": "a degree is deg",
+    "grad": "write degrees as deg",
+    "Grad": "write degrees as deg",
 }
 
 TOKEN = re.compile(r"\s*(?:(\*\*|[*·⋅×/^()])|([+-]?\d+)|([^\W\d_²³⁴]+|°)|([²³⁴]))")
@@ -170,7 +170,7 @@ def si_expression_hint(figure: str, symbol: str, rest: str = "") -> str | None:
         written, subject = f"{float(figure) * size:.15g}", f"{figure} {symbol}"
     except ValueError:
         written = f"{figure}*{size!r}" if figure else repr(size)
-    return f"units do not stand inside expressions: write {written}{rest} in SI, or name {subject} under parameters"
+    return f"units are not allowed inside expressions: write {written}{rest} in SI, or name {subject} under parameters"
 
 
 def correct_unit(unit: str) -> str | None:
@@ -192,10 +192,10 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
     try:
         size, dimension = reader.read_product()
     except ArithmeticError:  # powers of powers: larger or smaller than any double
-        hint = "a power is a small whole number, as in m^2"
-        raise Finding("unknown-unit", f"'{text}' is not a unit: its size is beyond all numbers", hint) from None
+        hint = "write the power as a small whole number, as in m^2"
+        raise Finding("unknown-unit", f"'{text}' is not a unit: its size is out of number range", hint) from None
     if reader.token is not None:
-        raise Finding("unknown-unit", f"'{text}' is not a unit: '{reader.token}' is not expected", FORM)
+        raise Finding("unknown-unit", f"'{text}' is not a unit: unexpected '{reader.token}'", FORM)
     return size, dimension
 
 
@@ -216,7 +216,7 @@ class _UnitReader:
         while position < len(text):
             match = TOKEN.match(text, position)
             if match is None:
-                message = f"'{text}' is not a unit: '{text[position:].strip()[0]}' is not expected"
+                message = f"'{text}' is not a unit: unexpected '{text[position:].strip()[0]}'"
                 raise Finding("unknown-unit", message, FORM)
             position = match.end()
             yield match[0].strip()
@@ -242,7 +242,7 @@ class _UnitReader:
         if self.token in ("^", "**"):
             self.advance()
             if self.token is None or not self.token.lstrip("+-").isdecimal() or len(self.token) > 2:
-                message = f"'{self.text}' is not a unit: a power is a small whole number"
+                message = f"'{self.text}' is not a unit: a power must be a small whole number"
                 raise Finding("unknown-unit", message, "as in m^2")
             exponent = int(self.token)
             self.advance()
@@ -251,7 +251,7 @@ class _UnitReader:
             self.advance()
         elif self.token is not None and self.token.lstrip("+-").isdecimal():
             raise Finding(
-                "unknown-unit", f"'{self.text}' is not a unit: '{self.token}' is not expected", "a power is m^2"
+                "unknown-unit", f"'{self.text}' is not a unit: unexpected '{self.token}'", "write a power as m^2"
             )
         return size**exponent, (dimension[0] * exponent, dimension[1] * exponent, dimension[2] * exponent)
 
@@ -274,7 +274,7 @@ class _UnitReader:
         if token is None:
             raise Finding("unknown-unit", f"'{self.text}' is not a unit: it ends too early", FORM)
         if not token[0].isalpha():
-            raise Finding("unknown-unit", f"'{self.text}' is not a unit: '{token}' is not expected", FORM)
+            raise Finding("unknown-unit", f"'{self.text}' is not a unit: unexpected '{token}'", FORM)
         raise Finding("unknown-unit", f"'{token}' is not a unit", HINTS.get(token) or suggest_unit(token))
 
 
@@ -283,4 +283,6 @@ def suggest_unit(symbol: str) -> str:
     similar = find_similar(symbol, UNITS)
     if similar is not None:
         return f"did you mean {similar}?"
-    return "units are kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"
+    return (
+        "known units: kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"
+    )

@@ -56,7 +56,7 @@ def bound_polynomial(
             work[k] = work[k] + x0 * (work[k + 1] - work[k])
     if x1 > x0:
         x = (x1 - x0) / (1.0 - x0) if x0 < 1.0 else 0.0
-        for i in range(1, n + 1):  # of that the left part
+        for i in range(1, n + 1):  # the left part of that
             for k in range(n, i - 1, -1):
                 work[k] = work[k - 1] + x * (work[k] - work[k - 1])
     bounds = Bounds(work[0], work[0])

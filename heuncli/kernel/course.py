@@ -103,7 +103,7 @@ def build_end_window(
     course.length = 2.0 * half
     course.latest = run.before_end
     course.late = run.late
-    course.finest = scene.limits.window * scene.limits.window * scene.limits.window  # of the step, a rounding
+    course.finest = scene.limits.window * scene.limits.window * scene.limits.window  # relative to the step: rounding
     course.degree = 2
     if scene.point_count:
         build_state_window(scene, method, run, half)

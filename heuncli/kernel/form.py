@@ -43,10 +43,8 @@ def refuse_leftovers() -> None:
     """Raises KernelError for modules that an older heun compiled one by one: they would hide the plain files."""
     leftovers = sorted(file for file in FILES if file.endswith((".so", ".pyd")) and file.partition(".")[0] != NAME)
     if leftovers:
-        message = f"compiled files of an older heun lie among the kernel's: {leftovers[0]}, {len(leftovers)} in all"
-        raise KernelError(
-            Problem("stale-kernel", message, hint="python -m heuncli.build removes them and compiles anew")
-        )
+        message = f"compiled files of an older heun in the kernel folder: {leftovers[0]}, {len(leftovers)} in total"
+        raise KernelError(Problem("stale-kernel", message, hint="python -m heuncli.build removes them and recompiles"))
 
 
 def edited_since_compiled(compiled_file: str) -> list[str]:
@@ -69,21 +67,21 @@ def edited_since_compiled(compiled_file: str) -> list[str]:
 def choose_form(setting: str) -> Literal["compiled", "pure"]:
     """Return which form runs for a value of HEUN_KERNEL. Raises KernelError if it is unknown or not available."""
     if setting not in ("", "pure", "compiled", "require"):
-        message = f"HEUN_KERNEL is '{setting}'; known: pure, compiled, require"
+        message = f"HEUN_KERNEL is '{setting}'; accepted: pure, compiled, require"
         raise KernelError(Problem("unknown-kernel", message, hint="unset it to let heun choose"))
     compiled = find_compiled()
     refuse_leftovers()
     if setting in ("compiled", "require") and not compiled:
         message = f"HEUN_KERNEL={setting}, but this heun has no compiled kernel"
-        hint = "install again where a C compiler is at hand, or unset HEUN_KERNEL to run the slower plain one"
+        hint = "reinstall with a C compiler available, or unset HEUN_KERNEL to use the slower plain kernel"
         raise KernelError(Problem("kernel-not-compiled", message, hint=hint))
     if not compiled or setting == "pure":
         return "pure"
     if edited := edited_since_compiled(compiled):
         named = ", ".join(f"{name}.py" for name in edited[:MAX_NAMES])
         more = f" and {len(edited) - MAX_NAMES} more" if len(edited) > MAX_NAMES else ""
-        message = f"the compiled kernel is older than its text: {named}{more} changed since"
-        hint = "compile it again with: python -m heuncli.build; or run the slower plain one: HEUN_KERNEL=pure"
+        message = f"the compiled kernel is older than its source: {named}{more} changed since"
+        hint = "recompile with: python -m heuncli.build; or use the slower plain kernel: HEUN_KERNEL=pure"
         raise KernelError(Problem("stale-kernel", message, hint=hint))
     return "compiled"
 

@@ -51,7 +51,7 @@ if not cython.compiled:
     NORMAL_FORCE, RESIDUAL, WEIGHT, CONTRACTION_STEP, FORCE_CHANGE = range(5)
     MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
 
-FRICTION_ROUNDING = 8.8817841970012523e-16  # of the terms: four roundings
+FRICTION_ROUNDING = 8.8817841970012523e-16  # relative to the terms: four roundings
 
 
 # What presses

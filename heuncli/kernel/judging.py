@@ -34,9 +34,9 @@ SAFETY = 0.9
 MIN_STEP_FACTOR = 0.2  # shorter after a rejection
 MAX_STEP_FACTOR = 6.0  # longer after what was accepted
 UNDEFINED_STEP_FACTOR = 0.1  # shorter where a stage has no value at all
-# of the square of the coarser of two estimates (II.10): it keeps the combined error from vanishing with the finer one
+# share of the squared coarser estimate (II.10): it keeps the combined error from vanishing with the finer one
 COARSE_SHARE = 0.01
-UNSOLVED_ERROR = 1.8  # of stages not found, to the method's order: 0.9/1.8, half the step
+UNSOLVED_ERROR = 1.8  # error assigned to unsolved stages, to the method's order: 0.9/1.8, half the step
 
 
 def weighted_norm(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:

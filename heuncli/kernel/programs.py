@@ -15,7 +15,7 @@ SINH, COSH, TANH, EXP, LOG, SQRT = range(22, 28)
 TABLE, KNOT, JUMP, UNLESS = range(28, 32)
 LT, LE, GT, GE, EQ, NE = range(32, 38)
 HOLD, INTEGRAL = range(38, 40)
-NODES = 8  # of the quadrature: exact for polynomials of degree 15
+NODES = 8  # quadrature nodes: exact for polynomials of degree 15
 
 FREE, HELD, TAKEN = range(3)  # what HOLD means
 REFUSED, EXTENDED, PERIODIC = range(3)  # what a table says beyond its ends
@@ -80,6 +80,6 @@ class Programs(Struct):
     held: list[float]
     holding: int
     doubt: list[int]  # whether each held branch may change over the interval of time
-    ranges: list[Span]  # of the variables over a stretch of time
+    ranges: list[Span]  # ranges of the variables over a time interval
     middles: list[Span]  # and at an instant of it
     spans: list[Span]

@@ -20,11 +20,11 @@ FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)
 BUSHING_SHIFT, BUSHING_TURN, ROPE = range(12, 15)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that depend on the bodies' places
-ALONG_LINE, DRAWN = range(3, 5)  # of a load: its length, and of that without load the rate; before, the strain's parts
+ALONG_LINE, DRAWN = range(3, 5)  # a load's length, and the rate of its unloaded length; 0 to 2: parts of the strain
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
-TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
+TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # for wheels
 STRAND, ARC, WOUND = range(7, 10)
-TRACK, ALONG = range(10, 12)  # of paths
+TRACK, ALONG = range(10, 12)  # for paths
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(5)  # normal force of a joint's friction: given, the joint's force or
 # parts of it, the multiplier of a coupling's row
@@ -36,7 +36,7 @@ class Body(Record):
 
     parent: int  # -1: the ground
     ball: int  # 1: all turns are free; the state holds the body's own attitude and angular velocity
-    attitude_at: int  # of a ball: where its quaternion stands in the state
+    attitude_at: int  # for a ball: where its quaternion stands in the state
     rate_at: int  # and its angular velocity
     first_freedom: int  # scalar freedoms, in the order from the parent outward
     end_freedom: int
@@ -51,9 +51,9 @@ class Body(Record):
     R: Mat3  # attitude, body to world
     r: Vec3  # joint point
     omega: Vec3
-    v: Vec3  # of the joint point
+    v: Vec3  # velocity of the joint point
     arm: Vec3  # from the parent's joint point to this one
-    alpha_bias: Vec3  # of alpha relative to the parent's: the part due to velocities and prescribed accelerations
+    alpha_bias: Vec3  # part of alpha relative to the parent due to velocities and prescribed accelerations
     a_bias: Vec3
     alpha_zero: Vec3  # alpha and a (gravity left out) if no freedom accelerated
     a_zero: Vec3
@@ -65,8 +65,8 @@ class Body(Record):
     A: Sym3  # articulated inertia of the branch; in a flat scene all of it, of turn about z, shift x, shift y
     C: Mat3
     K: Sym3
-    turning: Ldl3  # of a ball: factors of A
-    G: Mat3  # of a ball: A^-1 C
+    turning: Ldl3  # for a ball: factors of A
+    G: Mat3  # for a ball: A^-1 C
     M_branch: Vec3  # load that the branch needs from its joint; for all loads, or for one closure row's unit load
     f_branch: Vec3
     alpha: Vec3
@@ -84,17 +84,17 @@ class Freedom(Record):
     driven: int
     answer_at: int
     body: int
-    program: Program  # of the drive
+    program: Program  # value of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
-    offset: float  # of the coordinate against the drive's
-    path: int  # of a point that runs along a path: its first piece
+    offset: float  # coordinate minus the drive's value
+    path: int  # first piece of the path along which a point runs
     pieces: int  # and how many it has; 0: its direction is fixed
-    period: float  # of the coordinate, where the path is closed; else 0
+    period: float  # period of the coordinate on a closed path; else 0
     reach: float  # bounds of the path's |r|, |r'| and |r''|
     slope: float
     bend: float
-    radius: float  # of a roller, the distance of its centre from the path; 0: on it
-    normal: Vec3  # of the path's plane, to the left of which the roller is
+    radius: float  # distance of a roller's centre from the path; 0: on it
+    normal: Vec3  # normal of the path's plane; the roller is to its left
 
     s: Vec3  # its direction, of unit length or, along a path, r'
     curved: Vec3  # along a path r'', else zero
@@ -116,36 +116,36 @@ class Load(Record):
     a: int
     b: int
     in_body: int  # the vector's components are in b's axes; of joint loads: told along the axis; of ropes: only pulls
-    freedom: int  # of a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
+    freedom: int  # for a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
     counter: int  # that then counts its turns
     x: Program  # components of `vector` that vary; x alone for a single value
-    y: Program  # of a rope: its length without load
+    y: Program  # for a rope: its length without load
     z: Program
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
     vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
-    stiffness: float  # of a spring [N/m], of a turn spring [N m/rad]
-    length: float  # of a spring, rope without load [m]; of a turn spring its free angle; of a bushing its largest [rad]
-    coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
+    stiffness: float  # spring [N/m], torsion spring [N m/rad]
+    length: float  # free length of a spring or rope [m]; torsion spring: free angle; bushing: largest angle [rad]
+    coefficient: float  # damping [N s/m], [N m s]; for friction the factor on its size
     axis: Vec3  # in a
-    speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
-    factor: float  # of a force or couple: by which the vector is to be multiplied; of a thread's friction its force by
+    speed: float  # for friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
+    factor: float  # for a force or couple: by which the vector is to be multiplied; of a thread's friction its force by
     # its moment [1/m]
     offset: float
-    across: Vec3  # of a joint that was cut: a direction across the axis, in a
+    across: Vec3  # for a joint that was cut: a direction across the axis, in a
     mark: Vec3  # and the one in b that agrees with it at angle 0
-    # of friction: GIVEN, or which part of the joint's own load is the normal force; the coefficient then
+    # for friction: GIVEN, or which part of the joint's own load is the normal force; the coefficient then
     # multiplies it
     presses: int
     held_by: int  # the body whose joint it is; -1: the joint was cut
-    row: int  # of a joint that was cut: its first closure row; of a thread its own
+    row: int  # for a joint that was cut: its first closure row; of a thread its own
     row_count: int
-    reach: float  # of ENDS: the distance between the two ends [m]
-    frame: Mat3  # of a bushing: its axes, in a
+    reach: float  # for ENDS: the distance between the two ends [m]
+    frame: Mat3  # for a bushing: its axes, in a
     to_frame: Mat3  # and those in b that agree with them where it is not turned
     stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
     resistances: Vec3  # [N s/m], [N m s]
-    part: int  # of a rope: the first of its parts
+    part: int  # for a rope: the first of its parts
     part_count: int
 
     force: Vec3  # on b
@@ -154,10 +154,10 @@ class Load(Record):
     from_at: Vec3  # where on a
     value: float
     span: float  # length of the line, of a rope; of a turn spring its angle; of what presses whether it was FOUND
-    strain: Vec3  # of a bushing: its shift or its turn, in its axes
+    strain: Vec3  # for a bushing: its shift or its turn, in its axes
     rate: float
     power: float
-    unit: Vec3  # of joint friction: force or moment on b for a normal force of 1; of a thread the moment
+    unit: Vec3  # for joint friction: force or moment on b for a normal force of 1; of a thread the moment
     pressed: float  # normal force [N]; of GIVEN friction its size [N], [N m]
 
 
@@ -183,13 +183,13 @@ class Closure(Record):
     kind: int
     a: int
     b: int
-    freedom: int  # of a TURN: whose angle
-    program: Program  # of the length, where it is driven
+    freedom: int  # for a TURN: whose angle
+    program: Program  # driven length
     path: int  # first of the bodies between its two ends and the ground, tips first, in `indices`
     path_count: int
     column: int  # its first number in `columns`
     answers: int  # which answers of the freedoms these are, in `indices`: first those of its path, then what fills in
-    answer_count: int  # of its path
+    answer_count: int  # number of answers of its path
     filled_count: int  # with those that fill in when earlier rows are taken out of it
     couplings: int  # earlier rows that fill in, in `indices`
     coupling_count: int
@@ -199,30 +199,30 @@ class Closure(Record):
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
     length: float
-    weight: float  # of the gap [m per unit]
-    part: int  # of a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
+    weight: float  # weight of the gap [m per unit]
+    part: int  # for a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
     part_count: int
-    factor: float  # of a part of a SUM: how many times it is taken; of a row itself 1
-    c: int  # of a MESH or WOUND: the body that carries its place and directions; -1: the ground
-    ratio: float  # of the freedom's coordinate
+    factor: float  # for a part of a SUM its factor; 1 for a row itself
+    c: int  # for a MESH or WOUND: the body that carries its place and directions; -1: the ground
+    ratio: float  # factor on the coordinate of `freedom`
     freedom_b: int
     ratio_b: float
-    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
+    lift: int  # for a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
     pieces: int
     period: float
     swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
     faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
-    radius: float  # of the roller; 0: a point
+    radius: float  # radius of the roller; 0: a point
     pivot: Vec3
     h: Vec3
-    counter: int  # of a TRACK: which counter counts its place
-    measure: float  # of its unit load: 1 of a force, the island's length of a couple
+    counter: int  # for a TRACK: which counter counts its place
+    measure: float  # size of its unit load: 1 for a force, the island's length for a couple
 
     f: Vec3
     m: Vec3
     Q: Vec3
-    t: Vec3  # of a STRAND: its direction across the axis, as the rope is listed
-    on_a: Vec3  # of a part: where its load enters the two bodies, if that is not Q
+    t: Vec3  # for a STRAND: its direction across the axis, as the rope is listed
+    on_a: Vec3  # for a part: where its load acts on the two bodies, if not at Q
     on_b: Vec3
     gap: float
     rate: float
@@ -231,7 +231,7 @@ class Closure(Record):
     terms: float  # size of the terms of J Vdot + gamma over a step, while a contact is closed
     demand: float  # what it demands of the response: J V = -demand
     prescribed_rate: float
-    prescribed_second: float  # of a driven length; of a blow the jump of its rate
+    prescribed_second: float  # second derivative of a driven length; in an impulse the jump of its rate
     answer: float  # size of the freedoms' response to its unit load, in the norm of M
     doubt: float  # what rounding may make of its multiplier
     mode: int  # CARRIES; of a contact also APART: it is open; LEANS: kept closed by other contacts, it carries nothing
@@ -254,7 +254,7 @@ class Contact(Record):
     sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
     freedom: int  # which it limits or holds; -1: no single one
-    held_at: int  # of a latch 1 + where, behind these, it is told at which length it holds; 0: of others
+    held_at: int  # for a latch 1 + where, behind these, it is told at which length it holds; 0: of others
 
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
@@ -288,7 +288,7 @@ class Counter(Record):
     b: int
     at: int  # where it stands in the state
     axis: Vec3  # in a
-    track: int  # of a place: 1 + its TRACK among the closure rows; 0: an angle
+    track: int  # for a place: 1 + its TRACK among the closure rows; 0: an angle
 
     counted: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
 
@@ -304,11 +304,11 @@ class Variable(Record):
     is_rate: int
     is_point: int  # 0, AT_POINT, OF_LOAD
     load: int
-    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE, DRAWN
-    body: int  # of the point; -1: the ground
+    part: int  # part of the load: along its axis 0, 1 or 2; ALONG_LINE, DRAWN
+    body: int  # body of the point; -1: the ground
     q: Vec3  # the point, from the body's joint point, its axes
     direction: Vec3  # unit vector, world axes
-    offset: float  # of its place along the direction
+    offset: float  # offset of its place along the direction
 
 
 class Watch(Record):
@@ -317,12 +317,12 @@ class Watch(Record):
     program: Program
     curved: int  # 1: the acceleration of a drive counts
     condition: int  # 1: its branches alone count
-    load: int  # of a bushing: the load of whose force or moment it is a part; -1: it is of none
+    load: int  # for a bushing: the load of whose force or moment it is a part; -1: it is of none
 
     low: float  # what the stages of a step saw of it
     high: float
     scale: float  # how large it may be in the step
-    rounding: float  # of its terms
+    rounding: float  # rounding of its terms
 
 
 class ArtificialInertia(Record):
@@ -331,7 +331,7 @@ class ArtificialInertia(Record):
     """
 
     body: int
-    root: float  # of the inertia
+    root: float  # square root of the inertia
     axis: Vec3  # unit vector, body axes
 
     n: Vec3  # root times the axis, world
@@ -346,7 +346,7 @@ class Group(Record):
     end: int
 
     rate: float  # the largest it has had
-    trial: float  # of the step under way
+    trial: float  # step being tried
 
 
 class Island(Record):
@@ -362,16 +362,16 @@ class Limits(Record):
     """Thresholds of the kernel: heuncli/base/tolerances.py derives each."""
 
     dodges: int  # lengths tried for a step whose stages come near to a singular pose
-    no_inertia: float  # of all directions' inertia: what has less moves nothing
-    own_share: float  # of a motion's inertia, artificial and its own: with a smaller own share nothing resists it
+    no_inertia: float  # relative to the inertia in all directions: below it, nothing is moved
+    own_share: float  # relative to a motion's inertia with the artificial part: below it, nothing resists
     much_lent: float  # with a smaller share than this, but more than that, less artificial inertia is used
     across: float  # part of what a row could answer across its arms that counts as its scale in any pose
     independent: float  # least length of what is left of a row, by the rows chosen before it, for it to be chosen
     passing: float  # the same on the way through a singular pose
     passing_of_start: float  # and no more than this of what the rows of the start have left
-    rounding: float  # of a sum, relative to its terms
+    rounding: float  # rounding of a sum, relative to its terms
     preference: float  # a later row must have so many times the pivot of an earlier one
-    pivot_drop: float  # of the pivot when the rows were chosen: below it they are chosen anew
+    pivot_drop: float  # relative to the pivot when the rows were chosen: below it they are chosen again
     near_singular: float  # pivot below which the stages of a step are settled, too
     locked: float  # pivot, with a step of `locked_step` of the time, at which the closures lock
     locked_step: float
@@ -379,40 +379,40 @@ class Limits(Record):
     nearly_closed: float  # rounding after a correction
     reopened: float  # a row that was left out opens
     lost: float  # the closures cannot be held
-    jump: float  # of the largest rate: a larger change of rates by the closures is no rounding of the step
+    jump: float  # relative to the largest rate: a larger change of rates by the closures is not rounding
     jump_of_error: float  # the same of the local tolerance, by the root of the pivot
     jump_of_given: float  # and the same at most of what a given step turns the scene by
-    slow_rate: float  # of the scene's largest rate: a slower body is judged as if that fast
-    held_rate: float  # of the rate that the loads could cause: what is held at rest is judged as if that fast
-    least_step: float  # of the time: rounding
-    given_end: float  # of a given step: what is left of a piece beyond its last step, if less, is taken into it
+    slow_rate: float  # relative to the model's largest rate: slower bodies are judged as if this fast
+    held_rate: float  # relative to the rate that loads could cause: bodies held at rest are judged as if this fast
+    least_step: float  # relative to the time: rounding
+    given_end: float  # relative to a given step: a shorter remainder of a piece is merged into its last step
     dodge: float  # ratio of the lengths tried
     pivot_rounding: float  # what rounding makes of the closures, times h rate / pivot
-    one_instant: float  # of the time: rounding of an instant
+    one_instant: float  # relative to the time: rounding of an instant
     finest: float  # part of a step down to which events are told apart
-    window: float  # of a step, on either side of its end: an event that the step before found lies there
-    seen_turn: float  # of a point's body in a step [rad]: with more the stages do not show where its places went
-    near_kink: float  # of a step: so near to a kink a step may end, for branches go on smoothly beyond it
-    no_jump: float  # of a load's scale: branches that agree so far meet in a kink
-    leaving_first: float  # of a step: how far from its start rounding may tell a branch wrong, at least ...
+    window: float  # relative to a step, on both sides of its end: events found by the preceding step are there
+    seen_turn: float  # rotation of a point's body in a step [rad]: with more, the stages do not show its path
+    near_kink: float  # relative to a step: a step may end this close to a kink, because branches continue smoothly
+    no_jump: float  # relative to a load's scale: branches this close meet in a kink
+    leaving_first: float  # relative to a step: distance from its start where rounding may pick a wrong branch: at least
     leaving_last: float  # ... and at most
-    flurry: float  # of the time: events that follow each other within it gather at an instant
+    flurry: float  # relative to the time: events following each other within it accumulate at an instant
     least_load: float  # smaller loads are none, in any unit
-    touching: float  # of the size, and of its places and limits: a contact's gap is not known better
-    unseen: float  # of a load's largest: what it does beyond what stages saw, before the step is done again
+    touching: float  # relative to the size, and to its places and limits: accuracy of a contact's gap
+    unseen: float  # relative to a load's largest value: change unseen by the stages before a step is repeated
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
-    branch_step: float  # of the least pivot: how far coordinates move in a step along a branch
-    branch_beside: float  # of that, how far what begins beside the start
+    branch_step: float  # relative to the least pivot: motion of the coordinates in a step along a branch
+    branch_beside: float  # factor on branch_step for a run begun next to the start
     branch_between: float  # [rad, of an island's length]: the course of what a drive moves, between a step's ends
-    branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
+    branch_bend: float  # relative to a drive's acceleration in a step: allowed error of its midpoint
     half_turn: float  # cosine of half a turn: where it is less, Rodrigues' numbers have come to a half turn
-    chart_turn: float  # of the turn that leads out of a chart of attitudes: a longer step is none
-    newton_ends: float  # of the largest coordinate or rate: a correction of stages that is rounding
+    chart_turn: float  # relative to the rotation that leaves a chart of attitudes: longer steps are refused
+    newton_ends: float  # relative to the largest coordinate or rate: smaller corrections are rounding
     newton_rounding: float  # corrections that do not become smaller may be as large by rounding ...
     newton_part: float  # ... or so large of the tolerance ...
     newton_noise: float  # ... or, of a method of fixed step, so large
     newton_stalls: float  # times the best contraction so far: corrections of that size do not contract, but tremble
-    friction_left: float  # of 1, by what friction adds to what presses: with less the answer is not taken for one
+    friction_left: float  # 1 minus the loop gain of friction by normal forces: with less the solution is rejected
     newton_diverges: float  # a ratio of two corrections, the first ones, beyond which the iteration will not turn round
 
 
@@ -468,7 +468,7 @@ class Scene(Struct):
     watch_count: int
     contact_count: int  # one-sided rows
     held_count: int  # branches of expressions that are held over a step
-    angle_count: int  # of them those of atan2
+    angle_count: int  # number of these that belong to atan2
     answer_count: int  # freedoms, a ball's three turns among them
     selected_count: int  # independent closure rows
     rub_count: int  # loads of joint friction that depend on the joint's own load
@@ -486,9 +486,9 @@ class Scene(Struct):
     pivot_chosen: float  # least pivot of the closures when their rows were chosen
     pivot: float  # now
     pivot_of_step: float  # least since the step began
-    gap: float  # of the state recovered last, over all rows [m]
+    gap: float  # largest gap of the last recovered state, over all rows [m]
     lent_part: float  # root of the part of the inertias in `lents` that is lent
-    own_share: float  # least pivot of 1 - T: of the inertia in a motion, how much is not lent
+    own_share: float  # least pivot of 1 - T: share of a motion's inertia that is its own, not artificial
     pivot_recovered: float  # least of the independent rows there, as they were selected: geometry alone, squared
     load_size: float  # |D^(-1/2) e|: size of the response without closures, in the norm of M
     residual: float  # largest J Vdot + gamma of all rows there, of the terms it is the sum of
@@ -496,7 +496,7 @@ class Scene(Struct):
     freedoms: list[Freedom]
     loads: list[Load]
     closures: list[Closure]
-    parts: list[Closure]  # of those that are sums, then of the ropes among the loads
+    parts: list[Closure]  # parts of the rows that are sums, then of the ropes among the loads
     counters: list[Counter]
     variables: list[Variable]
     pieces: list[PathPiece]
@@ -507,36 +507,36 @@ class Scene(Struct):
     watches: list[Watch]
     contacts: list[Contact]
     is_angle: list[int]  # which branches are those of atan2
-    least: list[float]  # of each variable what the stages of a step saw
+    least: list[float]  # range of each variable as seen by the stages of a step
     most: list[float]
     programs: Pointer[Programs]
     indices: list[int]  # paths, answers and couplings of the closure rows
     selected: list[int]  # independent rows, ascending
     envelope: list[int]  # first coupled row of each of them
     support: list[int]  # which answers the reflectors have something of, as their numbers stand in `columns`
-    coupled: list[int]  # of the independent rows: places of earlier ones that fill them, where their couplings stand
+    coupled: list[int]  # for the independent rows: earlier rows coupled to them, at the place of their couplings
     taken: list[int]  # which answers are pivots of reflectors already
-    measure: list[float]  # of each answer in an island: 1 of a shift, 1 / length of a turn; 0: in none, or driven
+    measure: list[float]  # of each answer in an island: 1 translation, 1 / length rotation; 0: in none, or driven
     e: list[float]  # load on each freedom
     root: list[float]  # D^(-1/2) of each answer
     spread: list[float]  # one vector over all answers
     columns: list[float]  # e_r of all rows, one after the other; then the reflectors that make R of them
     R: list[float]  # R' over the independent rows, the diagonal inverted
     J: list[float]  # one island's rows of J on its freedoms, scaled
-    left: list[float]  # of each of these rows the square of what the rows chosen before have left of it
+    left: list[float]  # for each of these rows the squared remainder after the rows chosen before
     filled: list[int]  # the freedoms that the pivot row has something of
     standing: list[int]  # its rows that may yet be chosen, ascending
-    reach: list[int]  # of each row of J in which parts of the island's freedoms it has something, a bit a part
+    reach: list[int]  # for each row of J the parts of the island's degrees of freedom with entries, one bit per part
     y: list[float]  # a number an independent row
     own: list[float]  # 1 - T of the artificial inertias, and its Cholesky factor
     at_state: list[BodyAtState]  # what stands at the state whose directions are looked at
-    tangents: list[BodyTangent]  # of the bodies, along one direction
+    tangents: list[BodyTangent]  # tangents of the bodies, along one direction
     freedom_tangents: list[FreedomTangent]
     multipliers: list[float]  # at the state
-    slopes: list[float]  # of the variables of the expressions, along the direction
+    slopes: list[float]  # slopes of the variables of the expressions, along the direction
     sloping: int  # some of them are not 0
     rubs: list[int]  # the loads of joint friction that depend on the joint's own load
-    # of each cause, of each of them: the two vectors whose lengths press (kernel/joint_friction.py)
+    # for each cause and each of them: the two vectors whose lengths are normal forces (kernel/joint_friction.py)
     carried: list[float]
     kept: list[float]  # moment and force applied to each body, stored while others are solved for
     bound: list[float]  # by how much what presses one can grow by a unit of another; then its elimination

@@ -46,7 +46,7 @@ class Newton(Struct):
     tangent: Tangent  # at the start of the step
     real: Factors  # of L - h J
     pairs: tuple[Factors, Factors]
-    Z: list[list[float]]  # (stages, n): of each stage what its state is beyond the start
+    Z: list[list[float]]  # (stages, n): difference of each stage's state from the start
     known: list[list[float]]  # the same from 1 on, then the first rows of the interpolating polynomial
     W: list[list[float]]  # (stages, n): T^-1 Z, in which the equations of the stages come apart
     step: list[list[float]]  # a correction of W
@@ -69,7 +69,7 @@ class Method(Struct):
     stage: list[int]  # which stages a row combines
     coefficient: list[float]
     node: list[float]
-    collocation: Collocation  # of an implicit one
+    collocation: Collocation  # coefficients of an implicit method
 
 
 class Orbits(Struct):
@@ -82,11 +82,11 @@ class Orbits(Struct):
     chart: int  # as Method.attitude: which numbers attitudes stand in over a step
     charted: int  # the same over the stretch: 0 about the end of a step
     origin: list[float]  # the state at which a chart begins
-    states: list[list[float]]  # of each component its coefficients in Bernstein's form over the stretch
+    states: list[list[float]]  # Bernstein coefficients of each component over the interval
     slopes: list[float]  # those of a component's rate
     at: list[float]  # a state of the stretch
     kept: list[float]  # variables put aside
-    first_place: list[float]  # of each variable that is of a point: its place at the begin of a part, and its rate
+    first_place: list[float]  # for each variable of a point: its place at the start of a part, and its rate
     first_rate: list[float]
     last_place: list[float]  # at the end of it
     last_rate: list[float]
@@ -100,7 +100,7 @@ class Orbits(Struct):
 class Course(Struct):
     """The course of the coordinates over an interval of time."""
 
-    degree: int  # of their polynomials
+    degree: int  # degree of their polynomials
     late: int  # 1: events are where they are certain, not where margins are zero
     slot: int  # a branch that turns
     undecided: int  # 1: bounds left open whether all values were seen
@@ -111,12 +111,12 @@ class Course(Struct):
     event: float  # x of the event
     crossed_by: float  # an end of a part by which branches have turned ...
     crossing: float  # ... and where, somewhere before it
-    value: list[list[float]]  # of each variable its coefficients in Bernstein's form over the stretch
+    value: list[list[float]]  # Bernstein coefficients of each variable over the interval
     rate: list[list[float]]  # and those of its rate, and of the rate of that
     second: list[list[float]]
     work: list[float]
     points: Orbits  # of the points that expressions use
-    begins: list[float]  # of the parts to be looked at
+    begins: list[float]  # starts of the parts to examine
     ends: list[float]
     promise: list[float]  # and what they may hold
     before: list[float]  # branches put aside
@@ -133,28 +133,28 @@ class FollowedStep(Struct):
     pivot: float  # least of what is left of an independent row
     moved: float  # the most that any coordinate moves in the step
     energy: float  # kinetic and potential
-    travel: list[float]  # of each freedom, then each closure row: how far a unit of its drive moves any; -1: none
+    travel: list[float]  # for each freedom, then each closure row: largest motion per unit of its drive; -1: none
     reach: list[float]  # and how far any of those that turn J
-    bends: list[int]  # of each freedom, then each body that is a ball: whether it turns J
-    marks: list[float]  # of each counted angle a direction across its axis, in b
+    bends: list[int]  # for each degree of freedom, then each ball body: whether it changes J
+    marks: list[float]  # for each counted angle a direction across its axis, in b
 
 
 class Controller(Struct):
     """The lengths of the steps, and what determines them (judging.py)."""
 
     tolerance: float
-    step: float  # of a method of fixed step; 0: adaptive
+    step: float  # step of a fixed-step method; 0: adaptive
     grid: float  # the instant from which given steps are counted
     on_grid: int  # given steps done since then
     rejected_before: int  # 1: the last attempt was rejected
     proposed: float  # length of the next step
-    error: float  # of the step tried, 1 = just allowed
+    error: float  # error of the tried step, 1 = just allowed
     rate: float  # the scene's largest so far [1/s]
     energy_scale: float  # sum m size^2
     dodges: int  # other lengths tried for this step, to keep its stages off a singular pose
     best: float  # the least trouble of the lengths tried, and its length
     best_h: float
-    pivot_at_start: float  # of the closures, where the step starts
+    pivot_at_start: float  # least pivot of the closures where the step starts
 
 
 class Stiffness(Struct):
@@ -190,7 +190,7 @@ class Chart(Struct):
     y: list[float]
     z: list[float]
     K: list[list[float]]
-    ways: list[float]  # of each body, how far its attitude may turn before it leaves the chart [rad]
+    ways: list[float]  # for each body the rotation left before it leaves the chart [rad]
     nearing: float  # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
     half_turn: int  # 1 + the body whose attitude has come to the end of its chart
 
@@ -210,14 +210,14 @@ class Track(Struct):
     most: int  # room for so many
     done: int
     ends: list[float]
-    settled: list[float]  # of each whether its stages were settled
-    pivots: list[float]  # of each the least pivot of the closures
-    turned: list[float]  # of each whether branches turned at its end
-    branches: list[list[float]]  # of each the branches that were held
+    settled: list[float]  # for each step whether its stages were settled
+    pivots: list[float]  # least pivot of the closures in each step
+    turned: list[float]  # for each step whether branches changed at its end
+    branches: list[list[float]]  # branches held in each step
     passed: list[list[float]]  # at each end what the next step starts from (steps.py, write_record)
     coursed: int  # 1: the polynomials of steps that made one are put down, too
-    spans: list[list[float]]  # of each step whether it left its polynomial, its begin and its length
-    courses: list[list[float]]  # of each the state at its begin, then the rows of the polynomial, (., n)
+    spans: list[list[float]]  # for each step whether its polynomial is stored, its start and its length
+    courses: list[list[float]]  # for each step the state at its start, then the rows of the polynomial, (., n)
 
 
 class Run(Struct):

@@ -38,7 +38,7 @@ WARNED = {
         "passes through a singular pose",
         "extremes are searched without what rounding reaches beside singular poses",
     ],
-    "cradle": ["in the blow"],
+    "cradle": ["in the impact"],
 }
 EVERYTHING = frozenset({"motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses"})
 each = pytest.mark.parametrize("name", NAMES)

@@ -86,7 +86,7 @@ def test_along_a_stepped_bar() -> None:
     (THIN, AT, "", "no shape with a thickness"),
     (f"{ROUND}, {CORE}", AT, "", "overlap"),
     (f"{ROUND}, {BOX}", AT, "", "round and rectangular"),
-    (f"{BOX}, {{type: box, center: [1, 0.04, 0], size: [2, 0.05, 0.05], density: 1}}", AT, "", "180 degrees"),
+    (f"{BOX}, {{type: box, center: [1, 0.04, 0], size: [2, 0.05, 0.05], density: 1}}", AT, "", "180-degree"),
     (f"{BOX}, {{type: box, center: [1, 0.2, 0], size: [2, 0.05, 0.05], density: 1}}", AT, "", "do not touch"),
     (f"{BOX}, {{type: box, center: [1, 0.01, 0], size: [2, 0.05, 0.05], density: 1}}", AT, "", "overlap"),
     ("{type: cone, from: [0, 0, 0], to: [2, 0, 0], radius: 0.04, to_radius: 0, density: 1}",

@@ -137,9 +137,9 @@ def test_what_is_true_at_the_start_strikes_nothing(start: str, first: int) -> No
 def test_a_blow_that_does_not_strike_is_told() -> None:
     found = solved(pendulum(KNOCK.format(-J, "when: hinge.angle < -2")))
     assert not found.impulses
-    assert found.model["contacts"] == ["knock did not strike: hinge.angle < -2 did not become true"]
+    assert found.model["contacts"] == ["knock did not act: hinge.angle < -2 did not become true"]
     found = solved(pendulum(KNOCK.format(-J, "when: hinge.angle < 1")))
-    assert "is true at the start, which strikes nothing" in found.model["contacts"][0]
+    assert "is true at the start, which does not trigger it" in found.model["contacts"][0]
 
 
 def test_several_at_one_instant_act_together() -> None:

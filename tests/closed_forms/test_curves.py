@@ -362,7 +362,7 @@ def test_the_end_of_a_path(down: int, end: str, head: str) -> None:
     """A run that comes there is told so, with what the path covers; not that conditions beside it cannot be held."""
     ramp = table(lambda s: -down * s, 0.0, 3.0, 3)
     arm = "  arm: {mass: 3, center: [0.2, 0, 0], inertia: [0.1, 0.2, 0.3], points: {O: [0, 0, 0]}}"
-    with pytest.raises(SolveError, match="runs off its path, which covers travel from 0 to 3 m") as told:
+    with pytest.raises(SolveError, match="leaves its path, which covers travel from 0 to 3 m") as told:
         solved(bead("0.1", "0", ramp, "travel: 1", "[0, 2]", "arm.O", arm, head))
     (problem,) = told.value.problems
     assert problem.code == "path-ends" and problem.hint

@@ -187,7 +187,7 @@ def test_a_singular_pose_is_not_followed_through(b: float, method: object) -> No
     found = solved(text)
     assert found.model["method"] == method.name  # type: ignore[attr-defined]
     told = " ".join(found.model.get("not_reduced", ()))
-    assert ("singular pose" in told) == (method is DOP853)
+    assert ("singular position" in told) == (method is DOP853)
 
 
 def test_beyond_the_reach_is_an_error_as_before() -> None:

@@ -128,8 +128,8 @@ def test_the_model_proposes_it(kind: str) -> None:
     text = DRIVEN.replace(", stiffness: {moment: 0}", "").replace("type: line", f"type: {kind}")
     note = describe(load("shaft.yaml", text))["notes"][-1]
     more = "" if kind == "line" else " and loose as line"
-    assert note.startswith(f"determinate with stiffness: {{moment: 0}} on fixed{more}:")
+    assert note.startswith(f"statically determinate with stiffness: {{moment: 0}} on fixed{more}:")
     done = DRIVEN if kind == "line" else DRIVEN.replace("type: pin, from: ground.Q", "type: line, from: ground.Q")
     notes = describe(load("shaft.yaml", done))["notes"]
-    assert notes[-1] == "gives way, and carries no moment there: fixed"
+    assert notes[-1] == "fixed transmits no moment in its directions of zero stiffness"
     assert math.isclose(solved(done).joints["loose"]["force"][0, 2], M * G * A / B)

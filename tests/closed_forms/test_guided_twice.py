@@ -126,7 +126,7 @@ def test_the_end_of_a_path_that_closes_a_loop() -> None:
     """Told as of any other path."""
     short = "{x: [-1, 0, 1, 2], y: [-0.5, 0, 0.5, 1.0], interpolation: cubic}"
     tables = f"way: {{x: [-2, -1, 1, 2], y: [-2, -1, 1, 2], interpolation: cubic}}, short: {short}"
-    with pytest.raises(SolveError, match="joint two runs off its path, which covers travel from -1 to 2 m") as told:
+    with pytest.raises(SolveError, match="joint two leaves its path, which covers travel from -1 to 2 m") as told:
         solved(rod("x: way", "y: short", tables, "travel: 0.8, speed: 5"))
     (problem,) = told.value.problems
     assert problem.code == "path-ends" and problem.hint

@@ -48,7 +48,7 @@ def half_turn_of(scene: str, **options: object) -> SolveError:
 def test_a_spin_comes_to_its_half_turn_at_pi() -> None:
     error = half_turn_of(spinner(f"[{2 * math.pi}]"), reduce=False)
     assert error.reached == pytest.approx(math.pi, abs=1e-11)
-    assert "at t = 3.14159265 s: wheel comes to a half turn from its drawn attitude" in error.problems[0].message
+    assert "at t = 3.14159265 s: wheel reaches half a revolution from its start orientation" in error.problems[0].message
     assert "DOP853-recentred" in str(error.problems[0].hint)
 
 
@@ -102,7 +102,7 @@ def test_heavy_top(reduce: bool) -> None:
 def test_the_body_is_named_and_the_model_says_how_attitudes_are_held() -> None:
     error = half_turn_of(double("{duration: 2, samples: 3}"))
     assert "t = 1.9459297" in error.problems[0].message
-    assert "upper comes to a half turn" in error.problems[0].message
+    assert "upper reaches half a revolution" in error.problems[0].message
     found = study(double("{duration: 1, samples: 3}"), method=ANEW).results.model
     assert found["method"] == ANEW
     assert any("Rodrigues" in reason for reason in found["reasons"])

@@ -123,7 +123,7 @@ def test_taut_ropes_are_struck(impacts: str, wanted: list[float]) -> None:
     near([found.bodies[f"b{k}"]["velocity"][0, 0] for k in range(3)], wanted, 1.0, 1e-13)
     near(found.impulses[0]["energy_after"], 0.5 * sum(v * v for v in wanted), 1.0, 1e-13)
     (told,) = found.model["contacts"]
-    assert "r0 and r1 share the blow" in told and f"impacts: {impacts}" in told
+    assert "r0 and r1 share the impulse" in told and f"impacts: {impacts}" in told
     assert len(found.warnings) == 1 and f"impacts: {impacts}" in found.warnings[0]
     assert found.model["impacts"] == impacts
 
@@ -171,7 +171,7 @@ def test_a_bar_falls_flat_on_two_posts(impacts: str) -> None:
     near(blow["bodies"]["bar"]["center_velocity_jump"], [0.0, 3.0, 0.0], 3.0, 1e-13)
     near(blow["bodies"]["bar"]["angular_velocity_jump"], [0.0, 0.0, 0.0], 3.0, 1e-13)
     near([blow["stops"][name]["force"] for name in ("left", "right")], [4.5, 4.5], 4.5, 1e-13)
-    assert "left and right share the blow" in found.model["contacts"][0]
+    assert "left and right share the impulse" in found.model["contacts"][0]
 
 
 MIDDLE = POSTS.replace("stops:", "  c: {type: rod, from: ground.C, to: bar.c}\nstops:").replace(
@@ -214,7 +214,7 @@ stops:
 analysis: {duration: 0.01, samples: 2}
 """).results
     assert found.impulses[0]["names"] == ["p", "q"] and not found.warnings
-    assert found.model["contacts"] == ["at t = 0 s p and q are struck at once, and do not load each other"]
+    assert found.model["contacts"] == ["at t = 0 s p and q impact at the same time, and do not load each other"]
 
 
 def test_both_sides_are_struck_without_a_word_on_energy() -> None:
@@ -222,14 +222,14 @@ def test_both_sides_are_struck_without_a_word_on_energy() -> None:
     run = balls([1.0] * 3, [1.0, 0.0, -1.0], [1.0, 1.0], "simultaneous")
     near(speeds(run, 3), [-1.0, 0.0, 1.0], 1.0, 1e-13)
     (told,) = run.results.model["contacts"]
-    assert "energy" not in told and "s0 and s1 share the blow" in told
+    assert "energy" not in told and "s0 and s1 share the impulse" in told
 
 
 def test_ropes_without_restitution_and_latches_are_said_too() -> None:
     """What a blow meets as held both ways shares it as well; two ropes on two masses, one impulse."""
     held = ROPES.replace(", restitution: 1", "")
     found = study(held.replace("IMPACTS", "simultaneous")).results
-    assert "r0 and r1 are held both ways" in found.model["contacts"][0] and found.warnings
+    assert "r0 and r1 act in both directions" in found.model["contacts"][0] and found.warnings
     latched = study("""
 heun: 1
 space: planar

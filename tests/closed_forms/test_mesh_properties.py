@@ -111,10 +111,10 @@ def test_why_there_are_none() -> None:
     channel = t.prism(U, U_CAP, 1.0)
     assert "shear forces may twist it" in cut(channel, X, Y, 0.5)  # type: ignore[operator]
     assert "has 2 parts" in cut(channel, Z, Y, 2.0)  # type: ignore[operator]
-    assert cut(t.box(), X, Y, 2.0) == "no shape with a thickness is cut"
+    assert cut(t.box(), X, Y, 2.0) == "the cut meets no shape with a thickness"
     far: Vec = (0.5, 9.0, 0.0)
     other = Shape("box", center=far, size=(1.0, 1.0, 1.0), density=1.0)
-    assert "together with other shapes" in cut(t.box(), X, Y, 0.5, other)  # type: ignore[operator]
+    assert "a mesh and other shapes" in cut(t.box(), X, Y, 0.5, other)  # type: ignore[operator]
 
 
 SCENE = """heun: 1

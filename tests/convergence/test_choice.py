@@ -80,7 +80,7 @@ def test_looking_at_events_changes_no_bit(name: str) -> None:
         ("double", 1e-9, "DOP853"), ("double", 3e-11, "DOP853"), ("double", 1e-11, "Verner98"),
         ("double", 1e-12, "Verner98"), ("struck_door", 1e-12, "DOP853"), ("press", 1e-12, "DOP853"),
         ("lamp", 1e-12, "DOP853"),
-        ("whirling_rod", 1e-12, "none: every instant is solved by itself"),
+        ("whirling_rod", 1e-12, "none: each instant is solved separately"),
     ],
 )  # fmt: skip
 def test_small_tolerances_take_order_nine_where_nothing_ends_steps(name: str, tolerance: float, method: str) -> None:

@@ -98,7 +98,7 @@ def test_between_the_asked_instants(method: str) -> None:
 def test_what_they_do_not_run_is_refused_by_name(more: str, told: str) -> None:
     """By an option before anything moves; written in the spec by its place, where validate sees it."""
     text = BAR.format(more=more)
-    with pytest.raises(SpecError, match="SciPy-BDF does not run") as caught:
+    with pytest.raises(SpecError, match="SciPy-BDF does not support") as caught:
         solve(load("scene.yaml", text), Options(method="scipy-bdf"))
     assert told in caught.value.problems[0].message
     with pytest.raises(SpecError, match="SciPy-BDF cannot solve") as read:

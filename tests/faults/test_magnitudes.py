@@ -79,7 +79,7 @@ analysis: {duration: 1, samples: 3, method: RK4, step: 0.1}
     ("run", BEAM, 3, "[no-inertia]"),
     ("probe", PUSHED, 0, ""),
     ("run", STUCK, 0, ""),
-    ("run", UNSTABLE, 3, "too large to be computed with"),
+    ("run", UNSTABLE, 3, "too large for the computation"),
     ("run", DRIVEN, 3, "<stdin>:12:40: drives.screw.travel: at t = 0 s the acceleration of '2e256*(1"),
     ("run", GROWING.replace("LOAD", "1e55"), 3, "angular acceleration of bodies.a is 5e+64, too large"),
     ("run", GROWING.replace("LOAD", "1e40*1e30*(1 + t)"), 3, "<stdin>:5:45: forces.f.value: at t = 0 s '1e40*1e30"),

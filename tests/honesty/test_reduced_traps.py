@@ -254,7 +254,7 @@ def test_a_crank_as_long_as_its_rod() -> None:
     """In the folded pose another motion branches off: what is followed comes no nearer, what is integrated goes on."""
     both = pair(load("scene.yaml", EQUAL))
     same(both)
-    assert any("singular pose" in why for why in both.small.results.model["not_reduced"])
+    assert any("singular position" in why for why in both.small.results.model["not_reduced"])
 
 
 @pytest.mark.heavy

@@ -51,7 +51,7 @@ def test_folded_it_goes_on_as_well_as_it_can() -> None:
 def test_a_lock_is_still_a_lock() -> None:
     """A rod too short to pass: no coarser run makes it fit."""
     text = slider_crank(0.3, 0.9, "drives: {m: {joint: A, angle: 2*t}}\nanalysis: {duration: 2, samples: 21}")
-    with pytest.raises(SolveError, match="cannot be held together"):
+    with pytest.raises(SolveError, match="cannot be assembled"):
         solved(text.replace("    MOVES\n", ""))
 
 

@@ -141,9 +141,9 @@ def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
 @pytest.mark.parametrize(
     ("law", "said"),
     [
-        ("-10*sqrt(g.travel)", "has no slope there"),
-        ("-10*abs(g.travel)", "jumps or bends there"),
-        ("-10*sign(g.speed)", "jumps or bends there"),
+        ("-10*sqrt(g.travel)", "has no derivative there"),
+        ("-10*abs(g.travel)", "has a jump or kink there"),
+        ("-10*sign(g.speed)", "has a jump or kink there"),
     ],
 )
 def test_where_a_load_has_no_derivative_there_are_no_matrices(law: str, said: str) -> None:

@@ -107,7 +107,7 @@ def test_at_the_flat_pose_it_is_open() -> None:
     found = solved(windows(2, math.pi / 2, 1.0))
     for k in range(3):
         assert np.isnan(found.joints[f"G{k}"]["force"][0]).tolist() == [True, False, True]
-    assert any(w.startswith("singular pose at t = 0") for w in found.warnings)
+    assert any(w.startswith("singular position at t = 0") for w in found.warnings)
     with pytest.raises(np.linalg.LinAlgError):
         np.linalg.cholesky(normal_equations(*np.split(upright(2, math.pi / 2), 2), 2)[0])
 

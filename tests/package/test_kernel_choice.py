@@ -74,7 +74,7 @@ def test_it_is_there(wish: str, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("wish", ["", "pure", "require"])
 def test_modules_that_an_older_heun_compiled_are_not_mixed_in(wish: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(form, "FILES", frozenset({"steps.py", "steps.abi3.so", f"compiled{EXTENSION_SUFFIXES[0]}"}))
-    with pytest.raises(form.KernelError, match=r"steps\.abi3\.so, 1 in all.*\[stale-kernel\]"):
+    with pytest.raises(form.KernelError, match=r"steps\.abi3\.so, 1 in total.*\[stale-kernel\]"):
         form.choose_form(wish)
 
 
@@ -106,7 +106,7 @@ def test_a_kernel_compiled_from_older_text_is_not_run(tmp_path: Path) -> None:
     os.utime(source, (tomorrow, tomorrow))
     run = version_of(tmp_path)
     assert (run.returncode, run.stdout) == (2, "")
-    assert "the compiled kernel is older than its text: tree.py changed since [stale-kernel]" in run.stderr
+    assert "the compiled kernel is older than its source: tree.py changed since [stale-kernel]" in run.stderr
     assert "python -m heuncli.build" in run.stderr and "HEUN_KERNEL=pure" in run.stderr
     (tmp_path / "pyproject.toml").unlink()  # as it is where heun is installed
     assert version_of(tmp_path).returncode == 0
@@ -121,7 +121,7 @@ def test_a_message_names_some_of_what_was_edited(monkeypatch: pytest.MonkeyPatch
 
 
 def test_an_unknown_wish_is_an_error() -> None:
-    with pytest.raises(form.KernelError, match=r"'fast'; known: pure, compiled, require \[unknown-kernel\]"):
+    with pytest.raises(form.KernelError, match=r"'fast'; accepted: pure, compiled, require \[unknown-kernel\]"):
         form.choose_form("fast")
 
 

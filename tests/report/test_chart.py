@@ -80,7 +80,7 @@ def test_the_table_marks_the_front_bounds_and_failures_within_a_page() -> None:
     lines = text.splitlines()
     assert max(map(len, lines)) <= DEFAULT_WIDTH
     assert any("0.01 s" in line and "fails at t = 0.25 s [not-a-number]" in line for line in lines)
-    assert "  [not-a-number] Euler: no finite acceleration exists beyond this instant" in lines
+    assert "  [not-a-number] Euler: no finite acceleration exists after this instant" in lines
     assert any("1e-9 s" in line.replace("1e-09", "1e-9") and "not run: about 2e9 steps" in line for line in lines)
     assert any(line.split()[:3] == ["*", "1e-6", "1"] and "1.5e-06" in line and "3.0e-06" in line for line in lines)
     assert any("≤2.0e-13" in line for line in lines) and "≤: the run differs" in text

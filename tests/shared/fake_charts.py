@@ -29,7 +29,7 @@ def chart(*runs: ChartRun, reference: Reference = REFERENCE) -> ChartResults:
 
 FAILS = ChartRun(
     ChartRow("Euler", "quaternion", True, 0.01), FAILED, 1e-4, failure_time=0.25, code="not-a-number",
-    reason="at t = 0.25 s: no finite acceleration exists beyond this instant",
+    reason="at t = 0.25 s: no finite acceleration exists after this instant",
 )  # fmt: skip
 TOO_LONG = ChartRun(
     ChartRow("Euler", "quaternion", True, 1e-9), NOT_RUN, 9e3, code="too-long", reason="about 2e9 steps, 9e+03 s"

@@ -107,4 +107,4 @@ def test_what_does_not_fit_is_refused(text: str, code: str, told: str) -> None:
 def test_values_have_no_units_inside() -> None:
     with pytest.raises(Finding, match="not expected") as caught:
         compile_expression("guide.travel - 20 mm", SCOPE)
-    assert "units do not stand inside expressions: write 0.02" in str(caught.value.hint)
+    assert "units are not allowed inside expressions: write 0.02" in str(caught.value.hint)

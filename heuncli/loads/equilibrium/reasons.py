@@ -13,12 +13,12 @@ from heuncli.results.results import Array
 
 CODE = "no-rest-pose"
 MAX_NAMES = 3
-HOLD_HINT = "hold it by a joint, a spring or a stop, or leave it out"
+HOLD_HINT = "constrain it by a joint, a spring or a stop, or leave it out"
 
 
 def no_rest_problem(message: str, hint: str) -> Problem:
     """Make a problem of this kind."""
-    return Problem(CODE, f"no rest pose: {message}", hint=hint)
+    return Problem(CODE, f"no rest position: {message}", hint=hint)
 
 
 def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Array) -> Problem:
@@ -32,17 +32,21 @@ def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Ar
     for k in np.flatnonzero(distances >= 0.5 * distances.max()).tolist():
         name, turns = coordinates.find_owner(k)
         if turns:
-            sentences[f"{name} turns on and on"] = None
+            sentences[f"{name} rotates without end"] = None
         elif name.startswith("bodies."):
             falls = displacement[find_free_shifts(coordinates, k)] @ gravity > 0.0
-            sentences[f"{name} {'falls' if falls else 'moves on and on'}"] = None
+            sentences[f"{name} {'falls' if falls else 'moves without end'}"] = None
         else:
-            sentences[f"{name} slides on and on"] = None
+            sentences[f"{name} slides without end"] = None
     clauses = list(sentences)
     more = f" and {len(clauses) - MAX_NAMES} more" if len(clauses) > MAX_NAMES else ""
     has_thread_friction = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
-    hint = f"{HOLD_HINT}; a self-locking thread creeps, and holds nothing at rest" if has_thread_friction else HOLD_HINT
-    return no_rest_problem(f"{', '.join(clauses[:MAX_NAMES])}{more}: nothing holds it", hint)
+    hint = (
+        f"{HOLD_HINT}; friction of a self-locking thread creeps, so it holds nothing at rest"
+        if has_thread_friction
+        else HOLD_HINT
+    )
+    return no_rest_problem(f"{', '.join(clauses[:MAX_NAMES])}{more}: nothing stops it", hint)
 
 
 def find_free_shifts(coordinates: Coordinates, number: int) -> Array:
@@ -66,10 +70,10 @@ def endless_search_problem(coordinates: Coordinates, pose: Pose, steps: int) -> 
     x, y, z = states.centre[0, k]
     name = layout.mechanism.bodies[k].name
     message = (
-        f"the search did not end in {steps} steps; it was where the centre of bodies.{name} is at "
-        f"({x:.6g}, {y:.6g}, {z:.6g}) m, with {remaining_forces[k]:.3g} N left there"
+        f"the search did not converge in {steps} steps; at the last one the mass centre of bodies.{name} is at "
+        f"({x:.6g}, {y:.6g}, {z:.6g}) m, with an unbalanced force of {remaining_forces[k]:.3g} N"
     )
-    hint = "loads that jump where they should hold (sign, step)? start nearer to the pose, or run a motion with dampers"
+    hint = "do loads jump (sign, step)? smooth them, start nearer to the rest position, or run a motion with dampers"
     return no_rest_problem(message, hint)
 
 
@@ -79,8 +83,8 @@ def jumping_load_problem(coordinates: Coordinates, pose: Pose, shape: Array) -> 
     """
     name, _ = coordinates.find_owner(int(np.argmax(np.abs(shape) * coordinates.weights)))
     remaining = float(np.abs(pose.accelerations * coordinates.weights).max())
-    message = f"{name} is driven to where a load jumps, from both sides; nothing holds it there by itself"
-    hint = f"give the jump a width, tanh(x/0.001) in place of sign(x); {remaining:.3g} 1/s² is left there"
+    message = f"{name} is driven from both sides to a jump of a load; it is in equilibrium on neither side"
+    hint = f"smooth the jump: tanh(x/0.001) instead of sign(x); unbalanced acceleration {remaining:.3g} 1/s²"
     return no_rest_problem(message, hint)
 
 
@@ -90,15 +94,15 @@ def singular_pose_problem(coordinates: Coordinates, pose: Pose) -> Problem:
     left_out = [r for r in range(len(layout.rows)) if rows["closed"][0, r] > rows["chosen"][0, r]]
     names = dict.fromkeys(layout.mechanism.owner_path(layout.rows[r]) for r in left_out)
     through = f" through {' and '.join(names)}" if names else ""
-    message = f"the way there ends where the closed chain{through} is stretched, folded or flat: a singular pose"
-    return no_rest_problem(message, "from there it may go on in more than one way: limit it by a stop before that pose")
+    message = f"the search ends at a singular position: the closed loop{through} is stretched, folded or flat"
+    return no_rest_problem(message, "more than one motion is possible from there: add a stop before that position")
 
 
 def no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
     """Make the problem of loads without a value, or a slope, where the search is; change (k, f): near the pose."""
-    what = "value" if not np.isfinite(change).all() else "slope"
+    what = "value" if not np.isfinite(change).all() else "derivative"
     layout = coordinates.layout
     loads = [load_path(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
     which = f" ({', '.join(loads[:MAX_NAMES])})" if loads else ""
-    message = f"the search came to where a load{which} has no {what}: a root, a logarithm, points that coincide"
-    return no_rest_problem(message, "start nearer to the pose, or give the load a value on both sides")
+    message = f"the search reached a position where a load{which} has no {what}: a root, a logarithm, coincident points"
+    return no_rest_problem(message, "start nearer to the rest position, or give the load a value on both sides")

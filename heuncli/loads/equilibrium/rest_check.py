@@ -14,7 +14,7 @@ from heuncli.loads.equilibrium.slopes import acceleration_rounding, spring_round
 from heuncli.motion.integration.evaluator import Evaluator
 
 PERTURBED_POSES = 4  # poses moved by rounding
-HINT = "start nearer to the pose, or run a motion with dampers, which comes to rest there"
+HINT = "start nearer to the rest position, or run a motion with dampers until it comes to rest"
 
 
 def require_at_rest(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> None:

@@ -23,7 +23,7 @@ from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.shapes.rotations import quaternion_from_matrix, quaternion_product, rotation_matrix_about
 
 SAMPLE_TIMES = (0.0, 1e-3, 0.0317, 0.618, 1.0, 2.718, 14.14, 99.7)  # s; a rate equal at all of them is constant
-HINT = "weight across the axis, a spring to the ground? run a motion"
+HINT = "does weight act across the axis, or a spring to the ground? run a motion"
 PHASES = (0.37, 1.13, 2.71)  # motion of the drives until the next check: rad, or relative to the size
 
 
@@ -36,8 +36,8 @@ def require_constant(mechanism: Mechanism) -> None:
     ]
     for law in mechanism.laws:
         if not has_constant_rate(law.value):
-            hint = "a constant, or a constant rate: nothing rests beside what speeds up"
-            problems.append(no_rest_problem(f"{law.path} does not go on at a constant rate", hint))
+            hint = "use a constant, or a constant rate: no equilibrium exists relative to an accelerating drive"
+            problems.append(no_rest_problem(f"{law.path} does not have a constant rate", hint))
     if problems:
         raise SolveError(*problems)
 
@@ -70,7 +70,7 @@ def require_common_motion(evaluator: Evaluator, coordinates: Coordinates, pose: 
     if change.max(initial=0.0) > tolerances.STEADY * largest:
         name, _ = coordinates.find_owner(int(np.argmax(change)))
         drives = " and ".join(rates)
-        hint = "a rest needs drives that stand still, or that turn all that hangs on them as one; run a motion"
+        hint = "equilibrium needs drives at rest, or drives that move all connected bodies as one; run a motion"
         raise SolveError(no_rest_problem(f"{drives} {'keeps' if len(rates) == 1 else 'keep'} {name} moving", hint))
 
 
@@ -93,12 +93,12 @@ def require_steady(evaluator: Evaluator, coordinates: Coordinates, pose: Pose, l
         if (remaining > 0.0).any():
             worst = int(np.argmax(np.abs(law.T @ law.V[:, int(np.argmax(remaining))])))
             message = f"{coordinates.find_owner(worst)[0]} does not stay at rest in the frame that {drives} moves"
-            raise SolveError(no_rest_problem(f"{message}: loads do not go along with it", HINT))
+            raise SolveError(no_rest_problem(f"{message}: loads do not move with that frame", HINT))
         place = find_changed_body(pose.evaluation, later, evaluator.size)
         if place >= 0:
             layout = evaluator.layout
             name = layout.mechanism.bodies[layout.spanning.links[place].body].name
-            message = f"what bodies.{name} carries changes as {drives} goes on: loads do not go along with it"
+            message = f"the load of bodies.{name} changes as {drives} moves: loads do not move with that frame"
             raise SolveError(no_rest_problem(message, HINT))
 
 

@@ -107,7 +107,7 @@ def find_one_sided(cut: CutForm, side: float) -> CutProperties:
     is_met = np.array([figure.is_met for figure in figures], dtype=bool).reshape(len(figures), len(cut.d))
     count = is_met.sum(axis=0)
     groups: list[CutGroup] = []
-    missing = {int(k): "no shape with a thickness is cut" for k in np.flatnonzero(count == 0)}
+    missing = {int(k): "the cut meets no shape with a thickness" for k in np.flatnonzero(count == 0)}
     for figure, is_own in zip(figures, is_met, strict=True):
         is_alone = is_own & (count == 1)
         if isinstance(figure, UnknownFigure):
@@ -156,7 +156,7 @@ def combine_figures(figures: Sequence[Figure], k: int, cut: CutForm) -> tuple[st
     if unknown is not None:
         return unknown
     if any(isinstance(figure, ProfileFigure) for figure in figures):
-        return "a mesh is cut together with other shapes, and whether they touch is not known"
+        return "the cut meets a mesh and other shapes, and heun cannot tell whether they touch"
     tolerance = tolerances.TOUCHING * cut.form.tolerance
     rounds = [figure for figure in figures if isinstance(figure, RoundFigure)]
     rectangles = [figure for figure in figures if isinstance(figure, RectangleFigure)]
@@ -164,20 +164,20 @@ def combine_figures(figures: Sequence[Figure], k: int, cut: CutForm) -> tuple[st
         return combine_rings(rounds, k, tolerance)
     if len(rectangles) == len(figures):
         return combine_rectangles(rectangles, k, cut, tolerance)
-    return "round and rectangular shapes are cut together"
+    return "the cut meets round and rectangular shapes"
 
 
 def combine_rings(rounds: Sequence[RoundFigure], k: int, tolerance: float) -> tuple[str, SectionValues] | str:
     """Combine concentric circles and rings, each as wide as the hole of the next."""
     centers = np.array([figure.center[k] for figure in rounds])
     if np.sqrt(np.sum((centers - centers[0]) ** 2, axis=1)).max() > tolerance:
-        return "round shapes are cut that have not one centre"
+        return "the cut round shapes are not concentric"
     radii = sorted((float(figure.inner[k]), float(figure.outer[k])) for figure in rounds)
     for (_, outer), (inner, _) in pairwise(radii):
         if inner < outer - tolerance:
-            return "the shapes that are cut overlap"
+            return "the cut shapes overlap"
         if inner > outer + tolerance:
-            return "the shapes that are cut do not touch"
+            return "the cut shapes do not touch"
     inner, outer = radii[0][0], radii[-1][1]
     return ("circle", {"radius": outer}) if inner <= 0.0 else ("tube", {"radius": outer, "inner_radius": inner})
 
@@ -192,21 +192,21 @@ def combine_rectangles(
     gap = np.abs(middle[:, None] - middle) - 0.5 * (size[:, None] + size)  # along e1 and e2, < 0 where they overlap
     others = ~np.eye(len(size), dtype=bool)
     if (others & (gap < -tolerance).all(axis=2)).any():
-        return "the shapes that are cut overlap"
+        return "the cut shapes overlap"
     # they touch along a side: at a mere corner they would not hold together
     is_touching = (gap <= tolerance).all(axis=2) & (gap < -tolerance).any(axis=2)
     is_linked = np.linalg.matrix_power((is_touching | ~others).astype(float), len(size)) > 0.0
     if not is_linked.all():
-        return "the shapes that are cut do not touch"
+        return "the cut shapes do not touch"
     A = size.prod(axis=1)
     area = float(A.sum())
     offsets = middle - (A @ middle) / area
     I2, I1 = (float(A @ (size[:, i] ** 2 / 12.0 + offsets[:, i] ** 2)) for i in (0, 1))
     product_moment = float(A @ (offsets[:, 0] * offsets[:, 1]))
     if abs(product_moment) > tolerances.PRINCIPAL * np.sqrt(I1 * I2):
-        return "e1 and e2 are not the principal axes of the shapes that are cut together"
+        return "e1 and e2 are not principal axes of the combined cut shapes"
     if not is_point_symmetric(offsets, size, tolerance):
-        return "shear forces twist the shapes that are cut together, which are not the same turned by 180 degrees"
+        return "shear forces twist the combined cut shapes, because they lack 180-degree rotational symmetry"
     c1, c2 = (np.abs(offsets) + 0.5 * size).max(axis=0).tolist()
     J = sum(torsion_constant(*one) for one in size.tolist())
     return "general", {"area": area, "I1": I1, "I2": I2, "J": J, "c1": c1, "c2": c2}

@@ -190,10 +190,10 @@ def _make_section_cuts(
     else:
         if s[-1] <= MIN_RUN_FACTOR * plane_tolerance:
             message = (
-                f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by "
+                f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are distinct only beyond "
                 f"{plane_tolerance:.3g} m"
             )
-            raise SpecError(Problem("short-run", message, location, hint="is the body's largest coordinate right?"))
+            raise SpecError(Problem("short-run", message, location, hint="check the body's largest coordinate"))
         selected, side = _choose_run_sides(jumps)
         points, s, d = points[selected], s[selected], d[selected]
     reach = (
@@ -236,8 +236,8 @@ def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
     if missing:
         k = min(missing, key=lambda k: float(cut_form.d[k]))
         where = f" at s = {float(cut_form.d[k] - cuts.points[0] @ cuts.n):.6g} m" if cuts.s is not None else ""
-        hint = "give them: circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut square to the bar"
-        message = f"properties: auto cannot be taken from the shapes{where}: {missing[k]}"
+        hint = "give them: circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut at right angles to the bar"
+        message = f"properties: auto cannot be determined from the shapes{where}: {missing[k]}"
         raise SpecError(Problem("no-properties", message, location, hint=hint))
 
 
@@ -263,7 +263,7 @@ def _plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> f
 def _missing_side_problem(names: list[str], location: SourceLocation) -> Problem:
     """Make the problem of a single cut with something in its plane and no side given."""
     what = " and ".join(names) if names else "a point mass or rod of the body"
-    hint = "add side: before (the cut just before it, so that it belongs to the piece) or side: beyond"
+    hint = "add side: before (cut just before it, so that it belongs to the far side) or side: beyond"
     return Problem(
         "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", location, hint
     )
@@ -318,15 +318,15 @@ def _make_pieces(
     warnings = []
     if is_empty.any():
         meets = f"{int(is_empty.sum())} of {len(d)} cuts meet" if is_run else "the plane meets"
-        where = "" if section.properties is None else ", and stresses are about the cut's point"
-        what = f"{meets} no material of the body {section.body}; the loads are those of what lies beyond{where}"
+        where = "" if section.properties is None else ", and stresses refer to the cut's point"
+        what = f"{meets} no material of the body {section.body}; the loads are those of the far side{where}"
         warnings.append(f"sections.{name}: {what}")
     if (cross_sections.regions > 1).any():
         most = int(cross_sections.regions.max())
         what = f"meets the body {section.body} in {most} separate places; the loads are their sum"
         warnings.append(f"sections.{name}: the plane {what}")
     if form.has_rod_in_plane(n, d).any():
-        what = f"runs along a rod of the body {section.body}; the rod's mass lies on the side chosen"
+        what = f"runs along a rod of the body {section.body}; the rod's mass counts to the chosen side"
         warnings.append(f"sections.{name}: the plane {what}")
     centroids = np.where(is_empty[:, None], points, cross_sections.centroid)
     return form.piece_inertias(n, d, side), centroids, tuple(warnings)
@@ -345,10 +345,10 @@ def _require_body(
     outside = d[(d < min(low, reach[0])) | (d > max(high, reach[1]))]
     if len(outside):
         lies = float(outside[0])
-        hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane lies at {lies:.6g} m"
+        hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane is at {lies:.6g} m"
         raise SpecError(Problem("misses-body", f"{what} does not meet the body {section.body}", location, hint))
     if len(d) and section.reduce_to == "centroid":
-        message = f"{what} meets no material of the body {section.body}, and so has no centroid"
+        message = f"{what} meets no material of the body {section.body}, so it has no centroid"
         raise SpecError(
             Problem("misses-body", message, location, hint="take moments about the cut's point: reduce_to: at")
         )

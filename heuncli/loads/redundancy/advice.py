@@ -46,7 +46,7 @@ def propose_replacements(scene: PreparedScene, model: Block) -> list[str]:
             break
         if _count_remaining(scene, replacements, model) == 0:
             return [
-                f"determinate with {format_replacements(scene, replacements, ' and ')}: the same "
+                f"statically determinate with {format_replacements(scene, replacements, ' and ')}: the same "
                 "motion, and no reaction is open"
             ]
     return propose_stepwise(scene, choices, model, redundant)
@@ -64,14 +64,16 @@ def propose_stepwise(scene: PreparedScene, choices: Choices, model: Block, redun
                 replacements[k], redundant_left = replacement, trial
                 break
     if not replacements:
-        return ["no looser joints were found that leave less open; `stiffness` on the joints concerned makes a split"]
+        return [
+            "no joints with fewer constraints reduce the indeterminacy; `stiffness` on these joints splits the load"
+        ]
     if redundant_left == 0:
         return [
-            f"determinate with {format_replacements(scene, replacements, ', ')}: the same motion, and "
+            f"statically determinate with {format_replacements(scene, replacements, ', ')}: the same motion, and "
             "no reaction is open"
         ]
-    rest = f"{redundant_left} of {redundant} are left; for those give joints their `stiffness`"
-    return [f"with {format_replacements(scene, replacements, ', ')} only {rest}"]
+    rest = f"{redundant_left} of {redundant} redundant constraints remain; for those give joints a `stiffness`"
+    return [f"with {format_replacements(scene, replacements, ', ')}, {rest}"]
 
 
 def find_choices(scene: PreparedScene) -> Choices:

@@ -134,19 +134,19 @@ def describe_singular_poses(stress: SelfStress, times: Array, redundant: Array) 
             " ..." if len(extra_instants) > 5 else ""
         )
         when = "this instant" if len(extra_instants) == 1 else "these instants"
-        sentences.append(f"singular pose at t = {times_text} s: some components are indeterminate at {when} only")
+        sentences.append(f"singular position at t = {times_text} s: some components are indeterminate at {when} only")
     near_values = np.where(stress.count <= redundant, stress.largest_dropped, 0.0)
     if near_values.max(initial=0.0) > tolerances.NEARLY_DEPENDENT:
         sentences.append(
-            f"some conditions of the joints depend on others within {near_values.max():.1e} only: they are taken as "
-            "redundant; exactly as drawn, they would hold one freedom more"
+            f"some joint constraints depend on others only to within {near_values.max():.1e}: treated as "
+            "redundant; exactly as specified they would remove one more degree of freedom"
         )
     near_instants = np.flatnonzero((stress.least < tolerances.NEARLY_SINGULAR) & (stress.count <= redundant))
     if len(near_instants):
         k = near_instants[int(np.argmin(stress.least[near_instants]))]
         sentences.append(
-            f"nearly singular pose at t = {times[k]:.6g} s (smallest singular value {stress.least[k]:.1e}): "
-            "reactions grow there without bound, their error by as much"
+            f"nearly singular position at t = {times[k]:.6g} s (smallest singular value {stress.least[k]:.1e}): "
+            "reactions and their errors grow without bound there"
         )
     return sentences
 

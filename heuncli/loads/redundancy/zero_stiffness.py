@@ -81,7 +81,7 @@ def describe_yielding(joints: Sequence[Joint], maps: Sequence[Array]) -> tuple[s
             ("force", "moment"), joint.stiffness, (vanishing_map[:, :3], vanishing_map[:, 3:]), strict=True
         ):
             if rows.any():
-                sentences.append(f"gives way, and carries no {name} there: {joint.name}")
+                sentences.append(f"{joint.name} transmits no {name} in its directions of zero stiffness")
             elif (k == 0.0).any():
-                sentences.append(f"gives way to {name}s, but nothing else holds there: {joint.name} carries them")
+                sentences.append(f"{joint.name} transmits {name}s despite zero stiffness, because no other joint does")
     return tuple(sentences)

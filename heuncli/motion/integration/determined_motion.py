@@ -10,11 +10,11 @@ from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.multibody.tree.held_speeds import find_speed_rows
 from heuncli.results.results import Block
 
-BY_DRIVES = "nothing is integrated: the drives leave no freedom, every instant follows from them and what closes chains"
-BY_JOINTS = "nothing is integrated: the joints leave no freedom, nothing can move"
-SINGULAR = "integrated, though the drives leave no freedom: on the way lies a singular pose, as a dead centre is"
-CONTACTS = "integrated, though nothing is free: a rope or a stop may open and close"
-ROLLS = "integrated, though nothing is free: what rolls has its speeds determined at each instant, and no pose"
+BY_DRIVES = "motion fully prescribed: solved at each instant, nothing integrated"
+BY_JOINTS = "nothing can move: the joints leave 0 degrees of freedom, nothing integrated"
+SINGULAR = "integrated despite 0 degrees of freedom: the motion passes a singular position, such as a dead centre"
+CONTACTS = "integrated despite 0 degrees of freedom: a rope or a stop may open and close"
+ROLLS = "integrated despite 0 degrees of freedom: rolling determines speeds at each instant, not positions"
 
 
 @record

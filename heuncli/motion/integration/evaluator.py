@@ -94,7 +94,7 @@ class Evaluator:
         if not self.layout.contacts:
             return np.zeros(0)
         if self.closed_at_start is None:
-            raise ValueError("which contacts are closed at the start was not handed in")
+            raise ValueError("closed_at_start is required for a model with contacts")
         return self.closed_at_start(self)
 
     def allowed_residual(self, gap: Array) -> Array:

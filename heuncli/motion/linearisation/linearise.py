@@ -68,7 +68,7 @@ def linearise(layout: Layout, t: float, state: Array, holding: Array | None = No
     Raises ValueError for a state of another layout, because the compiled kernel does not check the length.
     """
     if len(state) != layout.n_state:
-        message = f"a state of {layout.n_state} numbers is wanted, one of {len(state)} was given"
+        message = f"expected a state of {layout.n_state} numbers, found {len(state)}"
         raise ValueError(message)
     workspace = make_workspace(layout, None if holding is None else layout.closed_contacts(holding))
     projected_state, poses = settle_state(workspace, layout, t, state)

@@ -59,8 +59,8 @@ def reduce_equations(scene: PreparedScene, linear: LinearisedEquations, evaluati
     try:
         normalisation = np.linalg.inv(np.linalg.cholesky(T.T @ linear.mass @ T)).T
     except np.linalg.LinAlgError:
-        message = "the inertias of some motions are so small beside those of others that rounding hides them"
-        hint = "look at the largest and the smallest masses and lengths; leave out, or weld, what hardly matters"
+        message = "the inertias of some motions are so small compared with others that rounding hides them"
+        hint = "check the largest and smallest masses and lengths; leave out or weld negligible bodies"
         raise SolveError(Problem("mass-ratios", message, hint=hint)) from None
     T, S = T @ normalisation, linear.drift @ massive @ normalisation
     for spin in massless_spins:

@@ -72,9 +72,9 @@ def orthonormaliser(linear: LinearisedEquations, columns: Array) -> Array:
     try:
         return np.asarray(np.linalg.inv(np.linalg.cholesky(columns.T @ linear.mass @ columns)).T)
     except np.linalg.LinAlgError:
-        message = "some motions have no inertia: they are not told from none"
+        message = "some motions have no inertia and cannot be distinguished from no motion"
         raise SolveError(
-            Problem("mass-ratios", message, hint="give every part a mass, and wheels an inertia")
+            Problem("mass-ratios", message, hint="give every body a mass, and wheels an inertia")
         ) from None
 
 
@@ -91,23 +91,23 @@ def make_steady_equations(linear_state: LinearisedState) -> RollingEquations:
     if spectral_norm(
         rolling.remaining_acceleration[:, None]
     ) > tolerances.FREELY_PUSHED * linear_state.system.load_scale + tolerances.OFF_BALANCE * spectral_norm(rolling.A):
-        raise unsteady_error("it is pushed")
+        raise unsteady_error("a load accelerates it")
     for phase in PHASES:
         dt = phase / find_fastest_rate(linear_state)
         y, turn = continue_motion(linear_state, dt)
         linear, _ = linearise_and_evaluate(linear_state.runner, linear_state.t + dt, y, linear_state.holding)
         later_directions = linear.pose_directions
         if later_directions is None or np.abs(linear.state - y).max(initial=0.0) > tolerances.STEADY_CHANGE:
-            raise unsteady_error("its wheels do not go on as they do")
+            raise unsteady_error("its wheels do not keep rolling in the same way")
         later = make_rolling_equations(linear_state.layout, linear, later_directions, turn @ T, turn @ V, turn @ S)
         if np.abs(later.A - rolling.A).max(initial=0.0) > tolerances.STEADY_CHANGE * spectral_norm(rolling.A):
-            raise unsteady_error("loads change as it goes on")
+            raise unsteady_error("loads change along the motion")
     return rolling
 
 
 def unsteady_error(why: str) -> SolveError:
     """Make the error of a motion that is not steady."""
-    hint = "modes of wheels that roll are those of a straight run, or of rest: give velocities with which it goes on so"
+    hint = "modes with rolling wheels need steady straight rolling, or rest: give velocities of such a motion"
     return SolveError(Problem("not-at-rest", f"the motion is not steady: {why}", hint=hint))
 
 

@@ -52,7 +52,7 @@ def iter_coincident(layout: Layout, evaluation: Evaluation) -> Iterator[str]:
             continue
         is_linear = load.value is None and load.length == 0.0 and load.damping == 0.0
         if evaluation.loads["span"][0, rows].min() <= tolerances.NO_LENGTH * layout.size and not is_linear:
-            yield f"forces.{load.name} has no direction, for its two points coincide"
+            yield f"forces.{load.name} has no direction, because its two points coincide"
 
 
 class LoadLaw(NamedTuple):
@@ -95,7 +95,7 @@ def find_roots(examined_laws: ExaminedLaws) -> Iterator[str]:
     """Yield loads that have a root so near that the state has no slope."""
     for law in examined_laws.laws:
         if any(is_steep(examined_laws, law, k) for k in sorted(law.variables - {0})):
-            yield f"{law.load} has no slope there (a root at 0, an angle of a point that lies on the axis)"
+            yield f"{law.load} has no derivative there (a root at 0, the angle of a point on the axis)"
 
 
 def iter_differing(examined_laws: ExaminedLaws, neighbour_branches: list[float]) -> Iterator[str]:
@@ -107,7 +107,7 @@ def iter_differing(examined_laws: ExaminedLaws, neighbour_branches: list[float])
         )
         size = 1.0 + abs(value) + np.abs(slope).max()
         if not max(abs(value - other_value), np.abs(slope - other_slope).max()) <= tolerances.KINK * size:
-            yield f"{law.load} jumps or bends there"
+            yield f"{law.load} has a jump or kink there"
 
 
 def is_steep(examined_laws: ExaminedLaws, law: LoadLaw, k: int) -> bool:
@@ -178,9 +178,9 @@ def iter_unloaded_contacts(linear_state: LinearisedState) -> Iterator[str]:
         if linear_state.holding[k] > 0.0:
             load_size = abs(float(rows["multiplier"][0, contact.row])) * unit_load_size(linear_state, contact.row)
             if load_size <= tolerances.FREELY_PUSHED * linear_state.system.load_scale:
-                yield f"{name} touches and bears nothing"
+                yield f"{name} touches without load"
         elif abs(float(rows["gap"][0, contact.row])) <= tolerances.OFF_BALANCE * layout.size:
-            yield f"{name} touches and bears nothing"
+            yield f"{name} touches without load"
 
 
 def unit_load_size(linear_state: LinearisedState, row: int) -> float:

@@ -62,11 +62,9 @@ def linearise_scene(scene: PreparedScene, runner: Runner, t: float, state: Array
     """Linearise a scene in a state. Raises SolveError [no-modes] where its laws have no slope."""
     linear, evaluation = linearise_and_evaluate(runner, t, state, holding)
     if not (np.isfinite(linear.by_place).all() and np.isfinite(linear.by_rate).all()):
-        message = "a load has no slope there (a root at 0, an angle of a point that lies on the axis)"
-        hint = "start a little beside it, or give the load a slope there: sqrt(x**2 + 1e-6) for abs(x)"
-        raise SolveError(
-            Problem("no-modes", f"{message}: oscillations about it are not linear, however small", hint=hint)
-        )
+        message = "a load has no derivative there (a root at 0, the angle of a point on the axis)"
+        hint = "start slightly away from it, or smooth the load: sqrt(x**2 + 1e-6) for abs(x)"
+        raise SolveError(Problem("no-modes", f"{message}: even small oscillations about it are not linear", hint=hint))
     system = reduce_equations(scene, linear, evaluation)
     null_motions = find_indifference(scene, t, holding, linear)
     return LinearisedState(

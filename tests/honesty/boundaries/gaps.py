@@ -97,7 +97,7 @@ PART = Part(
         Row("OPEN_RATE", lambda x: rates(x * BAR_SIZE * 2.0, 2.0), "fine", "refused: rates-do-not-fit"),
         Row("OPEN_RATE", lambda x: rates_of_a_beginning(x * BAR_SIZE), "fine", "refused: rates-do-not-fit"),
         Row("AT_REST", lambda x: rates(x * 1e-10 * BAR_SIZE, 0.0), "fine", "refused: rates-do-not-fit"),
-        Row("SOLVABLE", lambda x: rates_at_flat(x / 4), "warned: singular pose", "refused: singular-pose"),
+        Row("SOLVABLE", lambda x: rates_at_flat(x / 4), "warned: singular position", "refused: singular-pose"),
     ),
     exempt={
         "NEAR_DRAWING": "which start a search takes first; tests/laws/test_nearest.py looks at what comes of it",

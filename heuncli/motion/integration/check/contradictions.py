@@ -165,16 +165,14 @@ def make_problem(runner: Runner, good: TimedState, bad: float, last: float) -> P
     worst = int(np.argmax(np.where(np.isfinite(gaps), np.abs(gaps), math.inf)))
     drives = find_drives(layout, next(island for island in layout.islands if worst in island.rows))
     owner = layout.mechanism.owner_path(layout.rows[worst])
-    when = f"at t = {bad:.9g} s: the closed chains cannot be held together beyond this instant"
-    message = f"{when}, in the loop at {describe_owner(layout.mechanism, layout.rows[worst])}"
+    loop = f"the closed loop at {describe_owner(layout.mechanism, layout.rows[worst])}"
+    message = f"at t = {bad:.9g} s: {loop} cannot be assembled after this instant"
     if not drives:
-        hint = "the mechanism locks or reaches the end of its range there"
+        hint = "the mechanism locks or reaches the end of its range of motion there"
     elif len(drives) == 1:
-        hint = f"the drive {drives[0]} asks for more than the loop can do: keep it in range, or end the run before"
+        hint = f"the drive {drives[0]} exceeds the range of the loop: keep it in range, or end the run earlier"
     else:
-        hint = (
-            f"the drives {join_names(drives)} ask there for what does not go together, or for more than the loop can do"
-        )
+        hint = f"the drives {join_names(drives)} contradict each other there, or exceed the range of the loop"
     return Problem("closure-lost", message, hint=hint, entry_path=owner)
 
 

@@ -20,9 +20,9 @@ STABILITY_LIMIT = (
     2.0  # stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
 )
 STEP_MESSAGES = {
-    "not-a-number": "a motion in steps of {step:g} s has no finite acceleration beyond this instant",
-    "closure-lost": "steps of {step:g} s cannot hold the closed chains together beyond this instant",
-    "stages-unsolved": "the equations of a step of {step:g} s are not solved: Newton's iteration does not contract",
+    "not-a-number": "a motion in steps of {step:g} s has no finite acceleration after this instant",
+    "closure-lost": "with steps of {step:g} s closed loops cannot be assembled after this instant",
+    "stages-unsolved": "the equations of a step of {step:g} s cannot be solved: Newton's iteration does not converge",
 }
 
 
@@ -46,11 +46,11 @@ def explain_fixed_step_error(
     if isinstance(other, SolveError) and (end is None or end <= t + step):
         return other  # no step would pass, and this error says where and why
     message = f"at t = {t:.9g} s: {STEP_MESSAGES[problem.code].format(step=step)}"
-    hint = f"{suggest_step(runner, method, step)}, or --method auto, which finds its own"
+    hint = f"{suggest_step(runner, method, step)}, or --method auto, which chooses its own"
     if other is None:
-        hint += " and comes to the end"
+        hint += " and reaches the end"
     elif end is not None:
-        hint += f"; but that ends {other.problems[0].message}"
+        hint += f"; but that stops {other.problems[0].message}"
         hint += f": {other.problems[0].hint}" if other.problems[0].hint else ""
     explained = SolveError(Problem(problem.code, message, hint=hint, entry_path="analysis.step"))
     explained.reached = t
@@ -61,8 +61,8 @@ def suggest_step(runner: Runner, method: Method, step: float) -> str:
     """Say which steps to try in place of a step [s]."""
     rate = 0.0 if method.implicit else fastest_rate(runner)
     if rate * step > STABILITY_LIMIT:
-        return f"the fastest rate at the start is {rate:.2g} 1/s: steps of {STABILITY_LIMIT / rate:.1g} s and less"
-    return f"a shorter step than {step:g} s"
+        return f"the fastest rate at the start is {rate:.2g} 1/s: use steps of {STABILITY_LIMIT / rate:.1g} s or less"
+    return f"use steps shorter than {step:g} s"
 
 
 def fastest_rate(runner: Runner) -> float:

@@ -45,7 +45,7 @@ def solve_complementarity(A: Array, q: Array, noise: Array) -> ComplementaritySo
             break
         drive_index(A, q, z, bears, is_done, int(violated[np.argmin(w[violated])]))
     else:
-        raise undecided_error("which of the contacts that touch bear is not decided")
+        raise undecided_error("which of the touching contacts carry load cannot be determined")
     w = q + A @ z
     is_small = z <= noise  # A's diagonal is 1, so z below the rounding of w counts as zero
     z[is_small], bears = 0.0, bears & ~is_small
@@ -82,7 +82,7 @@ def drive_index(A: Array, q: Array, z: Array, bears: Mask, is_done: Mask, i: int
             if j != i and dw[j] < -tolerances.CONTACT_DEPENDS
         ]
         if not limits:
-            raise undecided_error("no impulse or force of the contacts holds them apart")
+            raise undecided_error("no contact forces or impulses prevent the contacts from penetrating")
         step, event, j = min(limits)
         z += step * dz
         if event == 1:
@@ -91,10 +91,10 @@ def drive_index(A: Array, q: Array, z: Array, bears: Mask, is_done: Mask, i: int
         bears[j] = event == 3
         if event == 2:
             z[j] = 0.0
-    raise undecided_error("which of the contacts that touch bear is not decided")
+    raise undecided_error("which of the touching contacts carry load cannot be determined")
 
 
 def undecided_error(message: str) -> SolveError:
     """Make the error of contacts that find no balance."""
-    hint = "stops or ropes that hold the same: let one of them out, or a little more room to one"
+    hint = "stops or ropes constrain the same motion: remove one of them, or give one a little clearance"
     return SolveError(Problem("contacts-undecided", message, hint=hint))

@@ -107,9 +107,11 @@ def require_energy(jump: ImpulseEvent, energy_scale: float) -> None:
     before, after = jump.kinetic
     size = max(before, after, abs(jump.work), tolerances.UNBALANCED * energy_scale)
     if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
-        message = f"at t = {jump.time:.9g} s the energies of the blow on {', '.join(jump.names)} do not add up"
+        message = f"at t = {jump.time:.9g} s the energy balance of the impulse on {', '.join(jump.names)} is not met"
         raise SolveError(
-            Problem("blow-unbalanced", message, None, "a singular pose, or contacts that hardly differ", jump.names[0])
+            Problem(
+                "blow-unbalanced", message, None, "a singular position, or nearly identical contacts", jump.names[0]
+            )
         )
 
 
@@ -121,10 +123,10 @@ def require_smooth(layout: Layout, given_impulse: GivenImpulse, is_closed: Mask)
             message = (
                 f"at t = {given_impulse.after_time:.9g} s the rate of the length of {contact.name} "
                 f"jumps from {first:.6g} to "
-                f"{then:.6g} m/s while it is taut: as it may go slack, how it leaves that jump is not solved"
+                f"{then:.6g} m/s while it is taut: heun cannot solve this jump of a rope that may go slack"
             )
             hint = (
-                "lead the rate over in a short time, as max(t - 0.2, 0)**2; or leave out restitution: it holds through"
+                "change the rate over a short time, as max(t - 0.2, 0)**2; or leave out restitution: it then stays taut"
             )
             raise SolveError(Problem("rope-jerked", message, None, hint, layout.mechanism.owner_path(contact.joint)))
 
@@ -143,9 +145,9 @@ def require_caught(
             contact = evaluator.layout.contacts[catch.contact]
             joint = evaluator.layout.mechanism.joints[contact.joint].name
             message = (
-                f"at t = {t:.9g} s {contact.name} catches the joint {joint}, which drives or other latches move on"
+                f"at t = {t:.9g} s {contact.name} catches the joint {joint}, but drives or other latches keep it moving"
             )
-            hint = "let the drive stand still there, release the other latch before, or catch later: when"
+            hint = "stop the drive there, release the other latch before, or catch later: when"
             raise SolveError(Problem("latch-contradicts", message, None, hint, f"latches.{contact.name}"))
 
 
@@ -366,10 +368,8 @@ class Contacts:
         is_wrong = find_contradicted(contacts_touching, problem.A, holding, rate, evaluation, self.layout)
         if is_wrong.any():
             names = ", ".join(self.layout.contacts[i].name for i in contacts_touching.indices[is_wrong])
-            message = (
-                f"at t = {t:.9g} s friction by what joints carry decides whether {names} bears, and changes as it does"
-            )
-            hint = "friction of a given size, or contacts that are not touched there together"
+            message = f"at t = {t:.9g} s whether {names} carries load depends on joint friction, and changes it"
+            hint = "use a constant friction, or contacts that do not touch there at the same time"
             raise SolveError(Problem("friction-not-unique", message, hint=hint))
 
     def refine(
@@ -482,17 +482,19 @@ class Contacts:
         when = f"at t = {t:.6g} s"
         if len(struck_contacts) > 1 and not shared_impulses:
             names = join_names([contact.name for contact in struck_contacts])
-            self.notes[f"{when} {names} are struck at once, and do not load each other"] = None
+            self.notes[f"{when} {names} impact at the same time, and do not load each other"] = None
         for k in np.flatnonzero(outcome.at_rest):
             name = contacts[k].name
             count = self.strike_counts.get(name, 0)
             if not count:
                 continue
-            self.notes[f"{name} rests {when}, after {count} strikes: further ones are too small to be seen"] = None
+            self.notes[
+                f"{name} comes to rest {when} after {count} impact{'s' * (count > 1)}: further ones are negligible"
+            ] = None
 
     def add_latch_notes(self, t: float, released_names: list[str], catches: list[LatchCatch]) -> None:
         """Record notes on what latches catch and release."""
         for name in released_names:
-            self.notes[f"{name} lets go at t = {t:.6g} s"] = None
+            self.notes[f"{name} releases at t = {t:.6g} s"] = None
         for catch in catches:
             self.notes[f"{self.layout.contacts[catch.contact].name} catches at t = {t:.6g} s"] = None

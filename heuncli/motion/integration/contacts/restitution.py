@@ -177,6 +177,6 @@ def chattering_error(t: float, name: str) -> SolveError:
     """Make the error of contacts that follow each other endlessly at one instant; name: of the one most often
     struck.
     """
-    message = f"at t = {t:.9g} s stops and ropes strike and let go again and again without the time going on"
-    hint = "contacts that work against each other: loosen one of them"
+    message = f"at t = {t:.9g} s stops and ropes close and open endlessly without time advancing"
+    hint = "contacts work against each other: give one of them more clearance"
     return SolveError(Problem("chattering", message, hint=hint, entry_path=name))

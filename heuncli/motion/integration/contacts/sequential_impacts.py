@@ -225,8 +225,7 @@ def find_independent(A: Array) -> Indices:
 def endless_impacts_error(t: float, names: list[str], name: str) -> SolveError:
     """Make the error of endless impacts among the named contacts; name: of the one that is struck most often."""
     message = (
-        f"at t = {t:.9g} s the impacts of {', '.join(dict.fromkeys(names))} follow one another more than "
-        f"{MAX_IMPACTS} times without an end"
+        f"at t = {t:.9g} s the impacts of {', '.join(dict.fromkeys(names))} do not end after {MAX_IMPACTS} repetitions"
     )
-    hint = "restitution below 1 where contacts leave no play, or analysis: {impacts: simultaneous}"
+    hint = "use restitution below 1 for contacts without clearance, or analysis: {impacts: simultaneous}"
     return SolveError(Problem("endless-impacts", message, hint=hint, entry_path=name))

@@ -136,28 +136,31 @@ def format_sharing(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impac
 
 def format_sharing_sentence(time: float, shared_group: SharedImpulse, count: int, impacts: ImpactModel) -> str:
     """Say how contacts share an impulse, and what is assumed."""
-    several = f"{count} blows, the first" if count > 1 else "the blow"
+    several = f"{count} impulses, the first" if count > 1 else "the impulse"
     lead = (
-        f"{join_names(shared_group.names)} share {several} at t = {time:.6g} s; how is a model (impacts: {impacts}): "
+        f"{join_names(shared_group.names)} share {several} at t = {time:.6g} s; "
+        f"the split is a model assumption (impacts: {impacts}): "
     )
     struck_names = [name for name in shared_group.names if name not in shared_group.bilateral_names]
     parts = []
     if struck_names and impacts == SIMULTANEOUS:
-        parts.append("all act at the same time, what is struck takes its own restitution, what rested does not rebound")
+        parts.append(
+            "all act at the same time, impacting contacts each use their own restitution, resting ones do not rebound"
+        )
     elif struck_names:
         number = f"{shared_group.impacts} impacts" if shared_group.impacts != 1 else "one impact"
         parts.append(
-            f"they strike one after another, as over equal tiny gaps, each with its own restitution ({number})"
+            f"they impact one after another, as across equal small gaps, each with its own restitution ({number})"
         )
     if shared_group.resting_names:
         parts.append(
             f"{join_names(shared_group.resting_names)} "
-            f"{choose_verb_form(shared_group.resting_names, 'rests', 'rest')} behind infinitely many impacts"
+            f"{choose_verb_form(shared_group.resting_names, 'comes', 'come')} to rest after infinitely many impacts"
         )
     if shared_group.bilateral_names:
         parts.append(
             f"{join_names(shared_group.bilateral_names)} "
-            f"{choose_verb_form(shared_group.bilateral_names, 'is', 'are')} held both ways, without rebound"
+            f"{choose_verb_form(shared_group.bilateral_names, 'acts', 'act')} in both directions, without rebound"
         )
     return lead + "; ".join(parts)
 
@@ -169,11 +172,11 @@ def format_sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]
         return []
     time, first_group = shared_blows[0]
     lead = (
-        f"in the blow at t = {time:.6g} s"
+        f"in the impact at t = {time:.6g} s"
         if len(shared_blows) == 1
-        else f"in {len(shared_blows)} blows, the first at t = {time:.6g} s,"
+        else f"in {len(shared_blows)} impacts, the first at t = {time:.6g} s,"
     )
-    assumed = f"rigid bodies do not say how, impacts: {impacts} is assumed (heun explain impacts)"
+    assumed = f"rigid bodies do not determine the split, impacts: {impacts} is assumed (heun explain impacts)"
     return [f"{lead} {join_names(first_group.names)} share the impulse: {assumed}"]
 
 

@@ -15,7 +15,7 @@ from heuncli.multibody.mechanism.model import PairLoad
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 
-HINT = "in a pin or slide use type: torque; else keep its points apart"
+HINT = "in a pin or slide use type: torque; otherwise keep its points apart"
 
 
 def needs_direction(load: PairLoad) -> bool:

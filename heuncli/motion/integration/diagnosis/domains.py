@@ -211,7 +211,7 @@ def _make_problem(expression: Expression, t: float, values: list[float], not_fin
             hint,
         )
     what = f"has no finite {not_finite}" if not_finite else "grows without bound"
-    hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or end the run before"
+    hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or end the run earlier"
     return Problem("no-value", f"{subject} {what} at t = {t:.9g} s{coordinates_text}", expression.location, hint)
 
 

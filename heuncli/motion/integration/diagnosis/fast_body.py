@@ -151,22 +151,22 @@ def explain_short_steps(scene: Evaluator, t: float, state: Array, step: float = 
     if noise * step > MAX_NOISE_SHARE * local:
         sentence = (
             f"steps are short because of {describe_body(scene.layout, body)}: rounding of the loads "
-            "on it, over that inertia, "
-            f"is some {noise:.1g} rad/s\u00b2, and a step takes that for motion"
+            "on it, divided by that inertia, "
+            f"is about {noise:.1g} rad/s\u00b2, which the step control takes for motion"
         )
     elif motion is None:
         return ""
     else:
-        how, unit = ("turn", "kg\u00b7m\u00b2") if motion.turns else ("shift", "kg")
+        how, unit = ("rotation", "kg\u00b7m\u00b2") if motion.turns else ("translation", "kg")
         now = f"{motion.spin:.2g} rad/s" if motion.turns else f"{motion.speed:.2g} m/s"
         sentence = (
             f"steps are short because of {describe_body(scene.layout, motion.body)}, which moves at "
             f"{now}: its {how} changes "
-            f"at {motion.rate:.2g} 1/s, resisted by no more than {motion.inertia:.2g} {unit}"
+            f"at {motion.rate:.2g} 1/s, resisted by an inertia of only {motion.inertia:.2g} {unit}"
         )
     if motion is not None and motion.pins is not None:
         first, second, angle = motion.pins
-        sentence += f"; the axes of joints.{first} and joints.{second} are {angle:.2g} rad from one line"
+        sentence += f"; the axes of joints.{first} and joints.{second} are {angle:.2g} rad from collinear"
         sentence += " (gimbal lock at 0)"
     return sentence
 

@@ -61,10 +61,8 @@ def eliminate(factors: Array, is_free: Sequence[bool]) -> Iterator[Array]:
 def make_problem(couplings: Sequence[Coupling], drives: Sequence[str], t: float) -> Problem:
     """Make the problem, with the couplings and their drives."""
     texts = [f"{coupling.name} ({coupling.entry.type})" for coupling in couplings]
-    coupling_text = f"coupling {texts[0]} does" if len(texts) == 1 else f"the couplings {join_names(texts)} do"
-    message = (
-        f"at t = {t:.9g} s the drives {join_names(drives)} begin to require what {coupling_text} not allow together"
-    )
+    coupling_text = f"coupling {texts[0]}" if len(texts) == 1 else f"the couplings {join_names(texts)}"
+    message = f"at t = {t:.9g} s the drives {join_names(drives)} begin to violate {coupling_text}"
     hint = "leave out one of them: its joint follows the couplings"
     return Problem("rates-do-not-fit", message, hint=hint, entry_path=f"couplings.{couplings[0].name}")
 

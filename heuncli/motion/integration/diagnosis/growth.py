@@ -33,9 +33,9 @@ def stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: flo
     """
     if problems:
         return SolveError(*problems)
-    needed = f"about {needed_steps:.1g} would be needed" if needed_steps < math.inf else "no number of them will do"
-    hint = "look for loads, rates, stiffness or friction far beyond the others, or an inertia far below; or end earlier"
-    message = f"{done_text}; for all of it {needed}, and {tolerances.MOST_STEPS} is the most"
+    needed = f"about {needed_steps:.1g} would be needed" if needed_steps < math.inf else "no number of steps suffices"
+    hint = "check for loads, rates, stiffness or friction far above the others, or an inertia far below; or end earlier"
+    message = f"{done_text}; for the whole run {needed}, the limit is {tolerances.MOST_STEPS}"
     message += f"; {cause}" if cause else ""
     return LimitError(Problem("step-limit", message, hint=hint))
 

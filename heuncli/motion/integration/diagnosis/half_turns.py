@@ -27,10 +27,12 @@ def half_turn_error(
     w = float(q[0])
     time_left = -w / rate if abs(w) > tolerances.ZERO_COMPONENT and w * rate < 0.0 else 0.0  # else it is there already
     name = layout.mechanism.bodies[layout.spanning.links[body].body].name
-    where = f"at t = {t + time_left:.9g} s: {name} comes to a half turn from its drawn attitude"
-    hint = "DOP853 and DOP853-recentred have no such place"
+    where = f"at t = {t + time_left:.9g} s: {name} reaches half a revolution from its start orientation"
+    hint = "use DOP853 or DOP853-recentred, which have no such limit"
     if not is_unreduced:
-        hint += "; it is the body as it is integrated, with --no-reduce the one drawn"
-    error = SolveError(Problem("half-turn", f"{where}: there the global chart ends", None, hint, f"bodies.{name}"))
+        hint += "; this is the body of the reduced model, --no-reduce integrates the one specified"
+    error = SolveError(
+        Problem("half-turn", f"{where}, the limit of the global rotation parametrisation", None, hint, f"bodies.{name}")
+    )
     error.reached = t + time_left
     return error

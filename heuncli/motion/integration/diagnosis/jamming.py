@@ -15,18 +15,18 @@ from heuncli.multibody.response import Workspace
 JAMMING_MESSAGES = {  # code, what was found, what to do next
     kernel.JAMS: (
         "friction-jams",
-        "no accelerations answer it: the friction presses the joint by more than it is itself, and it jams",
-        "a smaller coefficient or radius, a longer guide, or a load nearer to it",
+        "the joint jams (no solution): 1 N of friction causes more than 1 N of further friction",
+        "use a smaller coefficient or radius, a longer guide, or a load nearer to it",
     ),
     kernel.TWO: (
         "friction-not-unique",
-        "two answers meet its law: the friction presses the joint by more than it is itself",
-        "a smaller coefficient or radius, a longer guide, or a load nearer to it",
+        "two solutions exist: 1 N of friction causes more than 1 N of further friction",
+        "use a smaller coefficient or radius, a longer guide, or a load nearer to it",
     ),
     kernel.UNPROVED: (
         "friction-not-unique",
-        "what rubs presses joints by nearly as much as it is itself, or by more: one answer is not certain",
-        "smaller coefficients or radii, longer guides, or friction of a given size in one of the joints",
+        "the solution may not be unique: 1 N of friction causes nearly 1 N of further friction, or more",
+        "use smaller coefficients or radii, longer guides, or a constant friction torque or force in one of the joints",
     ),
 }
 
@@ -36,12 +36,14 @@ def make_problem(mechanism: Mechanism, status: int, row: int, t: float) -> Probl
     load = next(load for load, rows in mechanism.iter_load_rows() if row in range(rows.start, rows.stop))
     code, reason, hint = JAMMING_MESSAGES[status]
     if isinstance(load, ThreadLoad):
-        hint = "a drive of the spindle or more inertia on it, as its motor's; a smaller coefficient, or a steeper lead"
-        reason = reason.replace("the joint", "its flanks")
-        return Problem(code, f"at t = {t:.9g} s the thread couplings.{load.name} rubs, and {reason}", hint=hint)
+        hint = (
+            "drive the spindle or add inertia to it, such as its motor's; use a smaller coefficient, or a steeper lead"
+        )
+        reason = reason.replace("the joint jams", "it jams")
+        return Problem(code, f"at t = {t:.9g} s friction in the thread couplings.{load.name}: {reason}", hint=hint)
     assert isinstance(load, JointLoad), load
     joint = mechanism.joints[load.joint].name
-    return Problem(code, f"at t = {t:.9g} s forces.{load.name} rubs in joints.{joint}, and {reason}", hint=hint)
+    return Problem(code, f"at t = {t:.9g} s friction forces.{load.name} in joints.{joint}: {reason}", hint=hint)
 
 
 def find_jammed(mechanism: Mechanism, evaluation: Evaluation, instant: int) -> list[Problem]:
@@ -63,6 +65,6 @@ def find_jammed_after(mechanism: Mechanism, workspace: Workspace, t: float) -> l
 def indeterminate_friction_problem(mechanism: Mechanism, loads: Sequence[JointLoad | ThreadLoad], t: float) -> Problem:
     """Make the problem of friction that depends on indeterminate reactions of redundant joints."""
     load_names = ", ".join(mechanism.describe_friction(load) for load in loads)
-    message = f"at t = {t:.9g} s friction hangs on what redundant joints leave open: {load_names}"
-    hint = "joints that hold less, as heun run proposes without that friction; or friction of a given size"
+    message = f"at t = {t:.9g} s friction depends on indeterminate reactions of redundant joints: {load_names}"
+    hint = "use joints with fewer constraints, as heun run proposes without that friction; or a constant friction"
     return Problem("friction-open", message, hint=hint)

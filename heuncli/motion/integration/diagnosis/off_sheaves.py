@@ -17,7 +17,7 @@ from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 
-HINT = "a sheave on a bearing that turns with the rope, or a plain point in its place"
+HINT = "mount the sheave on a bearing that swivels with the rope, or use a plain point instead"
 
 
 def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
@@ -27,7 +27,10 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
         if part.kind == "arc":
             angle = evaluation.parts["gap"][:, k] / abs(part.radius)
             violations = np.flatnonzero(is_taut & (angle < -tolerances.OFF_SHEAVE))
-            message, hint = "lifts off a sheave", "the run up to there; a rope that lies on it at times is not told"
+            message, hint = (
+                "lifts off a sheave",
+                "end the run before; a rope that touches a sheave only at times cannot be modelled",
+            )
         elif part.kind == "strand":
             violations = np.flatnonzero(
                 is_taut & (np.abs(slant_angle(layout, evaluation, part, k)) > tolerances.FLEET_ANGLE)
@@ -35,7 +38,7 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
             message, hint = f"leaves a sheave's plane by more than {FLEET}", HINT
             skewed_instants = np.flatnonzero(is_taut & is_skewed(layout, evaluation, part))
             if len(skewed_instants) and not (len(violations) and violations[0] <= skewed_instants[0]):
-                violations, message = skewed_instants, "runs between two sheaves whose axes do not stay parallel"
+                violations, message = skewed_instants, "runs between two sheaves whose axes are no longer parallel"
         else:
             continue
         if len(violations):
@@ -57,8 +60,8 @@ def format_slant_warnings(layout: Layout, evaluation: Evaluation) -> list[str]:
             angles = np.where(is_taut, np.abs(slant_angle(layout, evaluation, part, k)), 0.0)
             largest_angles[coupling.name] = max(largest_angles.get(coupling.name, 0.0), float(angles.max(initial=0.0)))
     return [
-        f"couplings.{name} leaves a sheave's plane by up to {math.degrees(angle):.2g} deg: its forces are right to "
-        f"{1.0 - math.cos(angle):.1g} of them"
+        f"couplings.{name} leaves a sheave's plane by up to {math.degrees(angle):.2g} deg: relative error of "
+        f"its forces {1.0 - math.cos(angle):.1g}"
         for name, angle in largest_angles.items()
         if angle > tolerances.FLEET_SEEN
     ]

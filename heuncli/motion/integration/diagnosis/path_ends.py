@@ -41,16 +41,16 @@ def iter_open_paths(mechanism: Mechanism) -> Iterator[OpenPath]:
     """Yield all paths and lifts that have ends."""
     for joint in mechanism.joints:
         if joint.path is not None and not joint.path.period:
-            message = f"the point of joint {joint.name} runs off its path, which covers travel"
+            message = f"the point of joint {joint.name} leaves its path, which covers travel"
             yield OpenPath(
-                joint.path, (joint.name, "travel"), message, "a longer path,", ("m", 1.0), f"joints.{joint.name}"
+                joint.path, (joint.name, "travel"), message, "use a longer path,", ("m", 1.0), f"joints.{joint.name}"
             )
     for coupling in mechanism.couplings:
         shape = coupling.rows[0].parts[0].cam if coupling.rows else None
         if shape is not None and not shape.lift.period:
             shaft = mechanism.joints[coupling.rows[0].parts[0].coordinates[0].joint].name
-            message = f"the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle"
-            longer, owner = "a longer lift, or one with a period,", f"couplings.{coupling.name}"
+            message = f"the disc of cam {coupling.name} rotates past its lift curve, which covers {shaft}.angle"
+            longer, owner = "use a longer lift, or one with a period,", f"couplings.{coupling.name}"
             yield OpenPath(shape.lift, (shaft, "angle"), message, longer, ("deg", math.degrees(1.0)), owner)
 
 
@@ -68,7 +68,7 @@ def find_left_paths(mechanism: Mechanism, t: float, later: float, coordinates: M
         message = f"at t = {t:.9g} s {open_path.message} from {first:.9g} to {last:.9g} {unit}"
         end = f"> {last:.6g}" if s > 0.5 * (path.first + path.last) else f"< {first:.6g}"
         until = f"{'.'.join(open_path.coordinate)} {end}{'' if unit == 'm' else ' ' + unit}"
-        hint = f"{open_path.longer} or end the run before: until: {until}"
+        hint = f"{open_path.longer} or end the run earlier: until: {until}"
         problems.append(Problem("path-ends", message, None, hint, open_path.owner))
     return problems
 

@@ -14,10 +14,10 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
 QUANTITIES = {  # of a body, in the kernel's answer
-    "r": "coordinate of", "v": "speed of", "a": "acceleration of", "omega": "rate of turning of",
+    "r": "coordinate of", "v": "speed of", "a": "acceleration of", "omega": "angular velocity of",
     "alpha": "angular acceleration of", "joint_force": "force on", "joint_moment": "moment on",
 }  # fmt: skip
-LARGE = "look at the units of loads, masses and lengths nearby"
+LARGE = "check the units of loads, masses and lengths nearby"
 
 
 @record
@@ -70,7 +70,7 @@ def require_solvable(scene: PreparedScene, evaluation: Evaluation, wording: Erro
                 f"bodies.{name} has no inertia about its axis ({axis}), "
                 f"and a {wording.moment} of {moment:.4g} {wording.unit} acts about it"
             )
-            hint = "give the body its moment of inertia about that axis, or let the load act on the axis"
+            hint = "give the body a moment of inertia about that axis, or apply the load on the axis"
             raise SolveError(Problem("no-inertia", message, hint=hint))
 
 
@@ -133,8 +133,10 @@ def unmet_rows_problem(scene: PreparedScene, evaluation: Evaluation, instant: in
     t, residual = float(evaluation.times[instant]), float(evaluation.residual[instant])
     if (problem := find_fighting_drives(scene.mechanism, t, t)) is not None:
         return problem
-    message = f"at t = {t:.9g} s the {wording.results} leave {residual:.1g} of what the closed chains ask of them unmet"
-    return Problem("closure-lost", message, hint="a singular pose, or joints that contradict each other by a little")
+    message = (
+        f"at t = {t:.9g} s the {wording.results} violate the constraints of closed loops by {residual:.1g} (relative)"
+    )
+    return Problem("closure-lost", message, hint="a singular position, or joints that contradict each other slightly")
 
 
 def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) -> list[Problem]:
@@ -155,7 +157,9 @@ def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) 
 
         problems = find_jammed(scene.mechanism, evaluation, instant)
     message = f"at t = {t:.9g} s no finite acceleration exists"
-    return problems or [Problem("not-a-number", message, hint="look at points that coincide, and at very large values")]
+    return problems or [
+        Problem("not-a-number", message, hint="check for points that coincide and for very large values")
+    ]
 
 
 def no_inertia_problem(scene: PreparedScene, evaluation: Evaluation, instant: int) -> Problem:
@@ -167,9 +171,9 @@ def no_inertia_problem(scene: PreparedScene, evaluation: Evaluation, instant: in
     for place, axes in find_loose_axes(scene, evaluation.bodies[instant], evaluation.rows[instant]).items():
         body = layout.mechanism.bodies[layout.spanning.links[place].body]
         lacking.append(f"bodies.{body.name} has no inertia about {describe_axes(axes)}")
-    message = f"at t = {float(evaluation.times[instant]):.6g} s a freedom has no inertia behind it"
+    message = f"at t = {float(evaluation.times[instant]):.6g} s a degree of freedom has no inertia"
     message = ": ".join([message, *(["; ".join(lacking)] if lacking else [])])
-    return Problem("no-inertia", message, hint="give those bodies their moments of inertia, or hold the turn")
+    return Problem("no-inertia", message, hint="give those bodies moments of inertia, or constrain the rotation")
 
 
 def describe_axes(axes: Array) -> str:
@@ -179,4 +183,4 @@ def describe_axes(axes: Array) -> str:
     n = axes[0] if len(axes) == 1 else np.cross(axes[0], axes[1])
     n = n * np.sign(n[np.argmax(np.abs(n))])  # the sign of a singular vector is arbitrary
     components = ", ".join(f"{x:.4g}" for x in np.where(np.abs(n) < tolerances.PRINTED_COMPONENT, 0.0, n))
-    return f"its axis ({components})" if len(axes) == 1 else f"its axes across ({components})"
+    return f"its axis ({components})" if len(axes) == 1 else f"its axes perpendicular to ({components})"

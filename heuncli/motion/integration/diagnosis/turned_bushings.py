@@ -9,7 +9,7 @@ from heuncli.base.errors import Problem
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import BushingLoad, Mechanism
 
-HINT = "bushings are for less than half a turn: what turns on needs a joint, as a pin with a turn_spring"
+HINT = "bushings allow less than half a revolution; for more use a joint, such as a pin with a turn_spring"
 
 
 def find_turning_bushings(mechanism: Mechanism) -> list[tuple[BushingLoad, int]]:
@@ -24,7 +24,9 @@ def find_turning_bushings(mechanism: Mechanism) -> list[tuple[BushingLoad, int]]
 
 def make_problem(name: str, t: float) -> Problem:
     """Make the problem of a bushing at an instant."""
-    message = f"at t = {t:.9g} s forces.{name} has come to half a turn: which way its moment acts there, nothing tells"
+    message = (
+        f"at t = {t:.9g} s forces.{name} has rotated by half a revolution: the direction of its moment is undefined"
+    )
     return Problem("bushing-turned", message, hint=HINT, entry_path=f"forces.{name}")
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from heuncli.motion.integration.methods.method import Method
 
 DRIVE_DETERMINED = Method(
-    name="none: every instant is solved by itself",
+    name="none: each instant is solved separately",
     order=1,
     nodes=(0.0,),
     stages=(),

@@ -10,23 +10,23 @@ from heuncli.results.results import Array
 KERNEL_ERRORS = {
     kernel.CODES["collapsed"]: (
         "step-collapsed",
-        "the step length fell to the rounding error of the time",
+        "the step size fell to the rounding error of the time",
         "a load or a rate grows without bound there",
     ),
     kernel.CODES["not a number"]: (
         "not-a-number",
-        "no finite acceleration exists beyond this instant",
-        "look at the expressions and tables, and at points that coincide",
+        "no finite acceleration exists after this instant",
+        "check expressions and tables, and points that coincide",
     ),
     kernel.CODES["closures lost"]: (
         "closure-lost",
-        "the closed chains cannot be held together beyond this instant",
-        "the mechanism locks or reaches the end of its range there",
+        "closed loops cannot be assembled after this instant",
+        "the mechanism locks or reaches the end of its range of motion there",
     ),
     kernel.CODES["unsolved"]: (
         "stages-unsolved",
-        "the equations of an implicit step are not solved: Newton's iteration does not contract",
-        "a shorter step, or --method Radau9, which finds its own",
+        "the equations of an implicit step cannot be solved: Newton's iteration does not converge",
+        "use a shorter step, or --method Radau9, which chooses its own",
     ),
 }
 

@@ -102,7 +102,7 @@ def no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint
         {f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["lents"]["body"]}
     )
     if massless_bodies and name == "step-collapsed":
-        hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(massless_bodies)}"
+        hint += f", or closed loops release the rotation of bodies without inertia: {', '.join(massless_bodies)}"
     return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
 
@@ -121,7 +121,7 @@ def chattering_problem(t: float, expression: Expression, branch: int) -> Problem
     """
     message = (
         f"at t = {t:.9g} s '{expression.held_branches[branch]}' in '{expression.source.strip()}' chatters: "
-        "it changes back as soon as it has changed, for on either side the motion is driven to the other"
+        "it changes back as soon as it has changed, because each side drives the motion to the other"
     )
-    hint = "what sticks needs a smooth law: tanh(rate/0.001) in place of sign(rate), or a force of type friction"
+    hint = "for sticking use a smooth law: tanh(rate/0.001) instead of sign(rate), or a force of type friction"
     return Problem("chattering", message, expression.location, hint)

@@ -22,14 +22,14 @@ def describe_fastest_motion(scene: Evaluator, t: float, state: Array, h: float) 
     values, vectors = np.linalg.eig(tangent(scene.workspace, t, state))
     k = int(np.argmax(np.abs(values)))
     largest = complex(values[k])
-    does = "swings" if abs(largest.imag) > abs(largest.real) else "decays"
+    does = "oscillates" if abs(largest.imag) > abs(largest.real) else "decays"
     evaluation = scene.evaluate(np.array([t]), state[None, :])
     omega = np.sqrt(np.sum(evaluation.bodies["omega"] ** 2, axis=2)).max(initial=0.0)
     speed = np.sqrt(np.sum(evaluation.bodies["v"] ** 2, axis=2)).max(initial=0.0) / scene.size
     load_name = find_responsible_load(scene, t, state, vectors[:, k], abs(largest))
     return (
-        f"stiff: {load_name} {does} at {abs(largest):.2g} 1/s where the motion goes at {max(omega, speed):.2g} 1/s: "
-        f"at t = {t:.3g} s it keeps explicit steps at {h:.2g} s"
+        f"stiff: {load_name} {does} at {abs(largest):.2g} 1/s, the motion changes at {max(omega, speed):.2g} 1/s; "
+        f"this limits explicit steps to {h:.2g} s at t = {t:.3g} s"
     )
 
 
@@ -37,7 +37,7 @@ def find_responsible_load(scene: Evaluator, t: float, state: Array, eigenvector:
     """Return the load that responds most to a motion along an eigenvector, by the work it does there."""
     loads = scene.layout.mechanism.loads
     if not loads:
-        return "the scene"
+        return "the model"
     work = np.zeros(len(scene.layout.tables["loads"]))
     for part in (eigenvector.real, eigenvector.imag):
         size = np.abs(part * scene.layout.weights).max(initial=0.0)
@@ -48,7 +48,7 @@ def find_responsible_load(scene: Evaluator, t: float, state: Array, eigenvector:
             work += change["value"] * (change["rate"] + rate * change["span"])
     shares = {load: float(work[rows].sum()) for load, rows in scene.layout.mechanism.iter_load_rows()}
     load = max(loads, key=lambda one: shares[one])
-    return f"{load_kind(load)} `{load.name}`" if shares[load] > 0.0 else "the scene"
+    return f"{load_kind(load)} `{load.name}`" if shares[load] > 0.0 else "the model"
 
 
 def load_kind(load: Load) -> str:

@@ -206,17 +206,17 @@ def require_pull(mechanism: Mechanism, rope: str | None) -> None:
     Also for a cam's follower that lifts off, or a path that would have to pull.
     """
     if rope in {joint.name for joint in mechanism.joints if joint.one_sided}:
-        message = f"in the blow at t = 0 s the path of joint {rope} would have to pull (one_sided)"
-        hint = "with restitution: 0 (to 1) its point flies off, and strikes again"
+        message = f"in the impulse at t = 0 s the path of joint {rope} would have to pull (one_sided)"
+        hint = "with restitution: 0 (to 1) its point lifts off, and impacts again"
         raise SolveError(Problem("rope-pushes", message, hint=hint, entry_path=f"joints.{rope}"))
     if rope is not None:
         kind = {coupling.name: coupling.entry.type for coupling in mechanism.couplings}.get(rope)
         lost = f"the {kind or 'rod'} {rope} would have to push (tension_only)"
-        hint = "with restitution: 0 (to 1) it goes slack, and catches again"
+        hint = "with restitution: 0 (to 1) it goes slack, and becomes taut again with an impact"
         if kind == "cam":
             lost = f"contact is lost: the follower of cam {rope} lifts off"
-            hint = "with restitution: 0 (to 1) it flies, and strikes again"
+            hint = "with restitution: 0 (to 1) it lifts off, and impacts again"
         where = "joints" if kind is None else "couplings"
         raise SolveError(
-            Problem("rope-pushes", f"in the blow at t = 0 s {lost}", hint=hint, entry_path=f"{where}.{rope}")
+            Problem("rope-pushes", f"in the impulse at t = 0 s {lost}", hint=hint, entry_path=f"{where}.{rope}")
         )

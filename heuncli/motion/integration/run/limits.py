@@ -24,8 +24,8 @@ def find_chunk_size(layout: Layout, method: Method) -> int:
     if not method.implicit:
         return max(1, CHUNK // bodies)
     if n > tolerances.MOST_SOLVED:
-        message = f"{method.name} solves dense equations for all {n} numbers of the state; it takes up to"
-        hint = "--method DOP853, which solves none; what is stiff then takes short steps"
+        message = f"{method.name} solves dense equations for all {n} state variables; the limit is"
+        hint = "use --method DOP853, which solves none, but takes short steps if the model is stiff"
         raise LimitError(Problem("too-many-states", f"{message} {tolerances.MOST_SOLVED}", hint=hint))
     return max(1, min(CHUNK // bodies, DENSE_CHUNK // max(n, 1) ** 2))
 
@@ -38,7 +38,7 @@ def check_deadline(deadline: float | None, where: str) -> None:
 
 def time_limit_error(where: str) -> LimitError:
     """Make the error of a passed deadline; `where`: how far the work has come."""
-    hint = "a longer --time-limit, a coarser --tolerance, or a shorter duration"
+    hint = "use a longer --time-limit, a coarser --tolerance, or a shorter duration"
     return LimitError(Problem("time-limit", f"the time limit was reached {where}", hint=hint))
 
 
@@ -61,7 +61,7 @@ def require_progress(progress: RunProgress, most_steps: int) -> None:
     steps, last = progress.steps, progress.last
     done_text = f"steps were done at t = {progress.t:.6g} s of {last:.6g} s"
     if steps.count > most_steps:
-        hint = "a shorter duration, a coarser tolerance, or a stiff method: --method Radau9"
+        hint = "use a shorter duration, a coarser tolerance, or a method for stiff systems: --method Radau9"
         raise LimitError(Problem("step-limit", f"{most_steps} {done_text}", hint=hint))
     if not steps.has_doubled():
         return

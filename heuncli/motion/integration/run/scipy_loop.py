@@ -162,7 +162,7 @@ class ScipyIntegration:
         except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:  # it factored nan
             raise give_up_error(self.request.method, float(solver.t), str(error)) from None
         if solver.status == "failed" or not np.isfinite(solver.y).all():
-            raise give_up_error(self.request.method, float(solver.t), str(message or "a value is no number any more"))
+            raise give_up_error(self.request.method, float(solver.t), str(message or "a value is no longer a number"))
 
 
 def error_scales(derivative: Derivative, t: float, state: Array, last: float) -> Array:
@@ -194,12 +194,12 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
         f"the drive {law.name}, whose rate jumps" for law in mechanism.laws if find_rate_jumps(law.value, last)
     ]
     problems = [
-        Problem("method-scene", f"{method.name} does not run {name}", hint=SMOOTH_ONLY) for name in feature_names
+        Problem("method-scene", f"{method.name} does not support {name}", hint=SMOOTH_ONLY) for name in feature_names
     ]
     for expression in mechanism.iter_expressions():
         if expression.uses and expression.held_branches:
             source = expression.source.strip()
-            message = f"{method.name} does not run '{source}', which jumps or bends with a coordinate"
+            message = f"{method.name} does not support '{source}', which has a jump or kink in a coordinate"
             problems.append(Problem("method-scene", message, expression.location, SMOOTH_ONLY))
     if problems:
         raise SpecError(*problems)
@@ -207,7 +207,7 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
 
 def give_up_error(method: Method, t: float, why: str) -> SolveError:
     """Make the error of a run that SciPy does not continue."""
-    hint = "method: auto tells more of what happens there"
+    hint = "method: auto reports more about the cause"
     message = f"at t = {t:.9g} s: {method.name} gave up: {why.strip()}"
     error = SolveError(Problem("step-collapsed", message, hint=hint, entry_path="analysis.method"))
     error.reached = t
@@ -217,4 +217,4 @@ def give_up_error(method: Method, t: float, why: str) -> SolveError:
 def step_limit_error(method: Method, most: int, t: float, last: float) -> LimitError:
     """Make the error of a run with too many steps."""
     message = f"{most} steps of {method.name} were done at t = {t:.6g} s of {last:.6g} s"
-    return LimitError(Problem("step-limit", message, hint="a coarser tolerance, or method: auto"))
+    return LimitError(Problem("step-limit", message, hint="use a coarser tolerance, or method: auto"))

@@ -40,7 +40,7 @@ class SlowRunWatch:
             f"t = {progress.t:.3g} s of {progress.last:.6g} s after {seconds:.0f} s and {progress.steps.count} steps"
         )
         report("; ".join(filter(None, (
-            f"a long run: {done_text}, about {remaining:.1g} s more at this pace",
+            f"long run: {done_text}, about {remaining:.1g} s more at this pace",
             explain_short_steps(progress.scene, progress.t, progress.state, *progress.pace),
-            "--time-limit ends it",
+            "--time-limit stops it",
         ))))  # fmt: skip

@@ -158,8 +158,9 @@ class Triggers:
         """Make the error of impulses that follow each other endlessly at an instant, or ever faster up to it."""
         impulse_names = [self.blows[i].name for i in self.numbers if self.strike_counts[i]]
         names = " and ".join(f"impulses.{name}" for name in impulse_names)
-        message = f"at t = {t:.9g} s {names} strike without end: each blow makes a condition true again at once"
-        hint = "leave room between conditions, as rate > 0.1 beside rate < -0.1; or let it strike the first time alone"
+        verb = "repeats" if len(impulse_names) == 1 else "repeat"
+        message = f"at t = {t:.9g} s {names} {verb} endlessly: each impulse makes a condition true again at once"
+        hint = "separate the conditions, as rate > 0.1 and rate < -0.1; or let the impulse act only the first time"
         return SolveError(Problem("endless-blows", message, hint=hint, entry_path=f"impulses.{impulse_names[-1]}"))
 
     def has_just_struck(self, t: float) -> bool:
@@ -176,9 +177,11 @@ class Triggers:
                 continue
             is_true_at_start = bool(self.truths_at_start) and self.truths_at_start[number] == 1.0
             why = (
-                "is true at the start, which strikes nothing, and did not become true again" if is_true_at_start else ""
+                "is true at the start, which does not trigger it, and did not become true again"
+                if is_true_at_start
+                else ""
             )
-            sentences.append(f"{self.blows[i].name} did not strike: {when.text} {why or 'did not become true'}")
+            sentences.append(f"{self.blows[i].name} did not act: {when.text} {why or 'did not become true'}")
         return tuple(sentences)
 
 
