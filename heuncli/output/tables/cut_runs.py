@@ -27,7 +27,7 @@ from heuncli.study.quantities.digits import (
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.table_units import DisplayUnit, Units
 
-EXTREMES_NOTE = "extremes of the whole stretch, between the cuts and at its corners, too"
+EXTREMES_NOTE = "extremes over the whole bar, also between the listed cuts"
 MAX_CUTS = 25  # in a diagram: evenly spaced cuts, with all jumps and extremes
 
 
@@ -103,7 +103,7 @@ def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] | No
         subject = f"{name} {info.body}" if info else name
         axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
         reference_point = info.moment_point if info else "the cut's point"
-        meaning = f"{'impulse of ' * bool(units)}the piece beyond the cut ON the part before it; N > 0 tension"
+        meaning = f"{'impulse' if units else 'force'} of the far side on the near side of the cut; N > 0 tension"
         heading = f"SECTION {subject}  {meaning}; {axis}; moments about {reference_point}"
         stress = section.get("stress", {})
         stresses = tuple(
@@ -147,7 +147,7 @@ def make_extremes_tables(
         columns = run.values[:, :, shown_cuts].transpose(1, 0, 2).reshape(run.values.shape[1], -1)
         cuts = find_sample_extremes(times, columns)
     extremes, places, cuts = merge_extremes(run, shown_cuts, extremes, places, cuts)
-    where = "between the samples, too" if cuts.is_searched else f"in {run.values.shape[1]} samples"
+    where = "also between the output times" if cuts.is_searched else f"at {run.values.shape[1]} output times"
     notes = [f"envelope: lowest and highest at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
     table = make_extremes_table(run, times, extremes, places, certain)
     styles = _choose_styles(run, certain, extremes)
@@ -393,6 +393,6 @@ def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:
     if len(shown_cuts) == len(run.s):
         return ""
     return (
-        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, jumps and extremes among them; every cut: "
-        "--all, or --format csv"
+        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, including jumps and extremes; all cuts: "
+        "--all or --format csv"
     )
