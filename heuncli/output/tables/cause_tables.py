@@ -36,7 +36,9 @@ TOTAL_COLUMNS = ("sum", "total")  # after those of the causes
 MAX_CAUSE_COLUMNS = 9  # further, smaller causes share one column
 ALONG_NOTE = "|F|, |M|: contribution along the total vector"
 CAUSES_NOTE = "motion: part quadratic in the velocities; drives: part from prescribed accelerations"
-DIRECT_NOTE = "direct: the load itself, where it is applied; the rest of its contribution acts through the motion it causes"
+DIRECT_NOTE = (
+    "direct: the load itself, where it is applied; the rest of its contribution acts through the motion it causes"
+)
 # Section force -> the vector, and the axis of the section, of which it is the component.
 AXES = {
     name: (vector, axis)

@@ -19,7 +19,9 @@ def make_collectives_schema(version: dict[str, Any]) -> dict[str, Any]:
 
 def make_collective_schema() -> dict[str, Any]:
     """Return the schema of one load collective."""
-    share = make_object_schema({"slope": NUMBER, "shares": add_description(NUMBER_LIST, "contribution of each class to the damage")})
+    share = make_object_schema(
+        {"slope": NUMBER, "shares": add_description(NUMBER_LIST, "contribution of each class to the damage")}
+    )
     equivalent = make_object_schema({"slope": NUMBER, "cycles": NUMBER, "range": NUMBER, "error": NUMBER})
     ranges = {
         "limits": add_description(NUMBER_LIST, "class limits, n + 1"),

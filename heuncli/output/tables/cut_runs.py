@@ -393,6 +393,5 @@ def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:
     if len(shown_cuts) == len(run.s):
         return ""
     return (
-        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, including jumps and extremes; all cuts: "
-        "--all or --format csv"
+        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, including jumps and extremes; all cuts: --all or --format csv"
     )

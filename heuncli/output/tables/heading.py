@@ -74,9 +74,7 @@ def _describe_moved_bodies(displacements: Sequence[str]) -> list[tuple[str, str]
     """Return the line on bodies that had to leave their given start position, those that moved most first."""
     first_displacements = ", ".join(displacements[:MAX_MOVED_BODIES])
     more = f" and {len(displacements) - MAX_MOVED_BODIES} more" if len(displacements) > MAX_MOVED_BODIES else ""
-    return (
-        [("moved", f"to assemble the joints: {first_displacements}{more}; see heun model")] if displacements else []
-    )
+    return [("moved", f"to assemble the joints: {first_displacements}{more}; see heun model")] if displacements else []
 
 
 def _describe_start(sentences: Sequence[str]) -> list[tuple[str, str]]:
@@ -107,7 +105,12 @@ def _describe_stiff_restart(reasons: Sequence[str]) -> list[tuple[str, str]]:
 def _describe_model(results: Results) -> str:
     model = results.model
     parts = [str(model.get("space", "spatial"))]
-    counted_keys = (("bodies", "body"), ("freedoms", "degree of freedom"), ("loops", "loop"), ("redundant", "redundant constraint"))
+    counted_keys = (
+        ("bodies", "body"),
+        ("freedoms", "degree of freedom"),
+        ("loops", "loop"),
+        ("redundant", "redundant constraint"),
+    )
     parts += [
         format_count(int(model[key]), what)
         for key, what in counted_keys

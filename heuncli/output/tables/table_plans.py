@@ -128,7 +128,9 @@ AXIS = TablePlan(
     "foundation",
     "",
     ("point", "direction", "pitch"),
-    lambda results, labels: "CENTRAL AXIS  of the foundation load, with its point nearest the moment reference point, world axes",
+    lambda results, labels: (
+        "CENTRAL AXIS  of the foundation load, with its point nearest the moment reference point, world axes"
+    ),
     only="axis",
     has_extremes=False,
     missing=NO_AXIS,
@@ -150,9 +152,7 @@ STOPS = TablePlan(
     "stops",
     "stop",
     ("force", "moment"),
-    lambda results, labels: (
-        f'STOPS  {_name_stop_load(labels)} on "to" along the limited coordinate; 0 without contact'
-    ),
+    lambda results, labels: f'STOPS  {_name_stop_load(labels)} on "to" along the limited coordinate; 0 without contact',
     _make_stop_note,
 )
 COUPLING_QUANTITIES = (
