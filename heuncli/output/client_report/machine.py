@@ -13,8 +13,8 @@ from heuncli.output.tables.model_text import LIST_TITLES, collect_facts
 from heuncli.study.workflow import describe
 
 ASSUMPTIONS = (
-    "Bodies are rigid. Joints are ideal, without clearance, compliance or friction unless the spec states otherwise; rods "
-    "are massless. Only gravity and the loads stated in the spec act."
+    "Bodies are rigid. Joints are ideal, without clearance, compliance or friction unless the spec states otherwise; "
+    "rods are massless. Only gravity and the loads stated in the spec act."
 )
 DESCRIBED_KEYS = ("names", "notes")  # keys of a model's description that results do not have
 

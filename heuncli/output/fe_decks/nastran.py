@@ -31,8 +31,8 @@ CARD_NOTES = (
     "GRAV acts along its vector, g - a at the body's origin. RFORCE acts outwards about the axis through 0, 0, 0, with "
     "A in revolutions per second; METHOD 2 is correct for coupled masses (1 where elements have a ZOFFS). Each has its "
     "own set; LOAD adds them.",
-    "RACC is in revolutions per second squared. OptiStruct, like the formula of MSC and Simcenter, applies it as a load "
-    "along the angular acceleration, so it is written here with the opposite sign. MYSTRAN applies it against: use -1 "
+    "RACC is in revolutions per second squared. OptiStruct, like the formula of MSC and Simcenter, applies it as a "
+    "load along the angular acceleration, so it is written here with the opposite sign. MYSTRAN applies it against: use -1 "
     "as the last factor of LOAD there. With the right sign the support reactions vanish.",
     "Keep PARAM,INREL off: the cards contain the inertia loads.",
 )

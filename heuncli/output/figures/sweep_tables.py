@@ -130,7 +130,8 @@ def select_sweep(table: SweepTable, words: Sequence[str]) -> SweepSelection:
     varying = [candidate for candidate in selected.variables if len(candidate.levels) > 1]
     varying.sort(key=lambda candidate: candidate.name != x_name)
     if x_name is not None and x_name not in [candidate.name for candidate in varying]:
-        raise NotDrawable(f"{x_name} has only one value in this plot", "choose another for the horizontal axis, or fix fewer")
+        hint = "choose another for the horizontal axis, or fix fewer"
+        raise NotDrawable(f"{x_name} has only one value in this plot", hint)
     fixed_texts = tuple(
         f"{candidate.name} = {candidate.format_value(candidate.values[0])}"
         for candidate in selected.variables

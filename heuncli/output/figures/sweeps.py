@@ -59,7 +59,7 @@ def make_sweep_figure(table: SweepTable, units: Units, words: Sequence[str] = ()
         raise NotDrawable(f"{table.origin}: the sweep has no rows", "run it first, then plot it")
     picked_table = select_sweep(table, words)
     if not picked_table.variables:
-        raise NotDrawable(f"{table.origin}: a single variant gives no curve", "vary a parameter, or fix fewer variables")
+        raise NotDrawable(f"{table.origin}: a single variant gives no curve", "vary a parameter or fix fewer variables")
     panels, legend, notes = _choose_kind(picked_table)(picked_table, units)
     sentences = [table.origin, *(["with " + ", ".join(picked_table.fixed_texts)] if picked_table.fixed_texts else [])]
     return Figure(table.title, sentences, panels, legend, [*notes, *_count_variants(picked_table.table)])

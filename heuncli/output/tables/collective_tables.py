@@ -114,7 +114,9 @@ def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
         )
         for equivalent in collective.equivalents
     )
-    heading = f"EQUIVALENT RANGE {collective.history.path}  of constant-range cycles with the same damage: (Σ n R^m / N)^(1/m)"
+    heading = (
+        f"EQUIVALENT RANGE {collective.history.path}  of constant cycles with the same damage: (Σ n R^m / N)^(1/m)"
+    )
     return TextTable(heading, columns, rows)
 
 

@@ -29,6 +29,14 @@ def describe_modes(scene_modes: SceneModes) -> list[str]:
     return [*lines, "unstable" if unstable else "stable, except for unrestrained motions" if has_free else "stable"]
 
 
+def describe_coordinate(name: str) -> str:
+    """Describe a coordinate by its axis: `tub.z` becomes `tub: rotation about z`, others keep their name."""
+    owner, _, quantity = name.rpartition(".")
+    if quantity in ("x", "y", "z"):
+        return f"{owner}: rotation about {quantity}"
+    return f"{owner}: displacement along {quantity[1]}" if quantity in ("dx", "dy", "dz") else name
+
+
 def describe_excluded(entry: str) -> str:
     """Describe an entry that was left out or is held fixed."""
     return f"motion of {entry}, fixed at its start" if entry.startswith("drives.") else entry
@@ -60,7 +68,7 @@ def format_mode(mode: Mode) -> ModeTexts:
 def iter_notes(scene_modes: SceneModes) -> Iterator[str]:
     """Yield sentences on what is unstable and what is free."""
     for k, mode in enumerate(scene_modes.modes):
-        names = ", ".join(scene_modes.largest[k])
+        names = ", ".join(map(describe_coordinate, scene_modes.largest[k]))
         if mode.kind == "free":
             bound = format_error(mode.error / (2.0 * math.pi))
             stiffness_note = f" that can be resolved next to the stiff parts: below {bound} Hz"

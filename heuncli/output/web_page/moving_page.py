@@ -86,7 +86,7 @@ def _iter_notes(results: Results, horizon: float | None) -> Iterator[str]:
     if len(results.impulses) > MAX_IMPACTS:
         yield f"{len(results.impulses)} impulses; values are listed for the first {MAX_IMPACTS}."
     if any(joint.get("open") for joint in results.joints.values()):
-        yield "Open: some values are statically indeterminate and depend on stiffness; they are shown as open, without an arrow."
+        yield "Open: some values are statically indeterminate (they depend on stiffness) and have no arrow."
 
 
 def _iter_impacts(
