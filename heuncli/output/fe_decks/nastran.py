@@ -32,8 +32,8 @@ CARD_NOTES = (
     "A in revolutions per second; METHOD 2 is correct for coupled masses (1 where elements have a ZOFFS). Each has its "
     "own set; LOAD adds them.",
     "RACC is in revolutions per second squared. OptiStruct, like the formula of MSC and Simcenter, applies it as a "
-    "load along the angular acceleration, so it is written here with the opposite sign. MYSTRAN applies it against: use -1 "
-    "as the last factor of LOAD there. With the right sign the support reactions vanish.",
+    "load along the angular acceleration, so it is written here with the opposite sign. MYSTRAN applies it against: "
+    "use -1 as the last factor of LOAD there. With the right sign the support reactions vanish.",
     "Keep PARAM,INREL off: the cards contain the inertia loads.",
 )
 FULL_TURN = 2.0 * math.pi

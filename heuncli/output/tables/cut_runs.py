@@ -100,7 +100,7 @@ def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] | No
         if "s" not in section:
             continue
         info = labels.sections.get(name)
-        subject = f"{name} {info.body}" if info else name
+        subject = f"{name}, body {info.body}" if info else name
         axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
         reference_point = info.moment_point if info else "the cut's point"
         meaning = f"{'impulse' if units else 'force'} of the far side on the near side of the cut; N > 0 tension"
