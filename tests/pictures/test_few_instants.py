@@ -42,7 +42,7 @@ def test_nor_shown(words: tuple[str, ...], heun: Heun, specs: Path) -> None:
 def test_nor_reported(heun: Heun, specs: Path) -> None:
     done = heun("report", "late.yaml", "-o", "-", "--format", "md", "--quiet")
     assert done.returncode == 0 and "```text\n" not in done.stdout.partition("## 2")[0]
-    assert "all are beyond its horizon" in done.stdout
+    assert "all output times are past the horizon" in done.stdout
 
 
 @pytest.mark.parametrize("words", PICTURES)
@@ -54,4 +54,4 @@ def test_one_instant_of_a_motion(words: tuple[str, ...], heun: Heun, specs: Path
 
 def test_a_page_of_one_instant_says_nothing_of_a_horizon(heun: Heun, specs: Path) -> None:
     done = heun("show", "one.yaml", "-o", "-", "--quiet")
-    assert done.returncode == 0 and "Nothing is claimed of this motion" not in done.stdout
+    assert done.returncode == 0 and "No results are claimed after the start of this motion" not in done.stdout

@@ -115,7 +115,7 @@ def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:
     (panel,), words = drawn(heun, "slanted.yaml", "polar", "foundation")
     (curve,) = panel.lines("foundation.force")
     assert np.abs(np.hypot(*curve.T) - 2 * 0.1 * 10**2).max() < panel.pixel
-    assert "directions 1 and 2 are (1, 0, 0) and (0, 0.8944, -0.4472)" in words and "across the plane" not in words
+    assert "directions 1 and 2 are (1, 0, 0) and (0, 0.8944, -0.4472)" in words and "normal to the plane" not in words
 
 
 def test_where_little_turns_instants_are_marked(heun: Heun, folder: Path) -> None:
@@ -141,15 +141,15 @@ def test_a_curve_is_broken_where_a_blow_strikes(heun: Heun) -> None:
 
 
 REFUSED = [
-    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram is of a vector"),
-    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram is of a vector"),
-    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram is of a vector"),
+    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram needs a vector"),
+    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram needs a vector"),
+    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram needs a vector"),
     ((ROTOR, "polar"), "of what is not said"),
     ((ROTOR, "polar", "joints.wrong"), "is not a result"),
     ((ROTOR, "polar", "joints.left", "--view", "20,30"), "--view 20,30"),
     ((ROTOR, "polar", "joints.left", "--axes", "body"), "--axes body"),
     ((str(SPECS / "door.yaml"), "polar", "foundation"), "there is one instant"),
-    ((str(SPECS / "double.yaml"), "polar", "joints.elbow"), "no plane holds it"),
+    ((str(SPECS / "double.yaml"), "polar", "joints.elbow"), "it does not stay in a plane"),
 ]
 
 
@@ -165,7 +165,7 @@ def test_what_stands_across_the_plane_is_said(heun: Heun) -> None:
     (panel,), words = drawn(heun, double, "polar", "joints.elbow", "--view", "x")
     force = np.array(json.loads(heun("run", double, "--format", "json").stdout)["joints"]["elbow"]["force"])
     assert far_from(force[:, 1:], panel.lines("joints.elbow.force")[0]) < panel.pixel
-    across = re.search(r"across the plane up to ([\d.]+) N", words)
+    across = re.search(r"normal to the plane up to ([\d.]+) N", words)
     assert across is not None and float(across[1]) == pytest.approx(np.abs(force[:, 0]).max(), rel=0.02)
 
 
@@ -195,7 +195,7 @@ def test_what_is_open_across_the_plane_hides_nothing_in_it(heun: Heun, folder: P
     assert done.returncode == 0
     words = " ".join(texts_of(Path("drawn.svg").read_text()))
     assert "joints.A.force: largest" in words
-    assert "across the plane, which is not drawn" in " ".join(words.split())
+    assert "normal component open or unknown, not drawn" in " ".join(words.split())
 
 
 def test_panels_over_one_angle_share_their_grid(heun: Heun, folder: Path) -> None:
