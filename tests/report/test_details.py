@@ -79,7 +79,7 @@ def test_a_moment_that_is_noise_beside_the_force_on_its_arm_reads_0() -> None:
 def test_what_is_driven_is_told_beside_the_freedoms() -> None:
     free = pendulum(ONE)
     driven = replace(free, model=free.model | {"freedoms": 0, "driven": 1})
-    assert "2 bodies, 4 freedoms\n" in format_heading(free)
+    assert "2 bodies, 4 degrees of freedom\n" in format_heading(free)
     assert "2 bodies, 0 degrees of freedom, 1 driven\n" in format_heading(driven)
 
 

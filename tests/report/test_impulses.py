@@ -319,7 +319,7 @@ def test_expectations_are_compared() -> None:
 def test_a_resting_stop_has_its_force_beside_the_joints() -> None:
     results = replace(pendulum(T), stops={"buffer": {"force": np.full(len(T), 4.5)}})
     found = text(results)
-    assert 'STOPS  force ON "to"' in found
+    assert 'STOPS  force on "to"' in found
     assert "4.5" in found.partition("STOPS")[2].partition("SECTIONS")[0]
     lines = list(csv.DictReader(io.StringIO(to_csv(results, labels()))))
     assert {r["unit"] for r in lines if r["kind"] == "stops"} == {"N"}

@@ -38,7 +38,10 @@ def line_of(text: str, group: str, label: str) -> list[str]:
 def test_headings_say_on_what_by_what_in_which_axes_about_which_point() -> None:
     text = extremes_page(FakeStudy(T))
     assert "FOUNDATION  force and moment ON the ground, world axes, moment about O = (0, 0, 0) m" in text
-    assert 'JOINTS  reaction of "from" on "to"; drive and friction are listed separately; world axes, moment about the "to" point' in text
+    assert (
+        'JOINTS  reaction of "from" on "to"; drive and friction are listed separately; world axes, moment about the "to" point'
+        in text
+    )
     assert (
         "SECTION along, body lower  force of the far side on the near side of the cut; N > 0 tension; e1 = body x, e2 = n × e1;"
         " moments about the cut's point" in text
@@ -292,9 +295,9 @@ def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
     text = format_heading(pendulum(T, warnings=("the bar is thin",)))
     for part in (
         "A fake",
-        "spatial, 2 bodies, 4 freedoms",
+        "spatial, 2 bodies, 4 degrees of freedom",
         "0 to 2 s, 21 samples; dop853, 57 steps, 812 evaluations; compiled kernel",
-        "motion within 4e-11 of the scene's size, loads within 5e-10 of the largest",
+        "motion within 4e-11 of model size, loads within 5e-10 of the largest load",
         "relative energy error 2e-12, largest constraint error 1e-16 m, force balance error 3e-15",
         "warning   the bar is thin",
     ):

@@ -140,7 +140,7 @@ def test_what_was_meant_by_a_path_is_found(path: str, meant: str) -> None:
         ("along.M2.3", "did you mean sections.along.M2.3?"),
         ("coordinates.rope.length", "known words here: slew"),
         ("mag", "known names: jib"),
-        ("stops.buffer.force", "the model has no stops"),
+        ("stops.buffer.force", "the scene has no stops"),
         ("shaft.angle", "known names: jib, load, slew, rope, root, along"),
         ("slew.colour", "slew is one of the joints; joints.slew has point, force"),
     ],

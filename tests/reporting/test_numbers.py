@@ -116,7 +116,7 @@ def test_verdicts_are_those_of_check(heun: Heun) -> None:
     assert [(int(row[0]), row[1], row[2]) for row in rows] == [
         (case["line"], case.get("case", "base model"), case["of"]) for case in told
     ]
-    assert [row[-1] == "holds" for row in rows] == [case["passed"] for case in told]
+    assert [row[-1] == "passed" for row in rows] == [case["passed"] for case in told]
 
 
 def test_what_fails_is_said_first_and_by_the_exit_code(heun: Heun) -> None:
@@ -124,7 +124,7 @@ def test_what_fails_is_said_first_and_by_the_exit_code(heun: Heun) -> None:
     assert done.returncode == 1
     read = PageReader(done.stdout)
     assert "1 of 1 check in the spec FAILED: joints.pivot.force.z." in read.by_tag["header"][0]
-    assert any(row[-1] == "FAILS" for row in read.rows)
+    assert any(row[-1] == "FAILED" for row in read.rows)
 
 
 def test_expectations_of_the_scene_without_its_cases_are_checked(heun: Heun, folder: Path) -> None:
@@ -134,7 +134,7 @@ def test_expectations_of_the_scene_without_its_cases_are_checked(heun: Heun, fol
     assert heun("check", "cased.yaml").returncode == 1
     done = heun("report", "cased.yaml", "-o", "-")
     assert done.returncode == 1
-    verdicts = {row[1]: row[-1] for row in PageReader(done.stdout).rows if row[-1] in ("holds", "FAILS")}
+    verdicts = {row[1]: row[-1] for row in PageReader(done.stdout).rows if row[-1] in ("passed", "FAILED")}
     assert verdicts == {"base model": "passed", "heavy": "FAILED"}
     alone = heun("report", "cased.yaml", "-o", "-", "--case", "heavy")
     assert not any("base model" in row for row in PageReader(alone.stdout).rows)

@@ -148,7 +148,7 @@ def make_extremes_tables(
         cuts = find_sample_extremes(times, columns)
     extremes, places, cuts = merge_extremes(run, shown_cuts, extremes, places, cuts)
     where = "also between the output times" if cuts.is_searched else f"at {run.values.shape[1]} output times"
-    notes = [f"envelope: lowest and highest at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
+    notes = [f"envelope: minimum and maximum at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
     table = make_extremes_table(run, times, extremes, places, certain)
     styles = _choose_styles(run, certain, extremes)
     bounds = {"min": cuts.low.reshape(shape), "max": cuts.high.reshape(shape)}
