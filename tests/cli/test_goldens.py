@@ -103,7 +103,7 @@ def test_what_one_of_them_lacks_is_told_by_name() -> None:
     others = {
         "missing": run.model_copy(update={"numbers": {k: v for k, v in run.numbers.items() if k != path}}),
         "is open": with_number(run, path, run.numbers[path].model_copy(update={"greatest": "open"})),
-        "beyond the horizon": with_number(run, path, run.numbers[path].model_copy(update={"last": "beyond"})),
+        "past the horizon": with_number(run, path, run.numbers[path].model_copy(update={"last": "beyond"})),
         "became open": run.model_copy(update={"open": [*run.open, path]}),
     }
     for word, other in others.items():

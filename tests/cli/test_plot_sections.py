@@ -43,7 +43,7 @@ REFUSED = {
     ("conrod.yaml", "sections.shank", "--units", "kg"): ("bad-option", "kg", ""),
     ("held.yaml", "sections.along", "--at", "1"): ("bad-option", "--at 1", "there is one instant"),
     ("held.yaml", "conrod.yaml", "sections.along"): ("unknown-path", "sections.along", "in conrod.yaml"),
-    ("held.yaml", "struck.yaml", "sections.along"): ("bad-option", "impulses only", "separately"),
+    ("held.yaml", "struck.yaml", "sections.along"): ("bad-option", "impulses of a blow", "one after the other"),
     ("cases.yaml", "sections.along", "--case", "none"): ("unknown-case", "none", "light"),
 }
 

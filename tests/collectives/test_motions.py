@@ -295,7 +295,7 @@ def test_forms(heun: Heun, folder: Path) -> None:
     assert "range above [kN]" in table
     assert "a magnitude has no sign" in table
     assert heun(*words, "--case", "all").stdout.count("EQUIVALENT RANGE") == 4
-    assert "| slope m | of cycles | range [N] | error [N] |" in heun(*words, "--format", "markdown").stdout
+    assert "| slope m | cycles | range [N] | error [N] |" in heun(*words, "--format", "markdown").stdout
 
 
 def test_blows_are_told_to_be_in_none(heun: Heun) -> None:

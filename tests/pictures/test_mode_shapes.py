@@ -83,7 +83,7 @@ def test_modes_in_space_are_drawn(heun: Heun, name: str) -> None:
 def test_what_excites_is_left_out(heun: Heun) -> None:
     heun("plot", str(SPECS / "laval.yaml"), "modes", "--without", "motor", "-o", "drawn.svg")
     words = "\n".join(texts_of(Path("drawn.svg").read_text()))
-    assert "excluding motion of drives.motor, fixed at its start" in words
+    assert "without motion of drives.motor, fixed at its start" in words
     assert "mode 1: 25.1331 Hz, damping 0.0500000; across.travel" in words
 
 

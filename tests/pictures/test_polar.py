@@ -62,7 +62,7 @@ def test_the_curve_goes_through_the_numbers_of_the_json(heun: Heun) -> None:
     force = np.array(found["joints"]["main"]["force"])
     assert far_from(force[:, 1:], curve) < panel.pixel
     peak = json.loads(heun("run", ENGINE, "--measure", "max joints.main.radial", "--format", "json").stdout)
-    largest = re.search(r"largest ([\d.]+) N towards ([\d.]+)°.* at t = ([\d.]+) s, .*angle = ([\d.]+)°", words)
+    largest = re.search(r"largest ([\d.]+) N at ([\d.]+)°.* at t = ([\d.]+) s, .*angle = ([\d.]+)°", words)
     assert largest is not None
     value, towards, at, angle = map(float, largest.groups())
     assert value == pytest.approx(peak["value"], rel=1e-5) and at == pytest.approx(peak["at"], rel=1e-4)
@@ -84,11 +84,11 @@ def test_units_are_those_asked_for(heun: Heun) -> None:
 def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path, way: str) -> None:
     (folder / "even.yaml").write_text(CRANK.replace("LAW", f'"{way}2*pi*t"'))
     (panel,), words = drawn(heun, "even.yaml", "polar", "joints.main")
-    assert "the last turn of coordinates.main.angle, t = 2 to 3 s" in words
+    assert "the last revolution of coordinates.main.angle, t = 2 to 3 s" in words
     assert {"0°", "90°", "180°", "270°"} <= set(words.split("\n")) and "360°" not in words.split("\n")
     marks, centripetal = panel.spots(filled=False), 2 * 0.1 * (2 * np.pi) ** 2
     assert np.abs(np.hypot(*marks.T) - centripetal).max() < panel.pixel
-    assert "joints.main.force: 7.8956" in words and "N all along" in words  # no place of it is the largest
+    assert "joints.main.force: 7.8956" in words and "N at all times" in words  # no place of it is the largest
     assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
 
 
@@ -104,7 +104,7 @@ def test_rounding_is_a_point(heun: Heun) -> None:
     """Of what is less than its error the axes reach as far as that."""
     (panel,), words = drawn(heun, str(ROOT / "specs" / "cardan.yaml"), "polar", "foundation", "--view", "x")
     (curve,) = panel.lines("foundation.force")
-    assert "foundation.force: ? N all along" in words
+    assert "foundation.force: ? N at all times" in words
     assert np.hypot(*curve.T).max() < 0.5 * panel.pixel * (panel.right - panel.left)
     assert panel.x.values(np.array([panel.left]))[0] < 0.0 < panel.x.values(np.array([panel.right]))[0]
 
@@ -141,14 +141,14 @@ def test_a_curve_is_broken_where_a_blow_strikes(heun: Heun) -> None:
 
 
 REFUSED = [
-    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram needs a vector"),
-    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram needs a vector"),
-    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram needs a vector"),
+    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram"),
+    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram"),
+    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram"),
     ((ROTOR, "polar"), "of what is not said"),
     ((ROTOR, "polar", "joints.wrong"), "is not a result"),
     ((ROTOR, "polar", "joints.left", "--view", "20,30"), "--view 20,30"),
     ((ROTOR, "polar", "joints.left", "--axes", "body"), "--axes body"),
-    ((str(SPECS / "door.yaml"), "polar", "foundation"), "there is one instant"),
+    ((str(SPECS / "door.yaml"), "polar", "foundation"), "there is only one instant"),
     ((str(SPECS / "double.yaml"), "polar", "joints.elbow"), "it does not stay in a plane"),
 ]
 

@@ -73,7 +73,7 @@ def test_a_field_over_two(heun: Heun, swept: Heun, file: str) -> None:
         assert fill in near
     levels = shades.x.values(np.array([shades.left, shades.right]))
     assert levels == pytest.approx([1.0, 27.0], abs=0.1)
-    assert any("least 1.0 N at m = 1, g = 1; greatest 27.0 N at m = 3, g = 9" in word for word in words)
+    assert any("min. 1.0 N at m = 1, g = 1; max. 27.0 N at m = 3, g = 9" in word for word in words)
 
 
 def test_what_could_not_be_solved_is_a_hole_and_counted(heun: Heun, swept: Heun) -> None:

@@ -21,7 +21,7 @@ def describe_modes(scene_modes: SceneModes) -> list[str]:
     frame = FRAME_PHRASE if scene_modes.is_steady else HELD_DRIVES_PHRASE if scene_modes.has_held_drives else ""
     lines = [f"small oscillations {STATE_PHRASES[scene_modes.reference]}{frame}"]
     if scene_modes.omitted_paths:
-        lines.append(f"excluding {', '.join(map(describe_excluded, scene_modes.omitted_paths))}")
+        lines.append(f"without {', '.join(map(describe_excluded, scene_modes.omitted_paths))}")
     if not scene_modes.modes:
         return [*lines, "no degree of freedom can oscillate"]
     unstable = any(mode.growth > 0.0 for mode in scene_modes.modes)
