@@ -324,9 +324,9 @@ def test_entries_are_asked_for_by_their_paths(heun: Heun) -> None:
 
 @pytest.mark.parametrize(("words", "told"), [
     ("joints.pivto", "did you mean joints.pivot?"),
-    ("joints.pivot.force", "say joints.pivot; --measure prints single numbers"),
+    ("joints.pivot.force", "use joints.pivot; --measure prints single numbers"),
     ("sections.middle", "the model has no sections"),
-    ("foundation.force", "say foundation; --measure prints single numbers"),
+    ("foundation.force", "use foundation; --measure prints single numbers"),
     ("foundation.axes", "did you mean foundation.axis?"),
     ("nothing.else", "known: motion"),
     ("joint", "did you mean joints?"),

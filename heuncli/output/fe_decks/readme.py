@@ -45,7 +45,7 @@ def readme(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Seque
         ("Mesh", _mesh_lines(cases)),
         ("Cases", [line for k, case in enumerate(cases.cases, start=1) for line in _case_lines(cases, case, k)]),
         ("Points", [f"{node.number} {plain_text(node.label)}" for node in nodes.nodes]),
-        ("Known", [_accuracy_note(cases)]),
+        ("Accuracy", [_accuracy_note(cases)]),
         ("Split", [f"distribution of indeterminate reactions: {plain_text(cases.split)}"] if cases.split else []),
         (
             "Plane",
@@ -55,7 +55,7 @@ def readme(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Seque
         ),
         ("Spread", [DISTRIBUTED_NOTE] if _has_distributed_loads(cases) else []),
         ("Tie", [tie]),
-        ("Hold", [SUPPORT_NOTE]),
+        ("Supports", [SUPPORT_NOTE]),
         ("Inertia", cards),
     ]
     for head, lines in parts:
