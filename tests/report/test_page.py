@@ -39,12 +39,12 @@ def test_headings_say_on_what_by_what_in_which_axes_about_which_point() -> None:
     text = extremes_page(FakeStudy(T))
     assert "FOUNDATION  force and moment ON the ground, world axes, moment about O = (0, 0, 0) m" in text
     assert (
-        'JOINTS  reaction of "from" on "to"; drive and friction are listed separately; world axes, moment about the "to" point'
-        in text
+        'JOINTS  reaction of "from" on "to"; drive and friction are listed separately; world axes, '
+        'moment about the "to" point' in text
     )
     assert (
-        "SECTION along, body lower  force of the far side on the near side of the cut; N > 0 tension; e1 = body x, e2 = n × e1;"
-        " moments about the cut's point" in text
+        "SECTION along, body lower  force of the far side on the near side of the cut; N > 0 tension; "
+        "e1 = body x, e2 = n × e1; moments about the cut's point" in text
     )
     assert "pivot  ball, ground.O → upper.top" in text
 

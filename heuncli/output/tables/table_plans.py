@@ -66,7 +66,8 @@ def _make_joint_note(name: str, labels: Labels) -> str:
 
 def _make_force_note(name: str, labels: Labels) -> str:
     info = labels.forces.get(name)
-    return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
+    kind = info.type.replace("turn_spring", "torsion spring") if info else ""
+    return f"{kind} on {info.joint}" if info and info.joint else kind
 
 
 def _make_stop_note(name: str, labels: Labels) -> str:
