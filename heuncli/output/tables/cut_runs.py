@@ -203,7 +203,7 @@ def _make_envelope(
             for word in words
         ]
     if not columns:
-        return TextTable("", notes=(*notes, "0 throughout"))
+        return TextTable("", notes=(*notes, "all values 0"))
     shown = {text for column in texts for text in column}
     all_notes = [*notes, *[ZERO_NOTE] * left_out]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
@@ -263,7 +263,7 @@ def make_extremes_table(
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
-        return TextTable(run.heading, notes=("0 throughout",))
+        return TextTable(run.heading, notes=("all values 0",))
     notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
     return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(quantities))))
 
