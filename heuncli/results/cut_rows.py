@@ -20,7 +20,9 @@ from heuncli.results.results import Array, Indices
 from heuncli.results.results_schema import parse_index
 
 SIDES = ("before", "beyond")
-ACCEPTED = "a place is @0.28 (metres), @280mm, @start or @end, a cut its number from 0; either with :before or :beyond"
+ACCEPTED = (
+    "a position is @0.28 (metres), @280mm, @start or @end; a cut is its number from 0; both accept :before or :beyond"
+)
 
 
 class CutSelector(NamedTuple):
@@ -41,13 +43,13 @@ def parse_cut(word: str) -> CutSelector:
     match = index_match if position_match is None else position_match
     side = None if match is None else match["side"]
     if (cut is None and position_match is None) or (side is not None and side not in SIDES):
-        raise cut_error(f"'{word}' is no place along a run of cuts", ACCEPTED)
+        raise cut_error(f"'{word}' is not a position along a run of cuts", ACCEPTED)
     if position_match is None:
         return CutSelector(None, None, cut, side)
     position = position_match["at"].lower()
     if position in ("start", "end"):
         if position_match["unit"]:
-            raise cut_error(f"'{word}' is no place along a run of cuts", ACCEPTED)
+            raise cut_error(f"'{word}' is not a position along a run of cuts", ACCEPTED)
         return CutSelector(None, position, None, side)
     return CutSelector(float(position) * _unit_in_metres(word, position_match["unit"]), None, None, side)
 
@@ -95,7 +97,7 @@ def find_cut_rows(word: str, s: Array, sides: Sequence[str | None] | None) -> li
     matching = [row for row in rows if sides[row] == selector.side]
     if not matching:
         side = sides[rows[0]]
-        message = f"'{word}': the run {'begins' if cut == 0 else 'ends'} there, with the cut just {side} what acts"
+        message = f"'{word}': the run {'begins' if cut == 0 else 'ends'} there, with the cut just {side} the load"
         raise cut_error(message, f"{word.partition(':')[0]}:{side}, or leave the side out")
     return matching
 
@@ -105,7 +107,7 @@ def _find_cut(word: str, selector: CutSelector, s: Array) -> int:
     last = len(s) - 1
     if selector.cut is not None:
         if selector.cut > last:
-            raise cut_error(f"'{word}': the run has {last + 1} cuts, 0 to {last}", f"they count from 0: {last}")
+            raise cut_error(f"'{word}': the run has {last + 1} cuts, 0 to {last}", f"cuts are counted from 0: {last}")
         return selector.cut
     if selector.end is not None or selector.s is None:
         return 0 if selector.end == "start" else last
@@ -116,8 +118,8 @@ def _find_cut(word: str, selector: CutSelector, s: Array) -> int:
         raise cut_error(f"'{word}': the run is {s[-1]:.10g} m long", "@end is its last cut")
     above = int(np.searchsorted(s, selector.s))
     near = f"@{s[above - 1]:.10g} and @{s[above]:.10g}"
-    message = f"'{word}': no cut was asked for there; the nearest are at {near} (nothing is told between them)"
-    raise cut_error(message, f"take one of them, or another count than {len(s)}")
+    message = f"'{word}': no cut was requested there; the nearest are at {near} (no results between them)"
+    raise cut_error(message, f"use one of them, or a count other than {len(s)}")
 
 
 def find_cut_row(word: str, s: Array, sides: Sequence[str | None], values: Array) -> int:
@@ -131,5 +133,5 @@ def find_cut_row(word: str, s: Array, sides: Sequence[str | None], values: Array
     difference = np.abs(before - beyond, where=is_known, out=np.zeros_like(before))
     if (np.isfinite(before) == np.isfinite(beyond)).all() and (difference <= tolerances.WRITTEN * scale).all():
         return rows[0]
-    message = f"'{word}': something acts in the plane of this cut, on whose two sides the values differ"
+    message = f"'{word}': a load acts in the plane of this cut, so the values on its two sides differ"
     raise cut_error(message, f"{word}:before or {word}:beyond")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from heuncli.results.results_schema import parse_index
 
-NO_RUN = "@ names a place along a run of cuts: sections with from, to and count; leave it out"
+NO_RUN = "@ gives a position along a run of cuts (section with from, to and count): leave it out"
 NUMBER = r"(?:\d+(?:\.\d+)?|\.\d+)(?:e[+-]?\d+)?"
 POSITION_WORD = re.compile(
     rf"@(?P<at>start|end|{NUMBER})(?P<unit>[^\W\d_]*)(?::(?P<side>\w*))?(?=\.|\Z)", re.IGNORECASE

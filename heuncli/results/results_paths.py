@@ -222,8 +222,8 @@ def _path_hint(parent: str, word: str, known_names: Sequence[str]) -> str:
         return f"did you mean {near}?"
     if known_names:
         return (
-            f"a path that leads on: {parent}.{known_names[0].partition(' ')[0]}"
+            f"continue the path: {parent}.{known_names[0].partition(' ')[0]}"
             if parent
-            else f"it begins with {known_names[0]}, say"
+            else f"paths begin with {known_names[0]}, for example"
         )
-    return f"leave .{word} out: the path ends before it" if word else "name a number, as energy.kinetic"
+    return f"leave .{word} out: the path ends before it" if word else "name a number, such as energy.kinetic"

@@ -120,13 +120,13 @@ def block(name: str) -> Quantity:
 def shares(prefix: str, *quantities: Quantity) -> tuple[Quantity, ...]:
     """Make the rows of the shares that each cause has in the force and moment (or other quantities) at a path."""
     wrench = vector("force", "N"), vector("moment", "N·m")
-    meaning = "the part that CAUSE has in it: `gravity`, a force by its name, `drives` or `motion`"
+    meaning = "contribution of CAUSE: `gravity`, the name of a force, `drives` or `motion`"
     return rows(f"{prefix}.shares.CAUSE", meaning, *(quantities or wrench))
 
 
 DIRECT = (
-    "of that part the load itself: for a section where it stands on the piece, for the foundation where it is applied "
-    "from outside"
+    "direct part of that contribution, the load itself: for a section if it acts "
+    "on the far side, for the foundation if it is external"
 )
 # The loads of a section: along n, e1 and e2, and about them. The stresses they make.
 SECTION_FORCES, SECTION_MOMENTS = ("N", "Q1", "Q2"), ("T", "M1", "M2")
@@ -135,18 +135,18 @@ RESULTANT_UNITS = dict.fromkeys(SECTION_FORCES, "N") | dict.fromkeys(SECTION_MOM
 STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
 # The loads of a joint that are one number: along its axis, across it, about axes across it; of a rod.
 AXIAL_FORCES, TILTING_MOMENTS = ("axial", "radial", "tension"), ("tilting",)
-OPEN = "the components that are open at some instant"
+OPEN = "components that are open at some time"
 NOT_YET = "not yet"
 ROWS: tuple[Quantity, ...] = (
-    *rows("", "what was solved, as `heun model` tells it", block("model")),
-    *rows("", "completed or stopped, and a message", words("status")),
-    *rows("", "the instants", scalar("time", "s")),
-    *rows("bodies.BODY", "of the body's origin", vector("position", "m"), vector("velocity", "m/s")),
-    *rows("bodies.BODY", "attitude of the body; the columns are its axes", scalar("rotation", "1", (SPACE, SPACE))),
-    *rows("bodies.BODY", "the attitude as unit quaternion `w`, `x`, `y`, `z`; w ≥ 0 at the start, its sign does not "
-        "jump", scalar("quaternion", "1", (QUATERNION,))),
-    *rows("bodies.BODY", "Rodrigues' vector of the attitude: tan(half the turn) times its axis, of the turn from the "
-        "world's axes; null at half a turn", vector("rodrigues", "1")),
+    *rows("", "the model, as shown by `heun model`", block("model")),
+    *rows("", "completed or stopped, with a message", words("status")),
+    *rows("", "output times", scalar("time", "s")),
+    *rows("bodies.BODY", "of the body origin", vector("position", "m"), vector("velocity", "m/s")),
+    *rows("bodies.BODY", "orientation of the body; the columns are its axes", scalar("rotation", "1", (SPACE, SPACE))),
+    *rows("bodies.BODY", "orientation as unit quaternion `w`, `x`, `y`, `z`; w ≥ 0 at the start, "
+        "without sign jumps", scalar("quaternion", "1", (QUATERNION,))),
+    *rows("bodies.BODY", "Rodrigues vector of the orientation relative to world axes: tan(half the "
+        "rotation angle) times the axis; null at 180°", vector("rodrigues", "1")),
     *rows("bodies.BODY", "of the centre of mass",
         vector("center", "m"), vector("center_velocity", "m/s"), vector("center_acceleration", "m/s²")),
     *rows("bodies.BODY", "of the body", vector("angular_velocity", "rad/s"), vector("angular_acceleration", "rad/s²")),
@@ -154,133 +154,141 @@ ROWS: tuple[Quantity, ...] = (
         vector("momentum", "N·s"), vector("moment_of_momentum", "N·m·s")),
     *rows("points.POINT", "of a named point, `body.point`",
         vector("position", "m"), vector("velocity", "m/s"), vector("acceleration", "m/s²")),
-    *rows("coordinates.JOINT", "turning of `to` against `from` about the axis, turns counted",
+    *rows("coordinates.JOINT", "rotation of `to` relative to `from` about the axis, counted over revolutions",
         scalar("angle", "rad"), scalar("rate", "rad/s")),
-    *rows("coordinates.JOINT", "of the coordinate; of a cylinder along its axis",
+    *rows("coordinates.JOINT", "of the coordinate; for a cylinder, along its axis",
         scalar("acceleration", "m/s² | rad/s²")),
-    *rows("coordinates.JOINT", "sliding of `to` against `from` along the axis",
+    *rows("coordinates.JOINT", "displacement of `to` relative to `from` along the axis",
         scalar("travel", "m"), scalar("speed", "m/s")),
     *rows("coordinates.JOINT", "of a cylinder about its axis", scalar("angular_acceleration", "rad/s²")),
-    *rows("foundation", "total ON the ground, its moment about `about`",
+    *rows("foundation", "total load ON the ground, moment about `about`",
         scalar("about", "m", (SPACE,), is_timed=False), vector("force", "N"), vector("moment", "N·m")),
-    *rows("foundation.axis", "central axis: its point nearest to `about`, its direction, moment over force",
+    *rows("foundation.axis", "central axis: point nearest to `about`, direction, and moment divided by force",
         vector("point", "m"), vector("direction", "1"), scalar("pitch", "m")),
-    *rows("foundation.mass_effect", "mass effect (56): +Σ m ẍ, the rates of Σ m x × ẋ and of Σ I σ",
+    *rows("foundation.mass_effect", "mass effect (56): +Σ m ẍ, d/dt Σ m x × ẋ and d/dt Σ I σ",
         vector("force", "N"), vector("moment_orbital", "N·m"), vector("moment_spin", "N·m")),
-    *rows("foundation.supports.JOINT", "of a joint ON the ground, its moment about the `to` point",
+    *rows("foundation.supports.JOINT", "load of a joint ON the ground, moment about the `to` point",
         vector("force", "N"), vector("moment", "N·m")),
-    *rows("foundation.elements.ELEMENT", "of a force, drive or stop ON the ground, its moment about `point`",
+    *rows("foundation.elements.ELEMENT", "load of a force, drive or stop ON the ground, moment about `point`",
         vector("force", "N"), vector("moment", "N·m"), vector("point", "m")),
     *shares("foundation"),
     *rows("foundation.shares.CAUSE", DIRECT, vector("direct_force", "N"), vector("direct_moment", "N·m")),
     *shares("foundation.supports.JOINT"),
     *shares("foundation.elements.ELEMENT"),
-    *rows("joints.JOINT", "of the constraint alone, `from` ON `to`; `point`, about which the moment is, is where the "
-        "`to` point is now",
+    *rows("joints.JOINT", "constraint reaction of `from` ON `to`; moment about `point`, the current "
+        "position of the `to` point",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
-    *rows("joints.JOINT", f"{OPEN}, and those that a chosen split gives", words("open"), words("chosen")),
-    *rows("joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
-    *rows("joints.JOINT", "the force along the axis, the force across it, the moment across it",
+    *rows("joints.JOINT", f"{OPEN}, and those set by a chosen distribution", words("open"), words("chosen")),
+    *rows("joints.JOINT", "drive force or torque ON `to`, along or about the axis", scalar("drive", "N | N·m")),
+    *rows("joints.JOINT", "force along the axis, force perpendicular to it, moment perpendicular to it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
-    *rows("joints.JOINT", "mean pressure of its `bearing`: force (with an axis `radial`) / (diameter · width)",
+    *rows("joints.JOINT", "mean pressure in its `bearing`: force (`radial` if the joint has an axis) / "
+        "(diameter · width)",
         scalar("pressure", "Pa")),
-    *rows("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
-    *rows("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
-    *rows("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
+    *rows("joints.JOINT", "contact point of the roller, for a `curve` with a `radius`", vector("contact_point", "m")),
+    *rows("joints.JOINT", "force of a rod, > 0 in tension", scalar("tension", "N")),
+    *rows("joints.JOINT", "torque of a `cv` ON `to` about either shaft", scalar("torque", "N·m")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
         scalar("tension", "N"), scalar("torque", "N·m")),
-    *rows("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
+    *rows("stops.STOP", "load of the stop ON `to`, along or about the limited coordinate; 0 without contact",
         scalar("force", "N"), scalar("moment", "N·m")),
-    *rows("couplings.COUPLING", "the load that the coupling carries; `contact`: of a cam along the normal of its "
-        "flank, above zero where it presses", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
-    *rows("couplings.COUPLING", "of a cam, the angle between that normal and the way of the follower",
+    *rows("couplings.COUPLING", "load transmitted by the coupling; `contact`: cam force along the flank "
+        "normal, > 0 in compression", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
+    *rows("couplings.COUPLING", "for a cam, angle between that normal and the follower direction",
         scalar("pressure_angle", "rad")),
-    *rows("couplings.COUPLING", "of gears all of the tooth force; of a wheel what the plane presses it with",
+    *rows("couplings.COUPLING", "for gears, the total tooth force; for a wheel, the normal force of the plane",
         scalar("normal", "N")),
-    *rows("couplings.COUPLING", "of gears, the parts of the tooth force beside the tangential one",
+    *rows("couplings.COUPLING", "for gears, the radial and axial parts of the tooth force",
         scalar("radial", "N"), scalar("axial", "N")),
-    *rows("couplings.COUPLING", "of a screw with friction, the power that comes out by the power that goes in; 0 where "
-        "none comes out", scalar("efficiency", "1")),
-    *rows("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
-    *rows("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
+    *rows("couplings.COUPLING", "for a screw with friction, output power / input power; 0 if there is no output",
+        scalar("efficiency", "1")),
+    *rows("couplings.COUPLING", "for a screw, about its axis", scalar("torque", "N·m")),
+    *rows("couplings.COUPLING", "rope tension; if sheaves grip the rope it differs after the first of them: "
+        "last tension",
         scalar("tension", "N"), scalar("last_tension", "N")),
-    *rows("couplings.COUPLING", "of a belt, the pulls of its strands; below zero one would have to push",
+    *rows("couplings.COUPLING", "strand tensions of a belt; a negative value would mean compression",
         scalar("tight", "N"), scalar("slack", "N")),
-    *rows("couplings.COUPLING", "of a wheel: what keeps it from slipping, in all, along its track and along its axle's "
-        "shadow on the plane, ON the wheel", scalar("friction", "N"), scalar("along", "N"), scalar("aside", "N")),
-    *rows("couplings.COUPLING", "of a wheel with a coefficient of friction, coefficient · normal − friction: it slips "
-        "where that is below zero", scalar("grip", "N")),
-    *rows("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about "
-        "`point`", vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
+    *rows("couplings.COUPLING", "friction force ON a wheel that prevents slip: total, along its track, and "
+        "along the axle's projection on the plane",
+        scalar("friction", "N"), scalar("along", "N"), scalar("aside", "N")),
+    *rows("couplings.COUPLING", "for a wheel with a friction coefficient: coefficient · normal − friction; it "
+        "slips if this is negative", scalar("grip", "N")),
+    *rows("couplings.COUPLING.on.END", "load ON a connected body or the ground, moment about `point`",
+        vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *rows("couplings.COUPLING", OPEN, words("open")),
     *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N"),
         scalar("normal", "N"), scalar("along", "N"), scalar("aside", "N"), scalar("torque", "N·m"),
         scalar("tension", "N"), scalar("last_tension", "N")),
-    *rows("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
-    *rows("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
+    *rows("sections.SECTION", "reference point of the moments", cut_vector("point", "m")),
+    *rows("sections.SECTION", "n, towards the far side of the cut, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),
     *rows("sections.SECTION", OPEN, words("open")),
-    *rows("sections.SECTION", "of the piece ON the remainder", cut_vector("force", "N"), cut_vector("moment", "N·m")),
+    *rows("sections.SECTION", "force and moment of the far side ON the near side",
+        cut_vector("force", "N"), cut_vector("moment", "N·m")),
     *rows("sections.SECTION", "force along n (> 0 tension), e1, e2",
         *(cut_scalar(name, "N") for name in SECTION_FORCES)),
     *rows("sections.SECTION", "moment about n, e1, e2",
         *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)),
-    *rows("sections.SECTION.line", "reduction line: a point of it, its direction, where the moment in the plane is "
-        "zero; kind 0: a line, 1: none, 2: any",
+    *rows("sections.SECTION.line", "reduction line: a point on it, its direction, the point where the moment in "
+        "the plane is zero; kind 0: a line, 1: none, 2: any",
         cut_vector("point", "m"), cut_vector("direction", "1"), cut_vector("pressure_centre", "m"),
         cut_scalar("kind", "1")),
     *rows("sections.SECTION.stress",
         "extremes over the section, [on the safe side](stresses.md); `utilisation` is `mises` over `strength`",
         *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
-    *rows("sections.SECTION", "kinetic energy of the piece", cut_scalar("energy", "J")),
-    *rows("sections.SECTION", "of a run of cuts: from its first point to each cut",
+    *rows("sections.SECTION", "kinetic energy of the far side", cut_scalar("energy", "J")),
+    *rows("sections.SECTION", "for a run of cuts: distance from its first point to each cut",
         scalar("s", "m", (CUT,), is_timed=False)),
-    *rows("sections.SECTION", "of a run: before or beyond what acts in the plane of the cut", words("side")),
+    *rows("sections.SECTION", "for a run: before or beyond the load in the plane of the cut", words("side")),
     *shares("sections.SECTION", cut_vector("force", "N"), cut_vector("moment", "N·m"),
         *(cut_scalar(name, "N") for name in SECTION_FORCES), *(cut_scalar(name, "N·m") for name in SECTION_MOMENTS)),
     *rows("sections.SECTION.shares.CAUSE", DIRECT, cut_vector("direct_force", "N"), cut_vector("direct_moment", "N·m")),
-    *rows("forces.FORCE", "its value as in the spec; of a vector its size, of a distributed load that of the resultant",
+    *rows("forces.FORCE", "value as in the spec; magnitude of a vector, or of the resultant of a "
+        "distributed load",
         scalar("value", "N | N·m")),
-    *rows("forces.FORCE", "distance of its two points", scalar("length", "m")),
-    *rows("forces.FORCE", "of a turn_spring", scalar("angle", "rad")),
-    *rows("forces.FORCE", "of a bushing, in its axes: how far its `to` point has shifted, and its `to` body turned",
+    *rows("forces.FORCE", "distance between its two points", scalar("length", "m")),
+    *rows("forces.FORCE", "of a `turn_spring`", scalar("angle", "rad")),
+    *rows("forces.FORCE", "for a bushing, in its axes: displacement of the `to` point and rotation of "
+        "the `to` body",
         vector("shift", "m"), vector("turn", "rad")),
-    *rows("forces.FORCE", "of a bushing, in its axes: what it exerts ON `to`, at its `to` point",
+    *rows("forces.FORCE", "for a bushing, in its axes: load ON `to`, at its `to` point",
         vector("force", "N"), vector("moment", "N·m")),
-    *rows("forces.FORCE", "at which its points part, or its joint moves", scalar("rate", "m/s | rad/s")),
-    *rows("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
+    *rows("forces.FORCE", "rate at which its points separate or its joint moves", scalar("rate", "m/s | rad/s")),
+    *rows("forces.FORCE", "power delivered to the bodies", scalar("power", "W")),
     *rows("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
-    *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; their rates are "
-        "the mass effects",
+    *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; "
+        "their time derivatives are the mass effects",
         vector("total", "N·s"), vector("moment_orbital", "N·m·s"), vector("moment_spin", "N·m·s")),
     *rows("system_vector", "Heun's B (44)", vector("total", "N·m/s")),
-    *rows("system_vector.bodies", "each body's part in it", vector("BODY", "N·m/s")),
-    *rows("system_vector.energy_part", "of that part 2 E σ, E the energy of its spin", vector("BODY", "N·m/s")),
-    *rows("system_vector.deviation_part", "and G = T (σ × σ̇); 0 where the body turns on about one axis: its vector "
-        "then lies on the momentary axis", vector("BODY", "N·m/s")),
-    *rows("impulses.NUMBER", "its instant", scalar("time", "s", is_timed=False)),
-    *rows("impulses.NUMBER", "what struck: blows, drives whose rate jumps, ropes that caught, stops", words("names")),
-    *rows("impulses.NUMBER.bodies.BODY", "jumps of the body's velocities",
+    *rows("system_vector.bodies", "contribution of each body", vector("BODY", "N·m/s")),
+    *rows("system_vector.energy_part", "part 2 E σ of that contribution, E: rotational energy",
+        vector("BODY", "N·m/s")),
+    *rows("system_vector.deviation_part", "part G = T (σ × σ̇) of that contribution; 0 if the body keeps rotating about "
+        "one axis: its vector then lies on the instantaneous axis", vector("BODY", "N·m/s")),
+    *rows("impulses.NUMBER", "time of the impulse", scalar("time", "s", is_timed=False)),
+    *rows("impulses.NUMBER", "causes: given impulses, drives whose rate jumps, ropes that became taut, stops",
+        words("names")),
+    *rows("impulses.NUMBER.bodies.BODY", "velocity jumps of the body",
         vector("center_velocity_jump", "m/s"), vector("angular_velocity_jump", "rad/s")),
     *rows("impulses.NUMBER", "kinetic energy before and after, and the difference",
         scalar("energy_before", "J"), scalar("energy_after", "J"), scalar("energy_jump", "J")),
-    *rows("events.EVENT", "what is watched", words("condition")),
-    *rows("events.EVENT", "1 where the condition is true at the start, else 0", scalar("begins", "1", is_timed=False)),
-    *rows("events.EVENT", "the instants at which it changes, and their errors",
+    *rows("events.EVENT", "condition", words("condition")),
+    *rows("events.EVENT", "1 if the condition is true at the start, else 0", scalar("begins", "1", is_timed=False)),
+    *rows("events.EVENT", "times at which the condition changes, and their errors",
         scalar("time", "s", (INDEX,), is_timed=False), scalar("error", "s", (INDEX,), is_timed=False)),
-    *rows("events.EVENT", "what it becomes there: 1 true, 0 not", scalar("to", "1", (INDEX,), is_timed=False)),
-    *rows("certain_sums.NUMBER", "the factor of each open component", block("terms")),
-    *rows("certain_sums.NUMBER", "sum of the open components in `terms`, each times its factor",
+    *rows("events.EVENT", "new value: 1 true, 0 false", scalar("to", "1", (INDEX,), is_timed=False)),
+    *rows("certain_sums.NUMBER", "factor of each open component", block("terms")),
+    *rows("certain_sums.NUMBER", "sum of the open components in `terms`, each multiplied by its factor",
         scalar("value", "N | N·m")),
-    *rows("accuracy", "[estimates](accuracy.md#estimates); nothing is claimed after the "
+    *rows("accuracy", "[estimates](accuracy.md#estimates); no results are claimed after the "
         "[horizon](accuracy.md#horizon) (null: none)",
         scalar("energy_drift", "1", is_timed=False), scalar("constraint_gap", "m", is_timed=False),
         scalar("balance_residual", "1", is_timed=False), scalar("horizon", "s", is_timed=False)),
-    *rows("accuracy", "instants beside singular poses: what rounding reaches is null there", block("unknown")),
-    *rows("accuracy.estimate", "error of any point at any instant, over the scene's size",
+    *rows("accuracy", "times near singular positions: numbers affected by rounding are null there", block("unknown")),
+    *rows("accuracy.estimate", "error of any point at any time, relative to model size",
         scalar("motion", "1", is_timed=False)),
-    *rows("accuracy.estimate", "the same of each kind of number, over its own largest; 0 where there is none",
+    *rows("accuracy.estimate", "error of each kind of number, relative to its own largest value; 0 if there is none",
         scalar("reactions", "1", is_timed=False), scalar("drives", "1", is_timed=False),
         scalar("foundation", "1", is_timed=False), scalar("sections", "1", is_timed=False),
         scalar("energy", "1", is_timed=False)),

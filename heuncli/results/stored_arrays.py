@@ -83,7 +83,7 @@ class StoredArray:
         values = np.empty(count)
         self._store.file.seek(self._begin + BYTES_PER_NUMBER * first)
         if self._store.file.readinto(values.data) != values.nbytes:
-            message, hint = "the temporary file of the results ends too soon", "TMPDIR names the folder for it"
+            message, hint = "the temporary results file is incomplete", "TMPDIR names the folder for it"
             raise OutputError(Problem("output-failed", message, hint=hint))
         return values
 
@@ -118,7 +118,7 @@ class ArrayStore:
 
 
 def _write_error(reason: OSError) -> OutputError:
-    message = f"the temporary file of the results: {reason.strerror or reason}"
+    message = f"temporary results file: {reason.strerror or reason}"
     return OutputError(
-        Problem("output-failed", message, hint="TMPDIR names the folder for it; or ask for less: --only")
+        Problem("output-failed", message, hint="TMPDIR names the folder for it; or request fewer results: --only")
     )

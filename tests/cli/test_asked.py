@@ -324,16 +324,16 @@ def test_entries_are_asked_for_by_their_paths(heun: Heun) -> None:
 
 @pytest.mark.parametrize(("words", "told"), [
     ("joints.pivto", "did you mean joints.pivot?"),
-    ("joints.pivot.force", "say joints.pivot; --measure prints single numbers"),
-    ("sections.middle", "the scene has no sections"),
-    ("foundation.force", "say foundation; --measure prints single numbers"),
+    ("joints.pivot.force", "use joints.pivot; --measure prints single numbers"),
+    ("sections.middle", "the model has no sections"),
+    ("foundation.force", "use foundation; --measure prints single numbers"),
     ("foundation.axes", "did you mean foundation.axis?"),
     ("foundation.total", "--only foundation shows all of it; entries: foundation.axis, foundation.mass_effect"),
     ("foundation.supports", "entries: foundation.supports.pivot"),
     ("joint.pivot", "did you mean joints.pivot?"),
     ("nothing.else", "known: motion"),
     ("joint", "did you mean joints?"),
-    ("drive", "drive is told in joints: --only joints"),
+    ("drive", "drive is part of joints: --only joints"),
 ])  # fmt: skip
 def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:
     done = heun("run", "hanging.yaml", "--only", words)
@@ -353,7 +353,7 @@ def test_the_axis_and_the_mass_effect_are_shown_where_they_are_asked_for(heun: H
     (folder / "named.yaml").write_text(SPECS_OF["hanging"] + "report: [foundation]\n")
     assert tables(spec="named.yaml") == {"FOUNDATION", "CENTRAL AXIS", "MASS EFFECT"}
     told = heun("run", "swinging.yaml", "--only", "foundation.axis").stdout
-    assert "the central axis is shown at instants, by --at or --all" in told
+    assert "show it at given times with --at or --all" in told
     assert "CENTRAL AXIS" in heun("run", "swinging.yaml", "--only", "foundation.axis", "--at", "0.5").stdout
     written = json.loads(heun("run", "hanging.yaml", "--format", "json").stdout)["foundation"]
     assert {"axis", "mass_effect"} <= written.keys()
@@ -369,7 +369,7 @@ def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
     assert "reduced" not in heun("run", "two.yaml").stdout
     assert line not in heun("run", "two.yaml", "--verbose", "--no-reduce").stdout
     assert line not in heun("run", "two.yaml", "--verbose", "--only", "energy").stdout
-    assert "Left out, or made smaller\n  - left out, because" in heun("model", "two.yaml").stdout
+    assert "Simplifications\n  - left out, because" in heun("model", "two.yaml").stdout
 
 
 def test_the_note_tells_what_is_integrated_and_what_its_beginning_takes() -> None:

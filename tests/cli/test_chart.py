@@ -71,11 +71,11 @@ def test_a_failed_chart_leaves_no_file(heun: Heun, folder: Path) -> None:
         (("--steps", "0"), "positive"),
         (("--steps", "nan"), "positive"),
         (("--methods", "DOP853", "--steps", "0.1"), "none of the methods would take fixed steps"),
-        (("--save", "chart.gif"), "known endings: .svg, .png, .pdf"),
+        (("--save", "chart.gif"), "accepted file extensions: .svg, .png, .pdf"),
         (("--save", "no/chart.svg"), "there is no folder"),
-        (("--save", "swinging.yaml"), "no picture is known"),
+        (("--save", "swinging.yaml"), "unknown picture format"),
         (("--time-limit", "0"), "expected a positive number"),
-        (("-o", "chart.xlsx"), "known endings"),
+        (("-o", "chart.xlsx"), "chart.xlsx"),
     ],
 )
 def test_what_is_refused_before_the_work(heun: Heun, words: tuple[str, ...], told: str) -> None:

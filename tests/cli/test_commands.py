@@ -122,7 +122,7 @@ def test_only_what_is_asked_for_is_in_the_output(heun: Heun) -> None:
 def test_a_report_of_what_the_scene_has_not_says_so(heun: Heun) -> None:
     done = heun("run", "swinging.yaml", "--only", "sections")
     assert done.returncode == 0
-    assert "nothing to show of sections: the scene has none" in done.stdout
+    assert "nothing to show for sections: the model has none" in done.stdout
 
 
 def test_instants_of_an_export(heun: Heun) -> None:

@@ -103,7 +103,7 @@ def test_what_one_of_them_lacks_is_told_by_name() -> None:
     others = {
         "missing": run.model_copy(update={"numbers": {k: v for k, v in run.numbers.items() if k != path}}),
         "is open": with_number(run, path, run.numbers[path].model_copy(update={"greatest": "open"})),
-        "beyond the horizon": with_number(run, path, run.numbers[path].model_copy(update={"last": "beyond"})),
+        "past the horizon": with_number(run, path, run.numbers[path].model_copy(update={"last": "beyond"})),
         "became open": run.model_copy(update={"open": [*run.open, path]}),
     }
     for word, other in others.items():
@@ -188,7 +188,7 @@ def of_another_spec(text: str) -> str:
 @pytest.mark.parametrize(
     ("spoilt", "told"),
     [
-        (lambda text: "hello", "this is not JSON"), (cut_off, "ends before it is complete"),
+        (lambda text: "hello", "not valid JSON"), (cut_off, "the file is incomplete"),
         (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1 and 2"),
         (of_another_spec, "kept of another spec: other.yaml"),
         (lambda text: text.replace('"status"', '"stat"'), "base.sta"),

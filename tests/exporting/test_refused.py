@@ -83,7 +83,7 @@ def test_refused(export: Heun, words: str, code: int, name: str, told: str) -> N
 def test_a_split_is_told(export: Heun) -> None:
     done = export("door.yaml", "--least-norm", "--format", "abaqus")
     assert done.returncode == 0
-    assert "reactions that are open are split" in done.stdout
+    assert "distribution of indeterminate reactions" in done.stdout
 
 
 def test_a_blow_in_a_deck_takes_its_time(export: Heun, folder: Path) -> None:
@@ -97,7 +97,7 @@ def test_a_blow_in_a_deck_takes_its_time(export: Heun, folder: Path) -> None:
     done = export("hit.yaml", "--format", "ansys")
     assert done.returncode == 2 and "--blow-over SECONDS" in done.stderr
     deck = export("hit.yaml", "--format", "ansys", "--blow-over", "0.002").stdout
-    assert "a blow as its mean over 0.002 s" in deck
+    assert "an impulse as its mean force over 0.002 s" in deck
     assert ",FY,1500.0\n" in deck
 
 

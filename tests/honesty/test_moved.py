@@ -38,8 +38,8 @@ def test_a_slip_of_the_drawing_is_said_in_one_line(slip: float, said: bool) -> N
     assert len(lines) == int(said)
     assert not done.results.warnings
     if said:
-        assert lines[0].endswith("; heun model lists it")
-        assert f"to close the joints: coupler by {slip:.1g}" in lines[0]
+        assert lines[0].endswith("; see heun model")
+        assert f"to assemble the joints: coupler by {slip:.1g}" in lines[0]
 
 
 def test_what_the_spec_asks_for_is_not_a_slip() -> None:
@@ -92,4 +92,4 @@ def test_three_are_named() -> None:
     """Of many bodies those that moved most; all of them stand in the note on the model."""
     results = replace(study(four_bar(0.1)).results, model={"moved": [f"b{i} by 1 m" for i in range(8)]})
     told = " ".join(format_heading(results).split())
-    assert "moved to close the joints: b0 by 1 m, b1 by 1 m, b2 by 1 m and 5 more; heun model lists it" in told
+    assert "moved to assemble the joints: b0 by 1 m, b1 by 1 m, b2 by 1 m and 5 more; see heun model" in told

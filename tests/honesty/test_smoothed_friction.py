@@ -47,7 +47,7 @@ def test_a_start_from_rest_says_that_friction_is_nothing_there(heun: Heun, folde
     report = heun("report", "s.yaml", "--format", "md", "-o", "-").stdout
     assert "† smoothed friction (rub)" in report
     drawn = heun("plot", "s.yaml", "coordinates.guide.acceleration").stdout
-    assert "the greatest of coordinates.guide.acceleration at t = 0 s" in " ".join(drawn.split())
+    assert "the maximum of coordinates.guide.acceleration at t = 0 s" in " ".join(drawn.split())
 
 
 @pytest.mark.parametrize(("share", "marked"), [(0.9, True), (1.1, False)])

@@ -64,7 +64,7 @@ def test_the_world_turned_leaves_them_as_they_are(plain: Study) -> None:
     mine_drawn, its_drawn = (panels_of(one, "along") for one in (plain, turned))
     assert list(mine_drawn) == list(its_drawn) == list(QUANTITIES)
     for name in QUANTITIES:
-        band = f"lowest and highest of {name}"
+        band = f"minimum and maximum of {name}"
         near(edges(its_drawn[name].areas[band], S), edges(mine_drawn[name].areas[band], S), mine_drawn[name].pixel, 1.0)
 
 

@@ -64,7 +64,7 @@ def test_the_band_is_the_least_and_the_greatest_of_all_crank_angles(flying: Stud
     shown = panels_of(flying, "shank")
     for quantity, exact in zip(("Q1", "M2"), bending(phi, S), strict=True):
         panel = shown[quantity]
-        low, high = edges(panel.areas[f"lowest and highest of {quantity}"], S)
+        low, high = edges(panel.areas[f"minimum and maximum of {quantity}"], S)
         assert np.abs(low - exact.min(axis=0)).max() <= panel.pixel
         assert np.abs(high - exact.max(axis=0)).max() <= panel.pixel
         at = int(np.abs(exact).max(axis=1).argmax())

@@ -65,7 +65,7 @@ def require_influence_lines(run: Study) -> None:
     """Assert that the bands are those of all places of the load."""
     shown = panels_of(run, "along")
     for name, low, high in (("Q1", -P * (1.0 - S / L), P * S / L), ("M2", 0.0 * S, P * S * (L - S) / L)):
-        found = edges(shown[name].areas[f"lowest and highest of {name}"], S)
+        found = edges(shown[name].areas[f"minimum and maximum of {name}"], S)
         assert np.abs(found[0] - low).max() <= shown[name].pixel
         assert np.abs(found[1] - high).max() <= shown[name].pixel
 
@@ -74,7 +74,7 @@ def test_the_envelope_ends_where_the_load_turns() -> None:
     """To and fro over a part of the beam: beyond it Q1 is what the load makes there from where it is, and no more."""
     part = study(SCENE.replace("DRIVE", "2 - cos(pi*t)"))  # from 1 to 3 m and back
     shear = panels_of(part, "along")["Q1"]
-    low, high = edges(shear.areas["lowest and highest of Q1"], S)
+    low, high = edges(shear.areas["minimum and maximum of Q1"], S)
     before, beyond = S < 1.0 - 0.01, S > 3.0 + 0.01
     least = np.where(before, -P * 0.75, np.where(beyond, P * 0.25, -P * (1.0 - S / L)))
     most = np.where(before, -P * 0.25, np.where(beyond, P * 0.75, P * S / L))
@@ -89,7 +89,7 @@ def test_a_trolley_that_stands_still() -> None:
     moment = shown["M2"]
     exact = np.where(S < 1.5, P * S * (L - 1.5) / L, P * 1.5 * (L - S) / L)
     assert np.abs(heights(moment.curve("M2"), S) - exact).max() <= 0.5 * moment.pixel
-    for found in edges(moment.areas["lowest and highest of M2"], S):
+    for found in edges(moment.areas["minimum and maximum of M2"], S):
         assert np.abs(found - exact).max() <= moment.pixel
 
 

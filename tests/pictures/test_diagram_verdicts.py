@@ -39,7 +39,7 @@ def test_noise_is_named_as_nothing_and_not_drawn() -> None:
     assert max(np.abs(noise[name].values).max() for name in ("N", "Q2", "T", "M1")) > 0.0, "no rounding to be seen"
     figure = drawn(pushed, "along")
     assert [panel.y.label for panel in figure.panels] == ["Q1 [N]", "M2 [N·m]"]
-    assert figure.notes == ["along: 0 all along, and not drawn: N, Q2, T, M1"]
+    assert figure.notes == ["along: all zero, not drawn: N, Q2, T, M1"]
 
 
 @pytest.mark.parametrize("size", [1.0, 1e-18, 1e18])
@@ -107,11 +107,11 @@ def with_errors(errors: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> li
 
 def test_the_stated_error_decides(monkeypatch: pytest.MonkeyPatch) -> None:
     """N = 0.01 N and T = 0.02 N m are something, nothing beside others, or not known, by what errors are stated."""
-    zero = "along: 0 all along, and not drawn: Q2, M1"
+    zero = "along: all zero, not drawn: Q2, M1"
     assert with_errors({"N": 1e-6, "N·m": 1e-6}, monkeypatch) == ["N", "Q1", "T", "M2", zero]
-    within = "along: 0 to their stated error (5e-02 N, 5e-02 N·m), and not drawn: N, T"
+    within = "along: zero within the stated error (5e-02 N, 5e-02 N·m), not drawn: N, T"
     assert with_errors({"N": 0.05, "N·m": 0.05}, monkeypatch) == ["Q1", "M2", zero, within.replace("e-0", "e-")]
-    unknown = "not known: the stated error is as large as the numbers"
+    unknown = "unknown: the stated error is as large as the values"
     told = with_errors({"N": 10.0, "N·m": 10.0}, monkeypatch)
     assert told == ["N", "Q1", "T", "M2", *[unknown] * 4, zero]
 

@@ -28,30 +28,30 @@ def specs(folder: Path) -> Path:
 @pytest.mark.parametrize("words", PICTURES)
 def test_beyond_the_horizon_nothing_is_drawn(words: tuple[str, ...], heun: Heun, specs: Path) -> None:
     done = heun("plot", "late.yaml", *words, "-o", "picture.svg", "--quiet")
-    assert (done.returncode, done.stdout) == (2, "") and "nothing is claimed" in done.stderr
+    assert (done.returncode, done.stdout) == (2, "") and "no results are claimed" in done.stderr
     assert not (specs / "picture.svg").exists()
 
 
 @pytest.mark.parametrize("words", [("-o", "page.html"), ("--glb", "moving.glb")])
 def test_nor_shown(words: tuple[str, ...], heun: Heun, specs: Path) -> None:
     done = heun("show", "late.yaml", *words, "--quiet")
-    assert (done.returncode, done.stdout) == (2, "") and "nothing is claimed" in done.stderr
+    assert (done.returncode, done.stdout) == (2, "") and "no results are claimed" in done.stderr
     assert not (specs / words[1]).exists()
 
 
 def test_nor_reported(heun: Heun, specs: Path) -> None:
     done = heun("report", "late.yaml", "-o", "-", "--format", "md", "--quiet")
     assert done.returncode == 0 and "```text\n" not in done.stdout.partition("## 2")[0]
-    assert "all are beyond its horizon" in done.stdout
+    assert "all output times are past the horizon" in done.stdout
 
 
 @pytest.mark.parametrize("words", PICTURES)
 def test_one_instant_of_a_motion(words: tuple[str, ...], heun: Heun, specs: Path) -> None:
     done = heun("plot", "one.yaml", *words, "-o", "picture.svg", "--quiet")
     assert done.returncode == (2 if words[0] == "polar" else 0)
-    assert ("there is one instant" in done.stderr) == (words[0] == "polar")
+    assert ("there is only one instant" in done.stderr) == (words[0] == "polar")
 
 
 def test_a_page_of_one_instant_says_nothing_of_a_horizon(heun: Heun, specs: Path) -> None:
     done = heun("show", "one.yaml", "-o", "-", "--quiet")
-    assert done.returncode == 0 and "Nothing is claimed of this motion" not in done.stdout
+    assert done.returncode == 0 and "No results are claimed after the start of this motion" not in done.stdout

@@ -128,8 +128,8 @@ def test_nothing_is_drawn_beyond_the_horizon(heun: Heun, folder: Path) -> None:
     assert 0.0 < horizon < 9.0
     curve, band = panel.curve(path), panel.areas[f"stated error of {path}"]
     assert max(curve[:, 0].max(), band[:, 0].max()) <= horizon + panel.across
-    assert any("nothing is claimed" in text for text in panel.texts())
-    blank = panel.areas["beyond the horizon: nothing is claimed"]
+    assert any("no results claimed" in text for text in panel.texts())
+    blank = panel.areas["past the horizon: no results claimed"]
     assert blank[:, 0].min() == pytest.approx(horizon, abs=panel.across)
     assert blank[:, 0].max() == pytest.approx(10.0, abs=panel.across)
     assert band[:, 1].min() < curve[:, 1].min() and curve[:, 1].max() < band[:, 1].max()
@@ -150,13 +150,13 @@ def test_what_is_open_is_not_drawn_and_told(heun: Heun, folder: Path) -> None:
     assert panels[0].curves.keys() == {"joints.A.force.x"}
     assert any("open" in text for text in panels[1].texts()) and not panels[1].curves
     text = (folder / "picture.svg").read_text()
-    assert "open, and not drawn: joints.A.force.z, joints.A.moment.x" in text
+    assert "open, not drawn: joints.A.force.z, joints.A.moment.x" in text
 
 
 def test_what_is_constant_is_told_once(heun: Heun, folder: Path) -> None:
     (folder / "turning.yaml").write_text(TURNING)
     (panel,) = drawn(heun, folder, "turning.yaml", "coordinates.shaft.rate")
-    assert panel.texts() == ["6.2832 throughout"] and len(panel.marks) == 1
+    assert panel.texts() == ["6.2832 at all times"] and len(panel.marks) == 1
 
 
 def test_of_one_instant_each_case_is_a_mark(heun: Heun, folder: Path) -> None:

@@ -33,7 +33,7 @@ REFUSED = [
     (("missing.yaml", PATH), "no such file"),
     (("hanging.yaml", "joints.pivo.force"), "did you mean pivot?"),
     (("hanging.yaml", "scen"), "did you mean scene?"),
-    (("hanging.yaml", "model.freedoms"), "has no instants"),
+    (("hanging.yaml", "model.freedoms"), "does not vary with time"),
     (("hanging.yaml", "bodies.bar.rotation"), "9 numbers"),
     (("hanging.yaml", "title"), "is text, not a number"),
     (("hanging.yaml", PATH, "scene"), "one kind of picture at a time"),
@@ -52,11 +52,11 @@ REFUSED = [
     (("hanging.yaml", PATH, "--units", "furlong"), "not a unit"),
     (("hanging.yaml", PATH, "--x", "joints.pivot.forc"), "did you mean"),
     (("hanging.yaml", PATH, "--with", "bench.csv"), "expected FILE:X:Y"),
-    (("hanging.yaml", PATH, "--with", "none.csv:t:F"), "there is no row of numbers in it"),
+    (("hanging.yaml", PATH, "--with", "none.csv:t:F"), "it contains no row of numbers"),
     (("hanging.yaml", PATH, "--with", "gone.csv:t:F"), "no such file"),
     (("hanging.yaml", PATH, "--with", ".:t:F"), "this is a folder"),
     (("hanging.yaml", PATH, "--with", "bench.csv:t:G"), "there is no column 'G'"),
-    (("hanging.yaml", PATH, "--with", "bench.csv:F:t"), "is a force, and what is drawn there is a time"),
+    (("hanging.yaml", PATH, "--with", "bench.csv:F:t"), "is a force, but the axis shows a time"),
     (("hanging.yaml", PATH, "--with", "bench.csv:t:w"), "'late' in column 3 is not a number"),
     (("hanging.yaml", PATH, "--with", "bench.csv:1:9"), "give a number from 1 to 3"),
 ]
@@ -85,7 +85,7 @@ def test_it_is_told_in_one_line_and_nothing_is_written(
 @pytest.mark.parametrize("name", ["x.bmp", "x", "", ".svg.gz"])
 def test_other_forms_of_pictures_are_refused(heun: Heun, files: Path, name: str) -> None:
     done = heun("plot", "hanging.yaml", PATH, "-o", name)
-    assert done.returncode == 2 and "known endings: .svg, .png, .pdf" in done.stderr
+    assert done.returncode == 2 and "accepted file extensions: .svg, .png, .pdf" in done.stderr
 
 
 def test_without_matplotlib_it_is_said_how_to_install_it(

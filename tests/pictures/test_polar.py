@@ -62,7 +62,7 @@ def test_the_curve_goes_through_the_numbers_of_the_json(heun: Heun) -> None:
     force = np.array(found["joints"]["main"]["force"])
     assert far_from(force[:, 1:], curve) < panel.pixel
     peak = json.loads(heun("run", ENGINE, "--measure", "max joints.main.radial", "--format", "json").stdout)
-    largest = re.search(r"largest ([\d.]+) N towards ([\d.]+)°.* at t = ([\d.]+) s, .*angle = ([\d.]+)°", words)
+    largest = re.search(r"largest ([\d.]+) N at ([\d.]+)°.* at t = ([\d.]+) s, .*angle = ([\d.]+)°", words)
     assert largest is not None
     value, towards, at, angle = map(float, largest.groups())
     assert value == pytest.approx(peak["value"], rel=1e-5) and at == pytest.approx(peak["at"], rel=1e-4)
@@ -84,11 +84,11 @@ def test_units_are_those_asked_for(heun: Heun) -> None:
 def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path, way: str) -> None:
     (folder / "even.yaml").write_text(CRANK.replace("LAW", f'"{way}2*pi*t"'))
     (panel,), words = drawn(heun, "even.yaml", "polar", "joints.main")
-    assert "the last turn of coordinates.main.angle, t = 2 to 3 s" in words
+    assert "the last revolution of coordinates.main.angle, t = 2 to 3 s" in words
     assert {"0°", "90°", "180°", "270°"} <= set(words.split("\n")) and "360°" not in words.split("\n")
     marks, centripetal = panel.spots(filled=False), 2 * 0.1 * (2 * np.pi) ** 2
     assert np.abs(np.hypot(*marks.T) - centripetal).max() < panel.pixel
-    assert "joints.main.force: 7.8956" in words and "N all along" in words  # no place of it is the largest
+    assert "joints.main.force: 7.8956" in words and "N at all times" in words  # no place of it is the largest
     assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
 
 
@@ -104,7 +104,7 @@ def test_rounding_is_a_point(heun: Heun) -> None:
     """Of what is less than its error the axes reach as far as that."""
     (panel,), words = drawn(heun, str(ROOT / "specs" / "cardan.yaml"), "polar", "foundation", "--view", "x")
     (curve,) = panel.lines("foundation.force")
-    assert "foundation.force: ? N all along" in words
+    assert "foundation.force: ? N at all times" in words
     assert np.hypot(*curve.T).max() < 0.5 * panel.pixel * (panel.right - panel.left)
     assert panel.x.values(np.array([panel.left]))[0] < 0.0 < panel.x.values(np.array([panel.right]))[0]
 
@@ -115,7 +115,7 @@ def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:
     (panel,), words = drawn(heun, "slanted.yaml", "polar", "foundation")
     (curve,) = panel.lines("foundation.force")
     assert np.abs(np.hypot(*curve.T) - 2 * 0.1 * 10**2).max() < panel.pixel
-    assert "directions 1 and 2 are (1, 0, 0) and (0, 0.8944, -0.4472)" in words and "across the plane" not in words
+    assert "directions 1 and 2 are (1, 0, 0) and (0, 0.8944, -0.4472)" in words and "normal to the plane" not in words
 
 
 def test_where_little_turns_instants_are_marked(heun: Heun, folder: Path) -> None:
@@ -141,15 +141,15 @@ def test_a_curve_is_broken_where_a_blow_strikes(heun: Heun) -> None:
 
 
 REFUSED = [
-    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram is of a vector"),
-    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram is of a vector"),
-    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram is of a vector"),
+    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram"),
+    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram"),
+    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram"),
     ((ROTOR, "polar"), "of what is not said"),
     ((ROTOR, "polar", "joints.wrong"), "is not a result"),
     ((ROTOR, "polar", "joints.left", "--view", "20,30"), "--view 20,30"),
     ((ROTOR, "polar", "joints.left", "--axes", "body"), "--axes body"),
-    ((str(SPECS / "door.yaml"), "polar", "foundation"), "there is one instant"),
-    ((str(SPECS / "double.yaml"), "polar", "joints.elbow"), "no plane holds it"),
+    ((str(SPECS / "door.yaml"), "polar", "foundation"), "there is only one instant"),
+    ((str(SPECS / "double.yaml"), "polar", "joints.elbow"), "it does not stay in a plane"),
 ]
 
 
@@ -165,7 +165,7 @@ def test_what_stands_across_the_plane_is_said(heun: Heun) -> None:
     (panel,), words = drawn(heun, double, "polar", "joints.elbow", "--view", "x")
     force = np.array(json.loads(heun("run", double, "--format", "json").stdout)["joints"]["elbow"]["force"])
     assert far_from(force[:, 1:], panel.lines("joints.elbow.force")[0]) < panel.pixel
-    across = re.search(r"across the plane up to ([\d.]+) N", words)
+    across = re.search(r"normal to the plane up to ([\d.]+) N", words)
     assert across is not None and float(across[1]) == pytest.approx(np.abs(force[:, 0]).max(), rel=0.02)
 
 
@@ -195,7 +195,7 @@ def test_what_is_open_across_the_plane_hides_nothing_in_it(heun: Heun, folder: P
     assert done.returncode == 0
     words = " ".join(texts_of(Path("drawn.svg").read_text()))
     assert "joints.A.force: largest" in words
-    assert "across the plane, which is not drawn" in " ".join(words.split())
+    assert "normal component open or unknown, not drawn" in " ".join(words.split())
 
 
 def test_panels_over_one_angle_share_their_grid(heun: Heun, folder: Path) -> None:

@@ -81,7 +81,7 @@ def test_joints_their_forces_and_centres_of_mass(heun: Heun, spec: str, view: st
 
 def key_length(panel: PlottedPanel, words: list[str]) -> float:
     """How long one newton is drawn, by the key."""
-    (text,) = (word for word in words if word.endswith(": of joints, from ON to"))
+    (text,) = (word for word in words if word.endswith(": joint reactions, from on to"))
     (line,), (tip,) = panel.lines(text), panel.areas(text)
     return float(tip[0, 0] - line[0, 0]) / float(text.partition(" N:")[0])
 
@@ -105,7 +105,7 @@ def test_units_of_the_axes(heun: Heun) -> None:
     metres, _ = drawn(heun, "four_bar")
     millimetres, words = drawn(heun, "four_bar", "--units", "mm,kN")
     assert middle(millimetres, "C: line") == pytest.approx(1e3 * middle(metres, "C: line"), abs=1.5 * millimetres.pixel)
-    assert "x [mm]" in words and "y [mm]" in words and any(" kN: of joints" in word for word in words)
+    assert "x [mm]" in words and "y [mm]" in words and any(" kN: joint reactions" in word for word in words)
 
 
 def test_one_unit_is_as_long_on_both_axes(heun: Heun) -> None:

@@ -116,7 +116,7 @@ def test_a_scene_of_one_place_is_drawn() -> None:
 
 def test_what_reaches_far_beyond_the_joints_is_drawn_in_part() -> None:
     figure = make_scene_figure(FigureSource("", study(PLATE)), Units())
-    assert any("drawn in part, reaching farther: plate" in note for note in figure.notes)
+    assert any("only partly drawn, extending further: plate" in note for note in figure.notes)
     (panel,) = figure.panels
     assert panel.x.high - panel.x.low < 10.0
     for points in numbers_in(figure):
@@ -131,7 +131,7 @@ def test_a_body_without_shapes_at_one_place_is_drawn_as_its_inertia_unless_it_ca
     # a disc has m r^2/2 about its axis, an even ellipsoid m (a^2 + b^2)/5
     radius = np.sqrt(5.0 / 2.0 * 0.5 / 2.0)
     assert np.hypot(*outlines["wheel"].T).max() == pytest.approx(radius, rel=1e-2)
-    assert any("ellipsoid that has its inertia: wheel" in note for note in figure.notes)
+    assert any("ellipsoid of the same inertia: wheel" in note for note in figure.notes)
 
 
 def test_of_hundreds_of_bodies_names_are_left_out_and_it_is_said() -> None:
@@ -145,7 +145,7 @@ def test_of_hundreds_of_bodies_names_are_left_out_and_it_is_said() -> None:
     text += [f"  j{k}: {{type: ball, from: {ends[k]}, to: b{k}.a}}" for k in range(count)]
     path = "\n".join(text) + "\n"
     figure = make_assembly_figure(load("chain.yaml", path))
-    assert any("200 bodies and 200 joints are too many" in note for note in figure.notes)
+    assert any("too many bodies (200) and joints (200)" in note for note in figure.notes)
     assert not any(re.fullmatch(r"[bj]\d+", word) for word in texts(figure))
     assert len(to_svg(lay_out(figure))) < 2_000 * count
 

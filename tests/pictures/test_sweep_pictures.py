@@ -73,7 +73,7 @@ def test_a_field_over_two(heun: Heun, swept: Heun, file: str) -> None:
         assert fill in near
     levels = shades.x.values(np.array([shades.left, shades.right]))
     assert levels == pytest.approx([1.0, 27.0], abs=0.1)
-    assert any("least 1.0 N at m = 1, g = 1; greatest 27.0 N at m = 3, g = 9" in word for word in words)
+    assert any("min. 1.0 N at m = 1, g = 1; max. 27.0 N at m = 3, g = 9" in word for word in words)
 
 
 def test_what_could_not_be_solved_is_a_hole_and_counted(heun: Heun, swept: Heun) -> None:
@@ -82,7 +82,7 @@ def test_what_could_not_be_solved_is_a_hole_and_counted(heun: Heun, swept: Heun)
     with Path("s.csv").open() as file:
         codes = [row[-2] for row in csv.reader(file)][1:]
     (code,) = set(codes) - {""}
-    note = f"4 of 20 variants could not be solved, and are not drawn: 4 {code}"
+    note = f"4 of 20 variants could not be solved (not drawn): 4 {code}"
     assert note in words
     root = tree.parse("drawn.svg")
     field = panels_of(Path("drawn.svg").read_text())[0]
@@ -128,7 +128,7 @@ def test_more_variables_are_curves_or_are_held(heun: Heun, swept: Heun) -> None:
     swept("m=1:3/5", "g=1:9/5", "bodies.bar.center.2=-0.5,-0.4", *FORCE)
     done = heun("plot", "s.sqlite", "-o", "drawn.svg")
     assert done.returncode == 2 and "3 variables" in done.stderr and "would make 10 curves" in done.stderr
-    assert "hint: hold some, as g=5" in done.stderr and not Path("drawn.svg").exists()
+    assert "hint: fix some, such as g=5" in done.stderr and not Path("drawn.svg").exists()
     (panel,), words = drawn(heun, "s.sqlite", "g=1")
     curves = [panel.lines(f"bodies.bar.center.2 = {z}")[0] for z in ("-0.5", "-0.4")]
     assert all(np.abs(curve[:, 1] - curve[:, 0]).max() < panel.pixel for curve in curves)
@@ -196,7 +196,7 @@ WRONG = {
     "short.csv": (CSV.format(e=0) + "3,4\n", "row 5 has 2 cells"),
     "quote.csv": (CSV.format(e=0) + '3,"4', "this is no CSV of a sweep"),
     "heads.csv": (CSV.splitlines()[0] + "\n", "the sweep has no rows"),
-    "one.csv": ("\n".join(CSV.format(e=0).splitlines()[:2]) + "\n", "one variant is no curve"),
+    "one.csv": ("\n".join(CSV.format(e=0).splitlines()[:2]) + "\n", "a single variant gives no curve"),
     "bare.csv": ("number,m,code,reason\n0,1,,\n", "it has no measures"),
     "empty.sqlite": ("", "it is empty"),
     "text.sqlite": ("heun: 1\n" * 200, "this is no store of sweeps"),

@@ -68,7 +68,7 @@ def test_every_word_is_in_the_panel_or_told_below(spots: int) -> None:
     told = [int(k) for k in re.findall(r"spot (\d+)", below)]
     more = int(found[1]) if (found := re.search(r"and (\d+) more", below)) else 0
     assert set(told) <= set(lost) and len(told) + more >= len(lost)
-    assert bool(lost) == ("for want of room" in below)
+    assert bool(lost) == ("for lack of space" in below)
 
 
 def test_two_marks_at_one_place_have_their_words_apart() -> None:
@@ -84,7 +84,7 @@ def test_two_marks_at_one_place_have_their_words_apart() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_in_letters_words_stand_whole(seed: int, *, braille: bool) -> None:
     shown = draw_text(figure(seed, 12, 5), TerminalStyle(100, braille, has_colours=False))
-    panel, _, below = shown.partition("for want of room")
+    panel, _, below = shown.partition("for lack of space")
     for k in range(5):
         assert f"blow {k}" in panel or f"blow {k} at" in below
     for k in range(12):

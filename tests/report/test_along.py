@@ -85,7 +85,7 @@ def test_head_and_rows_are_of_one_source(solved: tuple[Study, Page, Extremes]) -
     assert float(bounds["mises"][5]) / 200.0 == pytest.approx(float(bounds["utilisation"][5]), rel=1e-5)
     assert float(bounds["normal max"][6]) == pytest.approx(0.33, abs=0.01)
     assert [head for head in columns if head.startswith("normal m")] == ["normal max [MPa]", "normal min [MPa]"]
-    assert "between the samples, too" in rows.notes[0]
+    assert "also between the output times" in rows.notes[0]
 
 
 def test_the_better_of_two_searches_stands_in_both() -> None:
@@ -106,7 +106,7 @@ def test_the_better_of_two_searches_stands_in_both() -> None:
 def test_of_too_many_numbers_the_samples_stand(solved: tuple[Study, Page, Extremes]) -> None:
     _, page, found = solved
     _, rows = page._replace(run_extremes={}).make_tables_of_extremes(found)
-    assert "in 4 samples" in rows.notes[0]
+    assert "at 4 output times" in rows.notes[0]
 
 
 def test_the_command_shows_stresses_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

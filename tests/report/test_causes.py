@@ -50,7 +50,11 @@ def test_extremes_say_who_is_responsible() -> None:
     extremes = made.search_extremes(searched, WANTED - {"shares"}, whole=True)
     tables = page.make_tables_of_extremes(extremes, made)
     found = by_cause(tables)
-    assert [table.heading.split(" BY CAUSE")[0] for table in found] == ["FOUNDATION", "JOINTS", "SECTION along jib"]
+    assert [table.heading.split(" BY CAUSE")[0] for table in found] == [
+        "FOUNDATION",
+        "JOINTS",
+        "SECTION along, body jib",
+    ]
     for table in found:
         causes = [c.head for c in table.columns[3:-2]]
         assert causes == ["gravity", "wind", "drives", "motion"]

@@ -27,7 +27,7 @@ def test_without_a_force_there_is_no_axis_and_that_is_not_called_open() -> None:
     nowhere = np.full((1, 3), np.nan)
     foundation = pendulum(ONE).foundation | {"axis": {"point": nowhere, "direction": nowhere, "pitch": nowhere[:, 0]}}
     text = next(text for text in at_one("foundation", foundation=foundation) if "CENTRAL AXIS" in text)
-    assert text.splitlines()[1:] == ["none: there is no force, so no axis"]
+    assert text.splitlines()[1:] == ["none: no axis, the force is zero"]
 
 
 def test_the_origin_is_called_so() -> None:
@@ -79,8 +79,8 @@ def test_a_moment_that_is_noise_beside_the_force_on_its_arm_reads_0() -> None:
 def test_what_is_driven_is_told_beside_the_freedoms() -> None:
     free = pendulum(ONE)
     driven = replace(free, model=free.model | {"freedoms": 0, "driven": 1})
-    assert "2 bodies, 4 freedoms\n" in format_heading(free)
-    assert "2 bodies, no freedoms beside 1 driven\n" in format_heading(driven)
+    assert "2 bodies, 4 degrees of freedom\n" in format_heading(free)
+    assert "2 bodies, 0 degrees of freedom, 1 driven\n" in format_heading(driven)
 
 
 def test_what_is_0_takes_no_column_but_a_vector_stays_whole() -> None:

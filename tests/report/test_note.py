@@ -32,23 +32,21 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
         "6 (Grübler's count: 6)",
         "no closed loops",
         "Why this model\n  - a tree of two bodies\n",
-        "Left out, or made smaller\n  - left out: third\n",
-        "Not made smaller\n  - not in the plane: gravity leaves it\n",
-        "What this model cannot tell\n  - what is across the plane\n",
-        "What is integrated\n  - 14 numbers of state\n",
-        "Start values chosen for you\n  - lower starts as drawn",
-        "Moved from the drawing\n  - lower was moved by up to 0.02 m\n",
+        "Simplifications\n  - left out: third\n",
+        "Not simplified\n  - not in the plane: gravity leaves it\n",
+        "Not covered by this model\n  - what is across the plane\n",
+        "Integrated variables\n  - 14 numbers of state\n",
+        "Start values chosen by heun\n  - lower starts as drawn",
+        "Moved from the given start position\n  - lower was moved by up to 0.02 m\n",
     ):
         assert part in text
-    assert "Worth knowing" not in text
+    assert "Notes" not in text
     assert max(map(len, text.splitlines())) <= WIDTH
 
 
 def test_what_couplings_close_is_told_beside_the_loops_of_joints() -> None:
-    assert "  loops      no closed loops of joints; 1 coupling beside them\n" in format_model(
-        "", MODEL | {"couplings": 1}
-    )
-    assert "  loops      2 closed loops of joints; 3 couplings" in format_model(
+    assert "  loops      no closed loops of joints, and 1 coupling\n" in format_model("", MODEL | {"couplings": 1})
+    assert "  loops      2 closed loops of joints, and 3 couplings" in format_model(
         "", MODEL | {"loops": 2, "couplings": 3}
     )
 

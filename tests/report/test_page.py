@@ -38,10 +38,13 @@ def line_of(text: str, group: str, label: str) -> list[str]:
 def test_headings_say_on_what_by_what_in_which_axes_about_which_point() -> None:
     text = extremes_page(FakeStudy(T))
     assert "FOUNDATION  force and moment ON the ground, world axes, moment about O = (0, 0, 0) m" in text
-    assert 'JOINTS  what "from" exerts ON "to" (drive, friction apart), world axes, moment about the "to" point' in text
     assert (
-        "SECTION along lower  the piece beyond the cut ON the part before it; N > 0 tension; e1 = body x, e2 = n × e1;"
-        " moments about the cut's point" in text
+        'JOINTS  reaction of "from" on "to"; drive and friction are listed separately; world axes, '
+        'moment about the "to" point' in text
+    )
+    assert (
+        "SECTION along, body lower  force of the far side on the near side of the cut; N > 0 tension; "
+        "e1 = body x, e2 = n × e1; moments about the cut's point" in text
     )
     assert "pivot  ball, ground.O → upper.top" in text
 
@@ -72,13 +75,13 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     (table,) = alone.make_tables_of_extremes(
         Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), is_searched=True)
     )
-    assert "idle\n  0 throughout\n" in format_plain(table)
+    assert "idle\n  all values 0\n" in format_plain(table)
 
 
 def test_a_lone_support_is_not_told_twice() -> None:
     text = extremes_page(FakeStudy(T))
     assert "support pivot" not in text
-    assert "all of it goes through pivot, the only support" in text
+    assert "carried entirely by pivot, the only support" in text
 
 
 def test_several_supports_are_shown_each() -> None:
@@ -118,7 +121,7 @@ def test_open_components_are_named_together_and_partly_open_ones_are_marked() ->
     assert partly[3] == "open"
     assert float(partly[-2]) == pytest.approx(3.0)
     assert "open: the laws of rigid bodies do not give this number" in text
-    assert "* open at some instants" in text
+    assert "* open at some times" in text
 
 
 def test_open_components_read_open_at_an_instant() -> None:
@@ -135,8 +138,8 @@ def test_a_chosen_split_is_labelled() -> None:
         return dataclasses.replace(results, joints={**results.joints, "pivot": pivot}, model=model)
 
     study = Changed(T, change=choose)
-    assert "chosen, not certain: pivot Fz Mx" in extremes_page(study)
-    assert "split     chosen by least norm; other splits do as well" in format_heading(study.results)
+    assert "indeterminate, one distribution chosen: pivot Fz Mx" in extremes_page(study)
+    assert "split     chosen by least norm; other distributions are equally possible" in format_heading(study.results)
 
 
 def test_beyond_the_horizon_nothing_is_claimed() -> None:
@@ -147,7 +150,7 @@ def test_beyond_the_horizon_nothing_is_claimed() -> None:
     lines = [line.split() for line in format_plain(page.make_tables_at_instants(shown)[0]).splitlines()]
     assert next(line for line in lines if line[0] == "1.5")[1:5] == ["?", "0", "?", "?"]  # Fy is 0.0 in all bits
     assert next(line for line in lines if line[0] == "0.5")[1] == "2.5"
-    assert "from t = 1.2 s on nothing is claimed" in format_heading(study.results)
+    assert "no results are claimed from t = 1.2 s on" in format_heading(study.results)
 
 
 def test_a_run_that_ends_beyond_its_horizon_has_no_last_value() -> None:
@@ -258,7 +261,7 @@ def test_a_diagram_can_be_read_for_few_cuts_and_for_many(n_cuts: int, most: int)
     shown = restrict(study.resample(np.array([0.5])), {"sections"})
     (table,) = page.make_tables_at_instants(shown)
     assert len(table.rows) <= most
-    assert (len(table.rows) < n_cuts) == any("every cut: --all" in note for note in table.notes)
+    assert (len(table.rows) < n_cuts) == any("all cuts: --all" in note for note in table.notes)
     (whole,) = page.make_tables_at_instants(shown, every_cut=True)
     assert len(whole.rows) == n_cuts
 
@@ -283,7 +286,7 @@ def test_a_blow_has_tables_of_its_own_in_newton_seconds() -> None:
     study = FakeStudy(T, {"impulses": [blow]})
     text = extremes_page(study)
     part = text[text.index("IMPULSE at t = 0.5 s (blow)\n") :]
-    assert 'JOINTS  impulse that "from" exerts ON "to"' in part
+    assert 'JOINTS  reaction impulse of "from" on "to"' in part
     assert {"N·s", "N·m·s"} <= set(part.split())
     assert not {"N", "N·m"} & set(part.split())
 
@@ -292,10 +295,10 @@ def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
     text = format_heading(pendulum(T, warnings=("the bar is thin",)))
     for part in (
         "A fake",
-        "spatial, 2 bodies, 4 freedoms",
+        "spatial, 2 bodies, 4 degrees of freedom",
         "0 to 2 s, 21 samples; dop853, 57 steps, 812 evaluations; compiled kernel",
-        "motion within 4e-11 of the scene's size, loads within 5e-10 of the largest",
-        "energy kept to 2e-12, joints closed to 1e-16 m, forces balance to 3e-15",
+        "motion within 4e-11 of model size, loads within 5e-10 of the largest load",
+        "relative energy error 2e-12, largest constraint error 1e-16 m, force balance error 3e-15",
         "warning   the bar is thin",
     ):
         assert part in text
@@ -303,7 +306,7 @@ def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
 
 def test_a_planar_scene_says_what_there_is_not() -> None:
     flat = dataclasses.replace(pendulum(T), model={**pendulum(T).model, "space": "planar", "plane": "declared"})
-    assert "planar, 2 bodies, 4 freedoms; what points out of the xy plane" in format_heading(flat)
+    assert "planar, 2 bodies, 4 degrees of freedom; planar model" in format_heading(flat)
 
 
 def test_nothing_asked_for_leaves_nothing_to_search() -> None:

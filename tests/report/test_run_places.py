@@ -91,18 +91,18 @@ def test_of_a_blow() -> None:
 @pytest.mark.parametrize(
     ("path", "message", "hint"),
     [
-        ("arm.Q1@0.3", "on whose two sides the values differ", "@0.3:before or @0.3:beyond"),
-        ("arm.Q1.6", "on whose two sides the values differ", "6:before or 6:beyond"),
-        ("arm.Q1@0.33", "the nearest are at @0.3 and @0.35", "another count than 15"),
+        ("arm.Q1@0.3", "so the values on its two sides differ", "@0.3:before or @0.3:beyond"),
+        ("arm.Q1.6", "so the values on its two sides differ", "6:before or 6:beyond"),
+        ("arm.Q1@0.33", "the nearest are at @0.3 and @0.35", "a count other than 15"),
         ("arm.Q1@0.8", "the run is 0.7 m long", "@end"),
         ("arm.Q1.15", "the run has 15 cuts, 0 to 14", "14"),
         ("arm.Q1@start:before", "the run begins there, with the cut just beyond", "@start:beyond"),
         ("arm.Q1@end:beyond", "", ""),
-        ("arm.Q1@0.3:under", "is no place along a run of cuts", ":before or :beyond"),
-        ("arm.Q1@middle", "is no place along a run of cuts", "@start or @end"),
+        ("arm.Q1@0.3:under", "is not a position along a run of cuts", ":before or :beyond"),
+        ("arm.Q1@middle", "is not a position along a run of cuts", "@start or @end"),
         ("arm.Q1@3deg", "deg is an angle", "@280mm"),
         ("arm.Q1@3parsec", "'parsec' is not a unit", "@280mm"),
-        ("one.Q1@0.1", "has no '@0.1'", "a place along a run of cuts"),
+        ("one.Q1@0.1", "has no '@0.1'", "a position along a run of cuts"),
     ],
 )
 def test_what_is_no_place(path: str, message: str, hint: str) -> None:
@@ -137,7 +137,7 @@ def test_the_number_told_of_a_cut_is_the_one_that_paths_take() -> None:
 
 
 def test_a_place_is_judged_before_the_run() -> None:
-    with pytest.raises(SpecError, match="no cut was asked for there"):
+    with pytest.raises(SpecError, match="no cut was requested there"):
         measure.require_known_paths([measure.parse_measure("max abs sections.arm.M2@0.33")], ARM.spec)
     with pytest.raises(UsageError):
         measure.parse_measure("max sections.arm.M2 @0.3")

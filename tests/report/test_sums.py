@@ -23,28 +23,28 @@ def told(*sums: dict[str, Any]) -> tuple[str, ...]:
 def test_a_steady_sum() -> None:
     terms = {"joints.top.force.z": 1, "joints.bottom.force.z": 1}
     assert told({"terms": terms, "value": 49.05 + 0.0 * T}) == (
-        "joints.top Fz + joints.bottom Fz = 49.05 N; the split is open",
+        "joints.top Fz + joints.bottom Fz = 49.05 N; distribution indeterminate",
     )
 
 
 def test_two_that_are_equal() -> None:
     terms = {"joints.P0.force.x": 1, "joints.P5.force.x": -1}
-    assert told({"terms": terms, "value": 0.0 * T}) == ("joints.P0 Fx = joints.P5 Fx; the size is open",)
+    assert told({"terms": terms, "value": 0.0 * T}) == ("joints.P0 Fx = joints.P5 Fx; magnitude indeterminate",)
 
 
 def test_one_that_varies_with_factors() -> None:
     terms = {"joints.a.force.x": -1, "sections.cut.N": 2, "joints.c.force.y": -0.5}
     assert told({"terms": terms, "value": 10.0 + T}) == (
         "−joints.a Fx + 2·sections.cut N − 0.5·joints.c Fy"
-        " = 10.0 N first, 12.0 N last, 10.0 to 12.0 N in the samples; the split is open",
+        " = 10.0 N first, 12.0 N last, 10.0 to 12.0 N over the output times; distribution indeterminate",
     )
 
 
 def test_one_whose_factors_turn() -> None:
     terms = {"joints.a.force.x": np.cos(T + 0.5), "joints.a.force.y": -np.sin(T + 0.5)}
     assert told({"terms": terms, "value": 10.0 + 0.0 * T}) == (
-        "0.8776(t)·joints.a Fx − 0.4794(t)·joints.a Fy = 10.0 N; the split is open",
-        "(t): a factor that turns with the pose, as at the first instant; --format json has them all",
+        "0.8776(t)·joints.a Fx − 0.4794(t)·joints.a Fy = 10.0 N; distribution indeterminate",
+        "(t): factor varies with position, shown for the first instant; all values: --format json",
     )
 
 

@@ -29,14 +29,14 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NO
 
 MAX_CASES = 12  # with a row each; if there are more, only those that govern
 BOLD_NOTE = (
-    "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open, "
-    "that is rounding, or in which all cases are alike"
+    "bold: minimum and maximum over all load cases, for magnitudes only the maximum; not where a case may be open, the "
+    "value is rounding error, or all cases agree"
 )
 PARTLY_OPEN_MARK = "*"
-STEADY_NOTE = "without an instant: the same at all {}, to the digits shown"
-ERROR_NOTE = "±: the error that the run states of the number, rounding included"
-HIDDEN_CASES_NOTE = "numbers that are open or not known, and may be larger, stand in the cases left out here: {}"
-FEW_CASES_NOTE = "of {} load cases those that govern a number; heun run SPEC --case all has all"
+STEADY_NOTE = "no time given: constant over all {}, to the digits shown"
+ERROR_NOTE = "±: stated error of the number, including rounding"
+HIDDEN_CASES_NOTE = "cases not shown with open or unknown numbers, which may be larger: {}"
+FEW_CASES_NOTE = "only the governing ones of {} load cases are shown; all: heun run SPEC --case all"
 
 
 def make_cases_table(
@@ -66,7 +66,7 @@ def make_cases_table(
         if (hidden_cases := _find_hidden_cases(data, groups, shown_cases))
         else []
     )
-    table_notes += [f"0 throughout: {join_names(zero_groups)}"] if zero_groups else []
+    table_notes += [f"all values 0: {join_names(zero_groups)}"] if zero_groups else []
     return ReportTable(caption, _make_columns(data, has_places=has_places) if rows else [], rows, table_notes)
 
 
@@ -103,7 +103,7 @@ def _make_columns(data: ReportData, *, has_places: bool) -> list[TextColumn]:
     heads += [TextColumn("case", "left")] if data.has_cases else []
     unit = data.units.find("m")[0]
     position_heads = [f"at s [{unit}]"] * has_places + ["at t [s]"] * has_instants(data)
-    for word in ("least", "greatest") if has_instants(data) or has_places else ("value",):
+    for word in ("min", "max") if has_instants(data) or has_places else ("value",):
         heads += [TextColumn(word), *(TextColumn(head) for head in position_heads)]
     return [*heads, TextColumn("±")]
 
@@ -177,7 +177,7 @@ def _iter_group_rows(
 def _make_open_row(columns: Sequence[TextColumn], labels: Sequence[str]) -> list[ReportCell]:
     """Make the row of the numbers that are always indeterminate: the word `open` takes the place of the number."""
     heads = [column.head for column in columns]
-    first = next(heads.index(word) for word in ("least", "value") if word in heads)
+    first = next(heads.index(word) for word in ("min", "value") if word in heads)
     texts = {0: ", ".join(labels), first: OPEN}
     return [ReportCell(texts.get(i, "")) for i in range(len(columns))]
 
@@ -264,7 +264,7 @@ def _iter_notes(data: ReportData, rows: Sequence[Sequence[ReportCell] | str]) ->
     if cells:
         yield ERROR_NOTE
     if cells and has_instants(data):
-        yield STEADY_NOTE.format("instants" if all(run.is_searched for run in data.runs) else "samples")
+        yield STEADY_NOTE.format("times" if all(run.is_searched for run in data.runs) else "output times")
     yield ZERO_NOTE
     if OPEN in texts:
         yield OPEN_NOTE

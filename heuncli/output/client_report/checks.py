@@ -8,9 +8,12 @@ from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.output.tables.text_table import TextColumn
 from heuncli.study.quantities.measure_uncertainty import find_unit
 
-NO_CHECKS, NO_REPORTED_CHECKS = "The spec expects nothing.", "The spec expects nothing of what is reported."
-HOLDS, FAILS = "holds", "FAILS"
-HEADS = ("line", "case", "of", "unit", "at", "expected", "found", "allowed", "verdict")
+NO_CHECKS, NO_REPORTED_CHECKS = (
+    "No acceptance checks are defined.",
+    "No acceptance checks are defined for the reported cases.",
+)
+HOLDS, FAILS = "passed", "FAILED"
+HEADS = ("line", "case", "quantity", "unit", "at", "expected", "found", "allowed", "verdict")
 NUMBERS = frozenset({"line", "expected", "found", "allowed"})
 
 
@@ -23,8 +26,8 @@ def make_check_parts(data: ReportData) -> list[Part]:
     columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
     rows = [_make_row(data, outcome, with_cases=with_cases) for outcome in data.outcomes]
     failed = [f"{outcome.name}: {outcome.failure}" for outcome in data.outcomes if outcome.failure is not None]
-    changed = ", with what was given on the command line" if data.options else ""
-    return [ReportTable(f"CHECKS  as heun check makes them{changed}; in SI units", columns, rows, failed)]
+    changed = ", with the command-line options given" if data.options else ""
+    return [ReportTable(f"CHECKS  as in heun check{changed}; SI units", columns, rows, failed)]
 
 
 def _make_row(data: ReportData, outcome: Outcome, *, with_cases: bool) -> list[ReportCell]:

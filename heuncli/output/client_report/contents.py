@@ -20,13 +20,13 @@ CHAPTERS: Sequence[tuple[str, str, Callable[[ReportData], list[Part]]]] = (
     ("machine", "The machine", make_drawing_parts),
     ("loads", "Loads", make_load_parts),
     ("sections", "Sections", make_section_parts),
-    ("histories", "Histories", make_history_parts),
-    ("happenings", "Blows and events", make_event_parts),
+    ("histories", "Time histories", make_history_parts),
+    ("happenings", "Impulses and events", make_event_parts),
     ("checks", "Checks", make_check_parts),
-    ("trust", "How far the numbers can be trusted", make_trust_parts),
-    ("open", "What is open", make_open_parts),
+    ("trust", "Accuracy of the results", make_trust_parts),
+    ("open", "Indeterminate loads", make_open_parts),
     ("model", "The model and its assumptions", make_model_parts),
-    ("spec", "The spec", lambda of: make_spec_parts(of)),
+    ("spec", "Spec", lambda of: make_spec_parts(of)),
 )
 
 
@@ -45,5 +45,5 @@ def make_spec_parts(data: ReportData) -> list[Part]:
         Verbatim("\n".join(lines[:MAX_SPEC_LINES])),
     ]
     if len(lines) > MAX_SPEC_LINES:
-        parts.append(Sentence(f"... and {len(lines) - MAX_SPEC_LINES} more lines, left out here", "unsure"))
+        parts.append(Sentence(f"... and {len(lines) - MAX_SPEC_LINES} more lines, not printed", "unsure"))
     return parts

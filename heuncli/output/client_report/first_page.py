@@ -36,9 +36,9 @@ def _iter_identity(data: ReportData) -> Iterator[tuple[str, str]]:
     if data.has_cases:
         yield "load cases", ", ".join(_format_case(run.name, run.title) for run in data.runs)
     if data.omitted_cases:
-        yield "not reported", f"the load cases {', '.join(data.omitted_cases)}"
+        yield "not reported", f"load cases {', '.join(data.omitted_cases)}"
     for text in data.options:
-        yield "given", text
+        yield "option", text
     yield "solved by", _format_versions(data)
 
 
@@ -77,11 +77,11 @@ def _iter_run_ends(data: ReportData) -> Iterator[Sentence]:
         if status.get("code", "completed") != "completed":
             yield Sentence(f"{case}the run {status['code']}: {status.get('message', '')}", "bad")
         if (horizon := run.results.horizon) is not None:
-            text = f"{case}from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 there"
-            yield Sentence(f"{text}. All extremes are those before.", "unsure")
+            text = f"{case}no results are claimed from t = {horizon:.4g} s on: the error may exceed 1e-3"
+            yield Sentence(f"{text}. Extremes cover the time before.", "unsure")
         if not run.is_searched:
-            instants = format_count(len(run.page.results.time), "instant")
-            yield Sentence(f"{case}extremes are those of {instants} alone; between them loads may be larger.", "unsure")
+            instants = format_count(len(run.page.results.time), "output time")
+            yield Sentence(f"{case}extremes cover {instants} only; loads may be larger between them.", "unsure")
 
 
 def _iter_check_results(data: ReportData) -> Iterator[Sentence]:
@@ -90,25 +90,23 @@ def _iter_check_results(data: ReportData) -> Iterator[Sentence]:
     if failed:
         names = join_names([outcome.name for outcome in failed])
         total = len(data.outcomes)
-        text = f"{len(failed)} of {format_count(total, 'check')} of the spec FAIL: {names}."
+        text = f"{len(failed)} of {format_count(total, 'check')} in the spec FAILED: {names}."
         yield Sentence(text + _format_unchecked(data), "bad")
     elif data.outcomes:
-        text = "all of them hold" if len(data.outcomes) > 1 else "it holds"
+        text = "all passed" if len(data.outcomes) > 1 else "passed"
         mood: Mood = "unsure" if data.unchecked_scenes else "good"
         yield Sentence(
-            f"{format_count(len(data.outcomes), 'check')} of the spec: {text}.{_format_unchecked(data)}", mood
+            f"{format_count(len(data.outcomes), 'check')} in the spec: {text}.{_format_unchecked(data)}", mood
         )
     elif data.unchecked_scenes:
         yield Sentence(f"No result was checked.{_format_unchecked(data)}", "unsure")
     else:
-        yield Sentence("The spec expects nothing: no result was checked against a known number.", "unsure")
+        yield Sentence("No acceptance checks are defined.", "unsure")
 
 
 def _format_unchecked(data: ReportData) -> str:
     """Format the list of the scenes whose expected values were not checked."""
-    return (
-        f" Not checked, as it was not asked for: {join_names(data.unchecked_scenes)}." if data.unchecked_scenes else ""
-    )
+    return f" Not checked (not requested): {join_names(data.unchecked_scenes)}." if data.unchecked_scenes else ""
 
 
 def _iter_utilisation(data: ReportData) -> Iterator[Sentence]:
@@ -120,26 +118,23 @@ def _iter_utilisation(data: ReportData) -> Iterator[Sentence]:
     ]
     if not utilisations:
         if qualifier:
-            yield Sentence("No utilisation of strength is known: what loads the sections is open.", "unsure")
+            yield Sentence("Utilisation unknown: the section loads are open (indeterminate).", "unsure")
         return
     over_strength = [spread.name for spread in utilisations if spread.high.value > 1.0]
     near_strength = [
         spread.name for spread in utilisations if spread.high.value <= 1.0 < spread.high.value + spread.error
     ]
     largest = max(utilisations, key=_value_of_greatest)
-    text = (
-        f"Largest utilisation of strength{qualifier}: {largest.format_value()} in section "
-        f"{largest.name}{largest.position_text}."
-    )
-    text += f" Beyond strength: {join_names(over_strength)}." if over_strength else ""
-    text += f" Beyond it, if the stated error is added: {join_names(near_strength)}." if near_strength else ""
+    text = f"Largest utilisation{qualifier}: {largest.format_value()} in section {largest.name}{largest.position_text}."
+    text += f" Strength exceeded: {join_names(over_strength)}." if over_strength else ""
+    text += f" Strength exceeded if the stated error is added: {join_names(near_strength)}." if near_strength else ""
     is_certain = not (qualifier or near_strength) and all(run.is_searched for run in data.runs)
     yield Sentence(text, "bad" if over_strength else "good" if is_certain else "unsure")
 
 
 def _format_qualifier(data: ReportData, paths: Sequence[str]) -> str:
     """Format the qualifier of a maximum whose candidates include an indeterminate or unknown number; else empty."""
-    return " that is known" if any(find_uncertain_cases(data, path) for path in paths) else ""
+    return " among known values" if any(find_uncertain_cases(data, path) for path in paths) else ""
 
 
 def _value_of_greatest(spread: GreatestOfCases) -> float:
@@ -194,7 +189,7 @@ def _iter_impact_sentences(data: ReportData) -> Iterator[Sentence]:
         unit, size = data.units.find("N·s")
         largest = size * max(find_largest_impulses(impact, data.labels)[0] for impact in impacts)
         text = (
-            f"{format_count(len(impacts), 'blow')}; the largest impulse of a joint, on the ground or of "
+            f"{format_count(len(impacts), 'impulse')}; largest impulse at a joint, on the ground or of "
             "all bodies together:"
         )
         yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {largest:.6g} {unit}.")
@@ -205,13 +200,15 @@ def _iter_open(data: ReportData) -> Iterator[Sentence]:
     paths = list(dict.fromkeys(path for run in data.runs for path in run.snapshot.open))
     if paths:
         text = (
-            f"{format_count(len(paths), 'component')} of loads are open: the supports are redundant, and "
-            "rigid bodies do"
+            f"Indeterminate: {format_count(len(paths), 'load component')} (open). The supports are redundant, so the "
+            "distribution depends on stiffness"
         )
-        yield Sentence(f"{text} not say how they share ({join_names(paths)}).", "unsure")
+        yield Sentence(f"{text} ({join_names(paths)}).", "unsure")
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))
     for split in splits:
-        yield Sentence(f"What redundant supports leave open was split: {split}; other splits do as well.", "unsure")
+        yield Sentence(
+            f"Distribution of indeterminate reactions: {split}; other distributions are equally possible.", "unsure"
+        )
 
 
 def _iter_warnings(data: ReportData) -> Iterator[Sentence]:

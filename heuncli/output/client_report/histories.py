@@ -27,14 +27,14 @@ def make_history_parts(data: ReportData) -> list[Part]:
         return []
     if 1 < len(moving) <= MAX_CURVES:
         figure = _make_figure(data, moving, [path for path, _ in governed_paths])
-        return [Drawing(figure, "The most loaded joints over time, in all load cases: magnitudes")]
+        return [Drawing(figure, "Most heavily loaded joints over time, all load cases: magnitudes")]
     parts: list[Part] = []
     for run in moving:
         paths = [path for path, case in governed_paths if case == run.name]
         if paths:
             case = f", load case {run.name}" if run.name else ""
             parts.append(
-                Drawing(_make_figure(data, [run], paths), f"The most loaded joints over time{case}: magnitudes")
+                Drawing(_make_figure(data, [run], paths), f"Most heavily loaded joints over time{case}: magnitudes")
             )
     return parts
 

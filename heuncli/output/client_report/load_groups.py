@@ -100,7 +100,7 @@ def iter_joining_forces(data: ReportData) -> Iterator[tuple[str, str]]:
         elif kind == "forces" and quantity in ("force", "value"):
             info = data.labels.forces.get(name)
             if info is not None and info.type not in EXTERNAL_LOADS:
-                yield path, f"{info.type.replace('_', ' ')} {name}"
+                yield path, f"{info.type.replace('turn_spring', 'torsion spring').replace('_', ' ')} {name}"
 
 
 def drop_components(group: LoadGroup) -> LoadGroup:

@@ -12,9 +12,9 @@ from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
 from heuncli.output.tables.table_blocks import describe_chosen_components
 from heuncli.output.tables.table_plans import FOUNDATION, JOINTS, STOPS, TablePlan
 
-NO_JOINTS_NOTE = "There are no joints, and nothing stands on the ground."
-ONLY_IMPACTS_NOTE = "The scene is struck and nothing else is asked for: see the blows for its joints and the ground."
-MAGNITUDES_NOTE = "{} {}: of vectors the magnitudes alone; heun run SPEC --format csv has the components"
+NO_JOINTS_NOTE = "No joints, and no connection to the ground."
+ONLY_IMPACTS_NOTE = "Only impulses are requested: see the impulses for the joints and the ground."
+MAGNITUDES_NOTE = "{} {}: only magnitudes of vectors; components: heun run SPEC --format csv"
 
 
 def make_load_parts(data: ReportData) -> list[Part]:

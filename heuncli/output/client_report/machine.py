@@ -13,8 +13,8 @@ from heuncli.output.tables.model_text import LIST_TITLES, collect_facts
 from heuncli.study.workflow import describe
 
 ASSUMPTIONS = (
-    "Bodies are rigid. Joints are ideal, without play, give or friction but for what the spec states; rods are without "
-    "mass. Nothing acts but gravity and the loads that the spec states."
+    "Bodies are rigid. Joints are ideal, without clearance, compliance or friction unless the spec states otherwise; "
+    "rods are massless. Only gravity and the loads stated in the spec act."
 )
 DESCRIBED_KEYS = ("names", "notes")  # keys of a model's description that results do not have
 
@@ -23,7 +23,7 @@ def make_drawing_parts(data: ReportData) -> list[Part]:
     """Make the figure of the machine at the first instant of the first case."""
     run = data.runs[0]
     if not is_claimed(run.study):
-        return [Sentence("Nothing is claimed of where it is at the instants of the run: all are beyond its horizon.")]
+        return [Sentence("No positions are claimed: all output times are past the horizon.")]
     case = f", load case {run.name}" if run.name else ""
     figure = make_scene_figure(FigureSource("", run.study), data.units)._replace(title="")
     return [Drawing(figure, f"The machine at the start{case}")]

@@ -20,7 +20,7 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.smoothed_friction import find_partial_friction
 from heuncli.study.queries.study import Study
 
-AS_IT_STANDS = "as it stands"  # the scene without the values of a case
+AS_IT_STANDS = "base model"  # the scene without the values of a case
 LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "events"})
 
 

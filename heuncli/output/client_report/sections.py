@@ -29,11 +29,11 @@ from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES
 from heuncli.study.quantities.digits import format_error
 
 UTIL_NOTE = (
-    "utilisation: the largest von Mises stress (mises) over the strength given; above 1 the section is overloaded"
+    "utilisation: largest von Mises stress (mises) divided by the given strength; above 1 the section is overloaded"
 )
-SAFE_SIDE_NOTE = "stresses are on the safe side where the shape of a section is not known"
-UNCERTAIN_NOTE = "{}: open or not known{}, and may be larger there"
-LARGEST_NOTE = "bold: the section that is used most"
+SAFE_SIDE_NOTE = "stresses are conservative where the shape of a section is not known"
+UNCERTAIN_NOTE = "{}: open or unknown{}, where it may be larger"
+LARGEST_NOTE = "bold: section with the highest utilisation"
 GOVERNING_QUANTITIES = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # in order of priority
 MAX_DIAGRAMS = 12
 NO_STRENGTH = "not given"
@@ -55,18 +55,18 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
     for name in (name for name in cut_runs if name in drawn_runs):
         run = governing_cases[name].run
         if not is_claimed(run.study):
-            yield Sentence(f"{name} has no diagram: all instants of the run are beyond its horizon.")
+            yield Sentence(f"{name} has no diagram: all output times are past the horizon.")
             continue
         figure = make_diagrams([FigureSource("", run.study)], [name], data.units)._replace(title="")
         case = f", load case {run.name}" if run.name else ""
         yield Drawing(
             figure,
-            f"Section {name}{case}{_format_open_cases(data, name)}: the piece beyond the cut ON the "
-            "part before it; N > 0 tension",
+            f"Section {name}{case}{_format_open_cases(data, name)}: force of the far side on the "
+            "near side of the cut; N > 0 tension",
         )
     if len(cut_runs) > len(drawn_runs):
         yield Sentence(
-            f"{len(cut_runs) - len(drawn_runs)} more sections are not drawn here: heun plot SPEC sections.NAME"
+            f"{len(cut_runs) - len(drawn_runs)} further sections are not shown: heun plot SPEC sections.NAME"
         )
 
 
@@ -78,7 +78,7 @@ def _format_open_cases(data: ReportData, name: str) -> str:
     cases = [
         run.case_label for run in data.runs if any(run.case_label in uncertain_cases for uncertain_cases in case_lists)
     ]
-    return f" (some loads are open in {join_names(cases)}, which may govern)" if cases and data.has_cases else ""
+    return f" (some loads are open in {join_names(cases)}; these cases may govern)" if cases and data.has_cases else ""
 
 
 class GoverningCase(NamedTuple):
@@ -175,7 +175,7 @@ def _iter_stress_table(data: ReportData, names: list[str]) -> Iterator[Part]:
         for entry_of_section in entries
         if not entry_of_section.is_known
     ]
-    yield ReportTable("STRESS  the largest of each section", heads, rows, notes)
+    yield ReportTable("STRESS  largest in each section", heads, rows, notes)
 
 
 def _make_cells(
@@ -209,7 +209,7 @@ def _format_uncertain_cases(data: ReportData, entry: SectionUtilisation) -> str:
     return (
         f" in case {join_names(entry.uncertain_cases)}"
         if data.has_cases
-        else " at some instants"
+        else " at some times"
         if has_instants(data)
         else ""
     )

@@ -13,29 +13,29 @@ from heuncli.results.results_schema import XYZ, error_kind_of_path
 from heuncli.study.quantities.digits import format_error
 
 INTEGRATED_NOTE = (
-    "Every motion is integrated a second time, with a thirtieth of the error allowed. The stated errors are twice the "
-    "largest difference of the two, of all instants so far, and not below rounding; they hold for all numbers of a "
-    "kind. They tell of the solution of the model, not of how well the model is the machine."
+    "Every motion is integrated a second time with a thirtieth of the allowed error. The stated errors are twice the "
+    "largest difference between the two up to that time, and at least the rounding error; each applies to all numbers "
+    "of one kind. They measure the solution of the model, not how well the model represents the machine."
 )
 DRIVEN_NOTE = (
-    "Nothing is integrated: the drives leave no freedom, and every instant is solved by itself. The stated errors are "
-    "those of rounding, found by solving again from values moved by it. They tell of the solution of the model, not of "
-    "how well the model is the machine."
+    "Motion fully prescribed: solved at each instant, nothing integrated. The stated errors are rounding errors, found "
+    "by solving again with perturbed values. They measure the solution of the model, not how well the model represents "
+    "the machine."
 )
 EQUILIBRIUM_NOTE = (
-    "Nothing is integrated: a pose at rest is looked for, and again ten times finer. The stated errors are those of "
-    "the pose, from the difference of the two finest, and of rounding. They tell of the solution of the model, not of "
-    "how well the model is the machine."
+    "Nothing is integrated: the rest position is searched for, then again ten times finer. The stated errors are those "
+    "of the position, from the difference between the two finest searches, and of rounding. They measure the solution "
+    "of the model, not how well the model represents the machine."
 )
 ONE_INSTANT_NOTE = (
-    "Nothing is integrated: the equations of one instant are solved, and the stated errors are those of rounding. They "
-    "tell of the solution of the model, not of how well the model is the machine."
+    "Nothing is integrated: the equations are solved at one instant, and the stated errors are rounding errors. They "
+    "measure the solution of the model, not how well the model represents the machine."
 )
 KIND_LABELS = {"reactions": "joints", "drives": "drives", "foundation": "foundation", "sections": "sections"}
-MOTION = ("places of points", "m")
+MOTION = ("positions of points", "m")
 LOADS = ("N", "N·m")
 CASE_COLUMN = TextColumn("case", "left")
-NOTHING_OPEN = "Nothing is open: the laws of rigid bodies determine every load that is reported."
+NOTHING_OPEN = "No indeterminate loads: rigid-body mechanics determines every reported load."
 
 
 def make_trust_parts(data: ReportData) -> list[Part]:
@@ -73,9 +73,9 @@ def _make_error_table(data: ReportData) -> ReportTable:
                 *([ReportCell(case)] if data.has_cases else []),
             ]
         )
-    heads = [TextColumn("of", "left"), TextColumn("unit", "left"), TextColumn("±")]
+    heads = [TextColumn("quantity", "left"), TextColumn("unit", "left"), TextColumn("±")]
     return ReportTable(
-        "STATED ERRORS  of all numbers of a kind", [*heads, *([CASE_COLUMN] if data.has_cases else [])], rows
+        "STATED ERRORS  for each kind of quantity", [*heads, *([CASE_COLUMN] if data.has_cases else [])], rows
     )
 
 
@@ -95,21 +95,26 @@ def make_open_parts(data: ReportData) -> list[Part]:
     parts: list[Part] = []
     for run in data.runs:
         if run.snapshot.open:
-            parts.append(Listing(f"Open{_format_case(run)}", run.snapshot.open))
+            parts.append(Listing(f"Open (indeterminate) components{_format_case(run)}", run.snapshot.open))
         parts += _iter_sums(data, run)
     if not parts:
         return [Sentence(NOTHING_OPEN)]
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))
     return [
         *parts,
-        *(Sentence(f"Chosen, not certain: {words}; other splits do as well.", "unsure") for words in splits),
+        *(
+            Sentence(
+                f"Distribution of indeterminate reactions: {words}; other distributions are equally possible.", "unsure"
+            )
+            for words in splits
+        ),
     ]
 
 
 def _iter_sums(data: ReportData, run: ReportedRun) -> Iterator[Part]:
     table = make_sums_table(run.page.results, run.page.certain, run.page.last_instant, data.units.find("N"))
     if table is not None:
-        yield Listing(f"Certain sums{_format_case(run)}", table.notes)
+        yield Listing(f"Determinate sums of indeterminate reactions{_format_case(run)}", table.notes)
 
 
 def _format_case(run: ReportedRun) -> str:

@@ -14,8 +14,8 @@ def find_form(name: str, option: str) -> str:
     """Return the form of a drawing by the ending of a file name. Raises UsageError."""
     form = FORMS.get(os.path.splitext(name)[1].lower())  # noqa: PTH122 - a name, not a file
     if form is None:
-        hint = f"known endings: {', '.join(FORMS)}"
-        raise UsageError(Problem("bad-option", f"{option} {name}: no picture is known by that ending", hint=hint))
+        hint = f"accepted file extensions: {', '.join(FORMS)}"
+        raise UsageError(Problem("bad-option", f"{option} {name}: unknown picture format", hint=hint))
     return form
 
 

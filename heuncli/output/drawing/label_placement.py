@@ -133,4 +133,4 @@ def make_omitted_note(omitted: Iterable[str], max_texts: int = 12) -> list[str]:
     if not distinct:
         return []
     hidden_text = f"; and {len(distinct) - max_texts} more" if len(distinct) > max_texts else ""
-    return [f"without words for want of room: {'; '.join(distinct[:max_texts])}{hidden_text}"]
+    return [f"labels omitted for lack of space: {'; '.join(distinct[:max_texts])}{hidden_text}"]

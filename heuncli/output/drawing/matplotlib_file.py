@@ -13,13 +13,13 @@ PER_INCH = 96.0  # pixels
 FIXED_AXES: dict[str, Any] = {"scalex": False, "scaley": False}  # keep the limits of the axes
 POINTS = 72.0 / PER_INCH  # in a pixel
 RESOLUTION = 2.0  # PNG pixels for a pixel of the drawing
-INSTALL_HINT = 'pip install "heuncli[plot]"; or a name that ends in .svg, which needs nothing'
+INSTALL_HINT = 'pip install "heuncli[plot]"; or use a file name ending in .svg, which needs no extra package'
 
 
 def require_plot(what: str) -> None:
     """Raise SpecError before the work if matplotlib is not installed."""
     if importlib.util.find_spec("matplotlib") is None:
-        message = f"{what} is drawn by matplotlib, which is not installed"
+        message = f"{what} requires matplotlib, which is not installed"
         raise SpecError(Problem("missing-extra", message, hint=INSTALL_HINT))
 
 

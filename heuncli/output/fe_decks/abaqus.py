@@ -23,12 +23,12 @@ from heuncli.output.fe_decks.readme import case_heading, readme
 
 TIE_NOTE = (
     "Tie each point to the surface of its bore: *COUPLING with *DISTRIBUTING (spreads the load) or *KINEMATIC (keeps "
-    "the bore rigid); of beams *MPC with BEAM."
+    "the bore rigid); for beams *MPC with BEAM."
 )
 CARD_NOTES = (
-    "GRAV is a load along its direction, g - a at the body's origin. CENTRIF has the square of the angular velocity, "
-    "ROTA the angular acceleration, of the body about the axes through 0, 0, 0: d'Alembert's forces of both.",
-    "Every step is linear (NLGEOM=NO), with OP=NEW: no load of one is left in the next.",
+    "GRAV acts along its direction, g - a at the body's origin. CENTRIF takes the square of the angular velocity, ROTA "
+    "the angular acceleration of the body about axes through 0, 0, 0: both apply the d'Alembert forces.",
+    "Every step is linear (NLGEOM=NO) with OP=NEW: no load carries over to the next.",
 )
 
 

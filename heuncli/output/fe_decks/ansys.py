@@ -16,13 +16,13 @@ from heuncli.results.results import Array
 
 MARK = "!"
 TIE_NOTE = (
-    "Each point is a pilot node: give it a MASS21 without mass or a contact pair (TARGE170, CONTA174 with "
+    "Each point is a pilot node: give it a massless MASS21 or a contact pair (TARGE170, CONTA174 with "
     "KEYOPT(2)=2), and tie it to the nodes of its bore by RBE3 (spreads the load) or CERIG (keeps the bore rigid)."
 )
 CARD_NOTES = (
-    "ACEL is the acceleration of the frame, a - g at the body's origin: the mesh resists with -m ACEL, and gravity "
-    "along -z stands as +z. OMEGA [rad/s] and DOMEGA [rad/s2] are of the body, about the axes through 0, 0, 0; "
-    "no CGLOC, CGOMGA, DCGOMG, and no inertia relief (IRLF) beside them.",
+    "ACEL is the acceleration of the frame, a - g at the body's origin: the mesh reacts with -m ACEL, so gravity "
+    "along -z is entered as +z. OMEGA [rad/s] and DOMEGA [rad/s2] are those of the body, about axes through 0, 0, 0; "
+    "do not add CGLOC, CGOMGA, DCGOMG or inertia relief (IRLF).",
     "Each case is written as a load step (LSWRITE); LSSOLVE,1,N solves them.",
 )
 FORCE_LABELS = ("FX", "FY", "FZ", "MX", "MY", "MZ")

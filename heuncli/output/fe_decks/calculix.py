@@ -28,17 +28,17 @@ TIE_NOTE = (
     "the bore rigid)."
 )
 CARD_NOTES = (
-    "GRAV is a load along its direction, g - a at the body's origin; CENTRIF has the square of the angular velocity, "
-    "about an axis through 0, 0, 0, and acts outwards.",
-    "Every step with OP=NEW: no load of one is left in the next.",
+    "GRAV acts along its direction, g - a at the body's origin; CENTRIF takes the square of the angular velocity about "
+    "an axis through 0, 0, 0 and acts outwards.",
+    "Every step uses OP=NEW: no load carries over to the next.",
 )
 NODAL_NOTE = (
-    "CalculiX has no load of angular acceleration: what it does stands as forces at the nodes of the mesh that was "
-    "given, of even density. Of the body's mass, that mesh has its center of mass at {center} and about it Ixx Iyy Izz "
-    "{inertia}: where these are not the body's, the cases do not balance."
+    "CalculiX has no angular acceleration load: it is given as forces at the nodes of the supplied mesh, with uniform "
+    "density. Scaled to the body's mass, that mesh has its center of mass at {center} and about it Ixx Iyy Izz "
+    "{inertia}: where these differ from the body's, the cases do not balance."
 )
 MESH_TOLERANCE = 1e-2  # of mass times radius of gyration, or its square: the error due to the facets of a mesh
-MESH_DIFFERS_NOTE = "the cases do not balance on it by as much"
+MESH_DIFFERS_NOTE = "the cases are out of balance by as much"
 
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
@@ -92,7 +92,7 @@ def notes(cases: LoadCases, names: DeckNames) -> list[str]:
         / np.array([[r], [r], [r], [1.0]])
     )
     return (
-        [f"the mesh's masses lie off the body's by {deviation.max():.2g}: {MESH_DIFFERS_NOTE}"]
+        [f"the mesh's mass properties differ from the body's by {deviation.max():.2g}: {MESH_DIFFERS_NOTE}"]
         if deviation.max() > MESH_TOLERANCE
         else []
     )

@@ -28,13 +28,13 @@ TIE_NOTE = (
     "with the point as the independent grid (keeps the bore rigid)."
 )
 CARD_NOTES = (
-    "GRAV is a load along its vector, g - a at the body's origin. RFORCE is about the axis through 0, 0, 0, its A in "
-    "revolutions per second, outwards; METHOD 2 is right for coupled masses (1 where elements have a ZOFFS). Each has "
-    "a set of its own, which LOAD adds up.",
-    "RACC is in revolutions per second squared. OptiStruct makes of it a load along the angular acceleration, as "
-    "MSC and Simcenter have it in their formula: so it stands here with the opposite sign. MYSTRAN makes a load "
-    "against it: there the last factor of LOAD is -1. The reactions of the holding vanish with the right one.",
-    "PARAM,INREL stays off: the inertia is in the cards.",
+    "GRAV acts along its vector, g - a at the body's origin. RFORCE acts outwards about the axis through 0, 0, 0, with "
+    "A in revolutions per second; METHOD 2 is correct for coupled masses (1 where elements have a ZOFFS). Each has its "
+    "own set; LOAD adds them.",
+    "RACC is in revolutions per second squared. OptiStruct, like the formula of MSC and Simcenter, applies it as a "
+    "load along the angular acceleration, so it is written here with the opposite sign. MYSTRAN applies it against: "
+    "use -1 as the last factor of LOAD there. With the right sign the support reactions vanish.",
+    "Keep PARAM,INREL off: the cards contain the inertia loads.",
 )
 FULL_TURN = 2.0 * math.pi
 FIELD_WIDTH = 16
@@ -122,7 +122,7 @@ def _rounding_note(cases: LoadCases) -> str:
     """Describe the imbalance of the sums due to the digits of the cards."""
     imbalance = max((cases.body.balance(_round_as_written(case)).relative for case in cases.cases), default=0.0)
     imbalance_text = f"{imbalance:.1e}" if imbalance else "0"
-    return f"Numbers as large fields hold them: the sums of the cards are {imbalance_text} of the largest."
+    return f"Numbers are rounded to large fields: the cards sum to {imbalance_text} of the largest."
 
 
 def _round_as_written(case: LoadCase) -> LoadCase:
@@ -149,5 +149,5 @@ def parse_real(text: str) -> float:
 def notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Warn if a sign depends on the dialect."""
     if any(case.field.angular_acceleration.any() for case in cases.cases):
-        return ["RACC is signed as OptiStruct, MSC and Simcenter read it, MYSTRAN the other way round"]
+        return ["RACC has the sign for OptiStruct, MSC and Simcenter; MYSTRAN needs the opposite sign"]
     return []

@@ -38,8 +38,8 @@ MAX_VALUES = 16  # with more arrows there are no values
 N_DISTRIBUTED_ARROWS = 9  # arrows of a distributed load
 DIGITS = 3  # of the values
 KINDS = (
-    (JOINTS_PEN, "of joints, from ON to"),
-    (COUPLED_PEN, "of couplings"),
+    (JOINTS_PEN, "joint reactions, from on to"),
+    (COUPLED_PEN, "couplings"),
     (APPLIED_PEN, "applied"),
 )
 
@@ -228,7 +228,7 @@ def draw_loads(loads: ActingLoads, view: SceneView, size: float, side: float, un
             items.append(_make_value_label(pull, place, *loads.find_unit(units, moments=True)))
     hidden_names = [pull.name for pull in moments if not any(pull is distributed for distributed in facing)]
     notes = (
-        [f"not drawn, as they do not turn in the picture: the moments of {', '.join(hidden_names)}"]
+        [f"moments not drawn, as they do not act in the plane of the figure: {', '.join(hidden_names)}"]
         if hidden_names
         else []
     )

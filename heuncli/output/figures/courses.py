@@ -65,8 +65,8 @@ def require_claimed(study: Study) -> None:
     """Raise NotDrawable if all instants of a run are beyond its horizon."""
     if not is_claimed(study):
         horizon, first = study.results.horizon, study.results.time[0]
-        message = f"from t = {horizon:.6g} s on nothing is claimed, and the first instant is t = {first:.6g} s"
-        raise NotDrawable(message, "earlier instants, or a smaller --tolerance")
+        message = f"no results are claimed from t = {horizon:.6g} s on, and the first output time is t = {first:.6g} s"
+        raise NotDrawable(message, "use earlier output times or a smaller --tolerance")
 
 
 def choose_instants(study: Study, max_search_instants: int = MAX_SEARCH_INSTANTS) -> Array:
@@ -119,7 +119,7 @@ def require_one_number(study: Study, path: str) -> None:
     """Raise NotOneNumber for a path without instants, or with several numbers that are no vector at each instant."""
     numbers = study.find_numbers(path)
     if not numbers.is_timed:
-        raise NotOneNumber(f"{path} has no instants to be drawn over", f"such as heun run SPEC --measure {path}")
+        raise NotOneNumber(f"{path} does not vary with time", f"use heun run SPEC --measure {path}")
     if numbers.axes and not (numbers.is_vector and len(numbers.axes) == 1):
         raise make_several_error(path, numbers)
 

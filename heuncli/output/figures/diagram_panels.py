@@ -25,7 +25,7 @@ MIN_LOBE_WIDTH, MIN_LOBE_HEIGHT = (0.05, 0.15)
 MIN_MARKED = 0.004  # share of the largest magnitude (half a pixel); smaller extremes are not marked
 MAX_TICKS = 4  # of an inverted axis
 LABEL_MARGIN = 0.22  # share of a panel's height, for labels of extremes
-UNKNOWN_NOTE = "not known: the stated error is as large as the numbers"
+UNKNOWN_NOTE = "unknown: the stated error is as large as the values"
 
 
 class BarCurves(NamedTuple):
@@ -122,7 +122,7 @@ def _draw_bar(bar: BarCurves, quantity: str, scales: DisplayScales, y: Scaling, 
     factor = scales.sign * scales.value
     if load_range is not None:
         band = np.sort(factor * np.stack([load_range.low, load_range.high]), axis=0)
-        yield Band(f"{prefix}lowest and highest of {quantity}", scales.s * load_range.s, band[0], band[1], bar.pen)
+        yield Band(f"{prefix}minimum and maximum of {quantity}", scales.s * load_range.s, band[0], band[1], bar.pen)
     values, error = factor * line.values, scales.value * bar.bar.find_error(quantity)
     if is_visible(error, y, PANEL_HEIGHT):
         band = np.clip([values - error, values + error], y.low, y.high)

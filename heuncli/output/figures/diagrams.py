@@ -34,9 +34,9 @@ LETTER_WIDTH = 0.009  # width of a letter, as a share of the bar's length
 INSTANT_SEPARATOR = ": t = "  # between the name of a run and an instant
 MAX_NAMES_LENGTH = 60  # letters of the names at a place
 BAND_SENTENCE = (
-    "band: lowest and highest over the run at each place; line: the instant of the largest magnitude, which is marked"
+    "band: minimum and maximum over the run at each position; line: at the time of the largest magnitude (marked)"
 )
-TENSION_SENTENCE = "ordinates of M1 and M2 point to the side that bending puts in tension"
+TENSION_SENTENCE = "M1 and M2 are plotted on the tension side"
 
 
 def make_diagrams(
@@ -104,12 +104,12 @@ def _describe_source(source: FigureSource, times: Sequence[float] | None) -> Ite
         shown_times = results.time if times is None else times
         parts += [f"t = {format_short(float(shown_times[0]))} s"] * (len(shown_times) == 1)
     if horizon is not None:
-        parts.append(f"nothing is claimed, and drawn, from t = {horizon:.6g} s on")
+        parts.append(f"no results claimed or drawn from t = {horizon:.6g} s on")
     n_impacts = len(study.history.impulses)
     if study.spec.analysis.type == "impulse":
-        parts[1] = "impulses of a blow"
+        parts[1] = "impulses only"
     elif n_impacts:
-        parts.append(f"{n_impacts} blow{'s' * (n_impacts > 1)}, whose impulses are no part of it")
+        parts.append(f"{n_impacts} impulse{'s' * (n_impacts > 1)}, not included")
     yield "; ".join(part for part in parts if part)
 
 
@@ -117,7 +117,7 @@ def _make_heading(source: FigureSource, name: str) -> str:
     """Describe the diagrams of a section in the words of its tables."""
     info = make_labels(source.study.spec).sections[name]
     axes = f"e1 = {info.first_axis}, e2 = n × e1; moments about {info.moment_point}"
-    return f"what the piece of {info.body} beyond s exerts ON the part before it; N > 0 tension; {axes}"
+    return f"{info.body}: force of the far side on the near side of the cut; N > 0 tension; {axes}"
 
 
 def _choose_quantities(bars: Sequence[BarCurves]) -> tuple[list[str], list[str]]:
@@ -127,14 +127,14 @@ def _choose_quantities(bars: Sequence[BarCurves]) -> tuple[list[str], list[str]]
         verdicts = {_classify(bar, quantity) for bar in bars}
         matching_list = zero if verdicts == {"zero"} else within if verdicts <= {"zero", "within"} else shown
         matching_list.append(quantity)
-    notes = [f"0 all along, and not drawn: {', '.join(zero)}"] if zero else []
+    notes = [f"all zero, not drawn: {', '.join(zero)}"] if zero else []
     if within:
         error = {bars[0].bar.find_unit(q): max(bar.bar.find_error(q) for bar in bars) for q in within}
         errors_text = ", ".join(f"{format_error(size)} {unit}" for unit, size in error.items())
-        notes.append(f"0 to their stated error ({errors_text}), and not drawn: {', '.join(within)}")
+        notes.append(f"zero within the stated error ({errors_text}), not drawn: {', '.join(within)}")
     partly_open = [q for q in shown if any(_is_open_at_times(bar, q) for bar in bars)]
     if partly_open:
-        notes.append(f"open at some instants, which the band leaves out: {', '.join(partly_open)}")
+        notes.append(f"open at some times, not included in the band: {', '.join(partly_open)}")
     return shown, notes
 
 

@@ -85,7 +85,7 @@ def _has_instant(times: Array, time: float) -> bool:
 def _iter_impacts(results: Results) -> Iterator[tuple[float, str]]:
     """Yield the instants of impacts with the names of what met."""
     for impulse in results.impulses:
-        yield float(impulse["time"]), ", ".join(impulse["names"]) or "blow"
+        yield float(impulse["time"]), ", ".join(impulse["names"]) or "impulse"
 
 
 def _iter_events(results: Results) -> Iterator[tuple[float, str]]:

@@ -51,8 +51,8 @@ LABEL_MARGIN = 0.12  # share above and below the curves, for labels
 PANEL_HEIGHTS = (280.0, 210.0, HEIGHT)  # pixels of a panel, by the number of panels: one, two, more
 MAX_PATH_HEIGHT = 480.0  # maximum height of the path of a point, pixels
 MAX_TIME_INSTANTS, MAX_NUMBER_INSTANTS = 1_000_000, 20_000  # maxima over time (thinned later), over a number
-BEYOND_HORIZON_NOTE = "beyond the horizon: nothing is claimed"
-ALL_OPEN_NOTE = "open: the laws of rigid bodies do not give this number"
+BEYOND_HORIZON_NOTE = "past the horizon: no results claimed"
+ALL_OPEN_NOTE = "open: statically indeterminate, depends on stiffness"
 # SI unit -> quantity, for labels of axes
 QUANTITY_NAMES = {
     "N": "force", "N·m": "moment", "N·s": "impulse", "N·m·s": "angular impulse", "m": "length", "rad": "angle",
@@ -165,8 +165,8 @@ def _require_one_axis(sources: Sequence[FigureSource], x_path: str | None) -> No
             first_kind, other = (
                 QUANTITY_NAMES.get(unit_of_run, unit_of_run or "a number") for unit_of_run in (first[1], unit)
             )
-            message = f"--x {x_path}: of kind '{first_kind}' in {first[0]}, '{other}' in {name}: no axis is of both"
-            raise NotDrawable(message, "draw them one after the other")
+            message = f"--x {x_path}: kind '{first_kind}' in {first[0]}, '{other}' in {name}: they cannot share an axis"
+            raise NotDrawable(message, "draw them separately")
 
 
 def _make_x_axis(
@@ -253,14 +253,14 @@ def _mark_extremes(curve: PanelCourse, size: float, x_axis: HorizontalAxis) -> I
     """Mark the lowest and highest value with their instants; of a constant its value."""
     low, high, error = curve.course.low, curve.course.high, curve.course.error or 0.0
     has_range = is_varying(low.value, high.value, error)
-    for word, peak in (("greatest", high), ("least", low)) if has_range else (("", high),):
+    for word, peak in (("maximum", high), ("minimum", low)) if has_range else (("", high),):
         if peak.time is None or not math.isfinite(peak.value):
             continue
         x, place_text = _locate_peak(curve, peak, x_axis)
         if has_range:
             text = f"{format_number(peak.value, error, size)} at {place_text}"
         else:
-            text = format_constant(peak.value, error, size) + ("" if len(curve.x) == 1 else " throughout")
+            text = format_constant(peak.value, error, size) + ("" if len(curve.x) == 1 else " at all times")
             x = x_axis.size * float(curve.x[np.argmax(np.isfinite(curve.x + curve.course.values))])
         if not math.isfinite(x):  # the number on the horizontal axis is open there
             continue
@@ -281,7 +281,7 @@ def format_constant(value: float, error: float, size: float) -> str:
     `?`: unknown.
     """
     if 0.0 < abs(value) <= error:
-        return "?" if math.isinf(error) else f"not above its stated error, {format_error(size * error)},"
+        return "?" if math.isinf(error) else f"within its stated error, {format_error(size * error)},"
     return format_number(value, error, size)
 
 
@@ -302,11 +302,11 @@ def _describe_source(source: FigureSource) -> Iterator[str]:
     parts = [source.name or str(results.spec.get("path", "")), f"method {results.model.get('method', 'none')}"]
     motion = results.accuracy.get("estimate", {}).get("motion")
     if motion:
-        parts.append(f"motion estimated to {format_error(motion)} of the scene's size")
+        parts.append(f"motion within {format_error(motion)} of model size")
     if "axes" in results.model and any(results.joints):
         parts.append(f"joint loads in the axes of the '{results.model['axes']}' body")
     if horizon is not None:
-        parts.append(f"nothing is claimed from t = {horizon:.6g} s on")
+        parts.append(f"no results claimed from t = {horizon:.6g} s on")
     yield "; ".join(parts)
 
 
@@ -315,10 +315,10 @@ def _make_notes(curves: Sequence[PanelCourse], panels: Sequence[Panel]) -> list[
     gaps = [np.isnan(curve.course.values) for curve in curves]
     all_open = [curve.name for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.all()]
     in_parts = [curve.name for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.any() and not is_gap.all()]
-    notes = [f"open, and not drawn: {', '.join(all_open)}"] if all_open else []
-    notes += [f"open or not known at some instants, and not drawn there: {', '.join(in_parts)}"] if in_parts else []
+    notes = [f"open, not drawn: {', '.join(all_open)}"] if all_open else []
+    notes += [f"open or unknown at some times, not drawn there: {', '.join(in_parts)}"] if in_parts else []
     if any(isinstance(item, Band) for panel in panels for item in panel.items):
-        notes.append("light bands: the stated error")
+        notes.append("light bands: stated error")
     return [*notes, *_warn_of_friction(curves)]
 
 
@@ -328,6 +328,6 @@ def _warn_of_friction(curves: Sequence[PanelCourse]) -> Iterator[str]:
         study, course = curve.source.study, curve.course
         if not has_smoothed_friction(study.setup.scene.mechanism) or course.low.value == course.high.value:
             continue
-        for word, peak in (("least", course.low), ("greatest", course.high)):
+        for word, peak in (("minimum", course.low), ("maximum", course.high)):
             if math.isfinite(peak.value) and (text := make_friction_warning(study, course.path, peak.time)) is not None:
                 yield f"the {word} of {text}"

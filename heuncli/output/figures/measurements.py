@@ -77,7 +77,7 @@ def read_points(query: PointsQuery, x_unit: str, units: Sequence[str]) -> Measur
     except CsvError as error:
         raise _make_error(query, error.finding, (error.line, error.column)) from None
     if not len(x):
-        raise _make_error(query, Finding("table-file", "there is no row of numbers in it", "a row a point: 0.1,12.5"))
+        raise _make_error(query, Finding("table-file", "it contains no row of numbers", "one row per point: 0.1,12.5"))
     x_values = _to_si(query, query.x, columns[0].unit, x, [x_unit])
     y_values = _to_si(query, query.y, columns[1].unit, y, units)
     for values in (x_values[1], y_values[1]):
@@ -116,8 +116,8 @@ def _to_si(query: PointsQuery, name: str, column_unit: str, values: Array, units
     found = next((unit for unit in units if _find_dimension(unit) == dimension), None)
     if found is None:
         expected = " or ".join(dict.fromkeys(describe(_find_dimension(unit)) for unit in units))
-        message = f"column '{name}' is {describe(dimension)}, and what is drawn there is {expected}"
-        raise _make_error(query, Finding("dimension", message, "draw a path of that kind, too, or another column"))
+        message = f"column '{name}' is {describe(dimension)}, but the axis shows {expected}"
+        raise _make_error(query, Finding("dimension", message, "also draw a path of that kind, or use another column"))
     return found, values * size
 
 

@@ -20,7 +20,7 @@ from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, St
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.views import SceneView
-from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes
+from heuncli.output.tables.mode_words import describe_coordinate, describe_modes, format_mode, iter_notes
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 
@@ -58,7 +58,7 @@ def make_mode_shapes(moved_bodies: BodyModes, machine: Machine, view: SceneView)
     """Make the figure of a scene's modes, a panel each. Raises NotDrawable if nothing is free to oscillate."""
     modes = moved_bodies.modes.modes
     if not modes:
-        raise NotDrawable("modes: nothing is free to oscillate", "heun run moves what is driven")
+        raise NotDrawable("modes: no degree of freedom can oscillate", "driven motion: heun run")
     lines = list(_iter_lines(moved_bodies, machine))
     resting = np.concatenate([line.points for line in lines])
     extent = float(np.ptp(view.project(resting), axis=0).max()) or 1.0
@@ -76,13 +76,11 @@ def make_mode_shapes(moved_bodies: BodyModes, machine: Machine, view: SceneView)
     panels = [_make_panel(mode, lines, supports, view, (axes[0], axes[1])) for mode in mode_lines]
     sentences = list(iter_notes(moved_bodies.modes))
     if len(modes) > MAX_MODES:
-        sentences.append(f"the first {MAX_MODES} of {len(modes)} modes are drawn; heun modes lists them all")
+        sentences.append(f"first {MAX_MODES} of {len(modes)} modes drawn; all: heun modes")
     later_phrase = (
-        " (where phases differ a quarter of a period later)"
-        if any(mode.is_quarter_later for mode in mode_lines)
-        else ""
+        " (with phase differences: a quarter period later)" if any(mode.is_quarter_later for mode in mode_lines) else ""
     )
-    legend = [("one way", ONE), (f"the other way{later_phrase}", OTHER)]
+    legend = [("one extreme", ONE), (f"other extreme{later_phrase}", OTHER)]
     return Figure(moved_bodies.modes.title, describe_modes(moved_bodies.modes), panels, legend, sentences)
 
 
@@ -160,7 +158,7 @@ def _make_mode_lines(moved_bodies: BodyModes, k: int, mode: Mode, lines: list[Mo
 def _make_title(k: int, mode: Mode, moved_bodies: BodyModes) -> str:
     """Return a mode in one line: its number, frequency and damping or growth, and what moves most."""
     texts = format_mode(mode)
-    moving = ", ".join(moved_bodies.modes.largest[k])
+    moving = ", ".join(map(describe_coordinate, moved_bodies.modes.largest[k]))
     if mode.kind == "free":
         return f"mode {k + 1}: free; {moving}"
     unstable = "UNSTABLE, " if mode.growth > 0.0 else ""

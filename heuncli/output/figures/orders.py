@@ -14,12 +14,12 @@ from heuncli.output.drawing.ticks import choose_ends
 from heuncli.study.quantities.table_units import Units
 
 QUANTITY_TITLES = {
-    "force": "force of the masses ON the foundation", "moment": "moment of the masses ON the foundation",
-    "torque": "torque of the inertia", "load": "torque of loads and weight on the shaft",
+    "force": "inertia force on the foundation", "moment": "inertia moment on the foundation",
+    "torque": "shaft torque from inertia", "load": "shaft torque from loads and weight",
 }  # fmt: skip
-BARS_SENTENCE = "bars: the largest magnitude that an order reaches over a turn"
+BARS_SENTENCE = "bars: largest magnitude of each order over a revolution"
 MIN_LABELLED = 1e-3  # of the largest bar: smaller bars have no label
-COUNTERBALANCED = "with the counterweights"
+COUNTERBALANCED = "with counterweights"
 PEN, COUNTERBALANCED_PEN = 0, 1
 
 
@@ -45,7 +45,7 @@ def make_orders_figure(sources: Sequence[BalancedScene], units: Units) -> Figure
         ]
     words = [*(sentence for source in sources for sentence in _describe_source(source)), BARS_SENTENCE]
     has_counterweights = any(source.results.counterbalance is not None for source in sources)
-    legend = [("as it is", PEN), (COUNTERBALANCED, COUNTERBALANCED_PEN)] if has_counterweights else []
+    legend = [("without counterweights", PEN), (COUNTERBALANCED, COUNTERBALANCED_PEN)] if has_counterweights else []
     notes = [note for source in sources for note in source.results.notes]
     titles = dict.fromkeys(source.results.title for source in sources if source.results.title)
     return Figure(" · ".join(titles) or "Balance", words, panels, legend, notes)

@@ -105,8 +105,8 @@ def choose_plane(study: Study, path: str, vectors: Array, times: Array, axes: st
         return make_axis_plane(flat_letter)
     if axis is not None:
         return make_normal_plane(axis)
-    message = f"polar {path}: no plane holds it, and no axis that stays where it is tells one"
-    raise NotDrawable(message, "name the world axis along which it is seen: --view x, y or z")
+    message = f"polar {path}: it does not stay in a plane, and no fixed axis defines one"
+    raise NotDrawable(message, "set the viewing axis: --view x, y or z")
 
 
 def _has_axis(spec: Spec, name: str) -> bool:

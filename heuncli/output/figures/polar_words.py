@@ -28,8 +28,8 @@ def describe_runs(sources: Sequence[FigureSource], curves: Sequence[TipCurve], a
 def _describe_axes(axes: str, curves: Sequence[TipCurve]) -> str:
     """Describe whose loads these are, and in which axes."""
     joints = [curve for curve in curves if curve.path.startswith("joints.")]
-    phrases = ["of a joint: what `from` exerts ON `to`"] if joints else []
-    phrases += ["of the foundation: ON it"] if any(curve.path.startswith("foundation.") for curve in curves) else []
+    phrases = ["joint: reaction of `from` on `to`"] if joints else []
+    phrases += ["foundation: force on it"] if any(curve.path.startswith("foundation.") for curve in curves) else []
     if axes == "world" or not joints:
         return "; ".join([*phrases, "world axes"])
     bodies = {_find_body(curve, axes) for curve in joints}
@@ -46,21 +46,21 @@ def make_notes(curve: TipCurve, largest: LargestVector | None, units: Units) -> 
     """Yield the largest vector with its direction and instant, and what is not drawn."""
     unit, size = units.find(curve.unit)
     if largest is None:
-        yield f"{curve.name}: open or not known, and not drawn"
+        yield f"{curve.name}: open or unknown, not drawn"
         return
     magnitude_text = f"{format_certain(size * largest.magnitude, size * largest.error)} {unit}"
     if largest.is_constant:
-        yield f"{curve.name}: {magnitude_text} all along"
+        yield f"{curve.name}: {magnitude_text} at all times"
     else:
         yield f"{curve.name}: largest {magnitude_text} {_describe_largest(curve, largest)}"
     normal_components = project_vectors(curve.vectors, curve.plane.normal)
     largest_normal = float(np.nanmax(np.abs(normal_components), initial=0.0))
     if largest_normal > tolerances.TOLD_ACROSS * largest.magnitude:
-        yield f"{curve.name}: across the plane up to {size * largest_normal:.4g} {unit}, not drawn"
+        yield f"{curve.name}: normal to the plane up to {size * largest_normal:.4g} {unit}, not drawn"
     if np.isnan(curve.x + curve.y).any():
-        yield f"{curve.name}: open or not known in parts, and not drawn there"
+        yield f"{curve.name}: partly open or unknown, not drawn there"
     elif np.isnan(normal_components).any():
-        yield f"{curve.name}: open or not known across the plane, which is not drawn"
+        yield f"{curve.name}: normal component open or unknown, not drawn"
     if "1" in curve.plane.names:
         words = (f"({', '.join(f'{x:.4g}' for x in e + 0.0)})" for e in (curve.plane.right, curve.plane.upward))
         yield f"{curve.name}: directions 1 and 2 are {' and '.join(words)}"
@@ -70,7 +70,7 @@ def _describe_largest(curve: TipCurve, largest: LargestVector) -> str:
     """Describe the direction, the instant and the crank angle of the largest vector."""
     first, second = curve.plane.names
     direction_text = (
-        f"towards {_format_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
+        f"at {_format_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
     )
     when = f"at t = {format_short(largest.time, 5)} s"
     turning = curve.turning

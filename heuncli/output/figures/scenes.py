@@ -220,7 +220,7 @@ def _draw_axes(posed_machine: PosedMachine, window: Window, strip: float) -> Ite
 def _describe_view(posed_machine: PosedMachine) -> list[str]:
     """Describe the instants and the view."""
     times = [format_short(t) for t in posed_machine.poses.times.tolist()]
-    times_text = f"t = {times[0]} s" + (f"; in thin lines t = {', '.join(times[1:])} s" if len(times) > 1 else "")
+    times_text = f"t = {times[0]} s" + (f"; thin lines: t = {', '.join(times[1:])} s" if len(times) > 1 else "")
     return [f"{times_text}; seen from {posed_machine.view.description}"]
 
 
@@ -229,17 +229,21 @@ def _make_notes(posed_machine: PosedMachine, loads: ActingLoads) -> list[str]:
     notes = []
     if not posed_machine.has_names:
         bodies, joints = len(posed_machine.machine.bodies), len(posed_machine.machine.joints)
-        notes.append(f"without names: {bodies} bodies and {joints} joints are too many for them")
+        notes.append(f"names not shown: too many bodies ({bodies}) and joints ({joints})")
     if loads.indeterminate:
-        notes.append(f"open, and not drawn: the forces and moments of {', '.join(loads.indeterminate)}")
+        notes.append(f"open, not drawn: forces and moments of {', '.join(loads.indeterminate)}")
     spread = [
         body.name for body in posed_machine.machine.bodies if body.is_ellipsoid and posed_machine.solids[body.name]
     ]
     if spread:
-        notes.append(f"drawn as the ellipsoid that has its inertia: {', '.join(spread)}")
+        notes.append(f"drawn as the ellipsoid of the same inertia: {', '.join(spread)}")
     forces = posed_machine.spec.forces.items()
-    acting = [f"{n} ({f.type.replace('_', ' ')} in {f.joint})" for n, f in forces if isinstance(f, JOINT_FORCES)]
+    acting = [
+        f"{n} ({f.type.replace('turn_spring', 'torsion spring').replace('_', ' ')} in {f.joint})"
+        for n, f in forces
+        if isinstance(f, JOINT_FORCES)
+    ]
     acting += [f"{n} (drive of {drive.joint})" for n, drive in posed_machine.spec.drives.items()]
     if acting and posed_machine.has_names:
-        notes.append(f"in joints: {', '.join(acting)}")
+        notes.append(f"acting in joints: {', '.join(acting)}")
     return notes

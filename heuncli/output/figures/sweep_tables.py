@@ -130,7 +130,8 @@ def select_sweep(table: SweepTable, words: Sequence[str]) -> SweepSelection:
     varying = [candidate for candidate in selected.variables if len(candidate.levels) > 1]
     varying.sort(key=lambda candidate: candidate.name != x_name)
     if x_name is not None and x_name not in [candidate.name for candidate in varying]:
-        raise NotDrawable(f"{x_name} has one value in what is drawn", "name another to run across, or hold fewer")
+        hint = "choose another for the horizontal axis, or fix fewer"
+        raise NotDrawable(f"{x_name} has only one value in this plot", hint)
     fixed_texts = tuple(
         f"{candidate.name} = {candidate.format_value(candidate.values[0])}"
         for candidate in selected.variables
@@ -170,7 +171,7 @@ def _find_measure(table: SweepTable, word: str) -> SweepNumbers:
         return found[0]
     names = [column.name for column in table.variables] + [column.text for column in table.measures]
     if found:
-        raise NotDrawable(f"{word}: {len(found)} measures have this in their words", f"name one: {found[0].text}")
+        raise NotDrawable(f"{word}: {len(found)} measures match", f"name one: {found[0].text}")
     hint = suggest(word, names, "columns") or f"there are: {', '.join(names)}"
     raise NotDrawable(f"{word}: no column of the sweep has this name", hint)
 

@@ -56,10 +56,10 @@ def make_sweep_figure(table: SweepTable, units: Units, words: Sequence[str] = ()
     words: what to pick from the sweep
     """
     if not table.n_rows:
-        raise NotDrawable(f"{table.origin}: the sweep has no rows", "let it run, then draw it")
+        raise NotDrawable(f"{table.origin}: the sweep has no rows", "run it first, then plot it")
     picked_table = select_sweep(table, words)
     if not picked_table.variables:
-        raise NotDrawable(f"{table.origin}: one variant is no curve", "vary something, or hold fewer variables")
+        raise NotDrawable(f"{table.origin}: a single variant gives no curve", "vary a parameter or fix fewer variables")
     panels, legend, notes = _choose_kind(picked_table)(picked_table, units)
     sentences = [table.origin, *(["with " + ", ".join(picked_table.fixed_texts)] if picked_table.fixed_texts else [])]
     return Figure(table.title, sentences, panels, legend, [*notes, *_count_variants(picked_table.table)])
@@ -130,7 +130,7 @@ def _group_rows(picked_table: SweepSelection, others: Sequence[SweepVariable]) -
         )
         hint_example = make_example(others[0])
         raise NotDrawable(
-            message, f"hold some, as {hint_example}, until two vary or at most {len(PENS)} curves are left"
+            message, f"fix some, such as {hint_example}, until two vary or at most {len(PENS)} curves remain"
         )
     groups = []
     for values in combinations:
@@ -208,7 +208,7 @@ def _draw_fields(picked_table: SweepSelection, units: Units) -> FigureParts:
             f"{picked_table.table.origin}: {len(x_variable.levels)} by {len(y_variable.levels)} cells; at "
             f"most {MAX_CELLS:,}"
         )
-        raise NotDrawable(message, f"hold one, as {make_example(x_variable)}")
+        raise NotDrawable(message, f"fix one, such as {make_example(x_variable)}")
     x, y = make_axis(x_variable, cells=True), make_axis(y_variable, cells=True)
     panels: list[Panel] = []
     notes = [axis.note for axis in (x, y) if axis.note]
@@ -251,7 +251,7 @@ def _describe_extremes(
 ) -> str:
     """Describe where a field is smallest and largest."""
     texts = []
-    for name, k in (("least", int(np.nanargmin(measure.values))), ("greatest", int(np.nanargmax(measure.values)))):
+    for name, k in (("min.", int(np.nanargmin(measure.values))), ("max.", int(np.nanargmax(measure.values)))):
         place = ", ".join(f"{variable.name} = {variable.format_value(variable.values[k])}" for variable in variables)
         value = format_certain(size * float(measure.values[k]), size * float(measure.errors[k]))
         texts.append(f"{name} {value} {unit}".rstrip() + f" at {place}")
@@ -277,7 +277,7 @@ def _draw_scatter(picked_table: SweepSelection, units: Units) -> FigureParts:
         drawn_points = zip(variable.values[::stride].tolist(), values[::stride].tolist(), strict=True)
         spots = tuple(Spot(a, b, "", 0) for a, b in drawn_points if np.isfinite(b))
         panels.append(Panel(x.scaling, y, spots, title=measure.text))
-    notes = [f"every {stride}th of {picked_table.table.n_rows:,} variants is drawn"] if stride > 1 else []
+    notes = [f"one in {stride} of {picked_table.table.n_rows:,} variants is drawn"] if stride > 1 else []
     return panels, [], notes + [note for chosen_variable in chosen if (note := make_axis(chosen_variable).note)]
 
 
@@ -288,7 +288,7 @@ def _count_variants(table: SweepTable) -> Iterator[str]:
     failed = Counter(code for code in table.codes if code)
     if failed:
         codes = ", ".join(f"{count} {code}" for code, count in failed.most_common())
-        yield f"{failed.total():,} of {table.n_rows:,} variants could not be solved, and are not drawn: {codes}"
+        yield f"{failed.total():,} of {table.n_rows:,} variants could not be solved (not drawn): {codes}"
     for measure in table.measures:
         for word, count in Counter(word for word in measure.missing_reasons if word).items():
             yield f"{measure.text}: {word} in {count:,} of {table.n_rows:,} variants, not drawn there"

@@ -86,11 +86,11 @@ def _require_vector(study: Study, path: str) -> None:
     """Raise NotDrawable if a path is no vector over several instants."""
     numbers = study.find_numbers(path)
     if numbers.axes != (SPACE,) or not numbers.is_timed:
-        message = f"polar {path}: a polar diagram is of a vector over the instants, and this is none"
+        message = f"polar {path}: a polar diagram needs a vector over time, and this is not one"
         raise NotDrawable(message, "such as polar joints.main, or polar foundation")
     if study.has_one_instant or len(choose_instants(study)) < 2:
-        message = f"polar {path}: there is one instant, and so no curve"
-        raise NotDrawable(message, "give the scene a motion: analysis.duration")
+        message = f"polar {path}: there is only one instant, so no curve"
+        raise NotDrawable(message, "define a motion: analysis.duration")
 
 
 def _find_turning_run(study: Study, paths: Sequence[str]) -> TurningRun:

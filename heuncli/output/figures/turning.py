@@ -66,7 +66,7 @@ class TurningRun(NamedTuple):
         span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} s"
         if not self.turns:
             return f"the whole run, {span}"
-        return f"the last {'turn' if self.turns == 1 else 'two turns'} of {self.path}, {span}"
+        return f"the last {'revolution' if self.turns == 1 else 'two revolutions'} of {self.path}, {span}"
 
 
 def list_angle_paths(spec: Spec) -> list[str]:

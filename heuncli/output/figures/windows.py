@@ -59,7 +59,7 @@ def choose_window(posed_machine: PosedMachine, paths: Sequence[Array]) -> Window
             for name, body_points in points_of_body.items()
             if (body_points.min(axis=0) < low).any() or (body_points.max(axis=0) > high).any()
         ]
-        notes.append(f"drawn in part, reaching farther: {', '.join(cut_names)}")
+        notes.append(f"only partly drawn, extending further: {', '.join(cut_names)}")
     side = float((high - low).max()) or 1.0
     lacking = np.maximum(MIN_SIDES * side - (high - low), 0.0)
     margins = 0.5 * lacking + MARGIN * side

@@ -116,7 +116,7 @@ def _compare_open_components(old: RunSnapshot, new: RunSnapshot) -> Iterator[Cha
     """Yield the components that became open, or determinate."""
     for path in sorted({*old.open} ^ {*new.open}):
         was_open = path in old.open
-        reason = "was open, and is certain" if was_open else "became open"
+        reason = "was open, now determinate" if was_open else "became open"
         yield Change(
             path, "verdict", "", "open" if was_open else "certain", "certain" if was_open else "open", reason=reason
         )
@@ -194,7 +194,7 @@ def _describe_transition(old: Value | str | None, new: Value | str | None) -> st
     """Describe in words how a value changed."""
     if old is None or new is None:
         return _name_absence(old, new)
-    phrases = {"open": "open", "beyond": "beyond the horizon", "unknown": "not known beside a singular pose"}
+    phrases = {"open": "open", "beyond": "past the horizon", "unknown": "unknown near a singular position"}
     return f"was {phrases.get(str(old), 'a number')}, is {phrases.get(str(new), 'a number')}"
 
 
@@ -249,12 +249,12 @@ def _compare_events(name: str, old: EventSnapshot | None, new: EventSnapshot | N
         return
     if old.begins != new.begins:
         yield Change(
-            path, "at the start", "", float(old.begins), float(new.begins), reason="another truth at the start"
+            path, "at the start", "", float(old.begins), float(new.begins), reason="different state at the start"
         )
     for run_event, other_event, reason in ((old, new, MISSING), (new, old, EXTRA)):
         for t, error, becomes in zip(run_event.time, run_event.error, run_event.to, strict=True):
             if not isinstance(error, str) and not any(_match_instants(t, error, becomes, other_event)):
-                what = "it becomes true" if becomes else "it becomes false"
+                what = "becomes true" if becomes else "becomes false"
                 before, after = (t, None) if run_event is old else (None, t)
                 yield Change(path, what, "s", before, after, reason=reason)
 
@@ -270,7 +270,7 @@ def _compare_impacts(number: int, old: ImpactSnapshot, new: ImpactSnapshot, tole
     """Compare two impacts: their instants, what met, and their numbers."""
     path = f"impulses.{number}"
     if old.names != new.names:
-        yield Change(path, "struck by", "", None, None, reason=f"{', '.join(old.names)} became {', '.join(new.names)}")
+        yield Change(path, "cause", "", None, None, reason=f"{', '.join(old.names)} became {', '.join(new.names)}")
         return
     time_bound = old.time_error + new.time_error
     if not abs(old.time - new.time) <= time_bound:

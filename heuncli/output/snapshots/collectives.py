@@ -70,12 +70,13 @@ def require_closed(histories: Sequence[LoadHistory]) -> None:
     for history in histories:
         gap, first, last = history.values[-1] - history.values[0], history.values[0], history.values[-1]
         if abs(gap) > 2.0 * history.error:
-            ends_text = f"it begins with {first:.6g} {history.unit} and ends with {last:.6g}, off by {abs(gap):.2g}"
-            message = (
-                f"{history.path}: --repeat is of a motion that comes back: {ends_text}; the error is "
-                f"{history.error:.1g}"
+            ends_text = (
+                f"it starts at {first:.6g} {history.unit} and ends at {last:.6g}, a difference of {abs(gap):.2g}"
             )
-            hint = "make the duration one period: --set analysis.duration=...; or begin where the motion has settled"
+            message = (
+                f"{history.path}: --repeat requires a periodic motion: {ends_text}; the error is {history.error:.1g}"
+            )
+            hint = "make the duration one period: --set analysis.duration=...; or start after the motion has settled"
             problems.append(Problem(CODE, message, hint=hint, entry_path="analysis"))
     if problems:
         raise SolveError(*problems)

@@ -60,7 +60,7 @@ def _find_moved_extremes(path: str, pair: tuple[NumberSnapshot, NumberSnapshot])
             continue
         tolerance = max(errors) + 4.0 * tolerances.EPS * max(map(abs, times))
         if not abs(times[1] - times[0]) <= tolerance:
-            yield Change(path, f"instant of the {word}", "s", times[0], times[1], tolerance)
+            yield Change(path, f"time of {word}", "s", times[0], times[1], tolerance)
 
 
 def _compare_tenths(

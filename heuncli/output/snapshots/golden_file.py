@@ -27,7 +27,7 @@ WORDS = (OPEN, UNKNOWN, BEYOND)
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Value = Number | Literal["open", "unknown", "beyond"]
 N_EVEN = 11  # number of evenly spaced instants at which every quantity is stored
-REWRITE_HINT = "remove it, and let --update write it anew"
+REWRITE_HINT = "delete it and recreate it with --update"
 
 
 class SnapshotPart(BaseModel):
@@ -167,9 +167,9 @@ def read_golden_file(text: str) -> GoldenFile:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
         line_note = f"line {error.lineno}: " if isinstance(error, json.JSONDecodeError) else ""
-        cut_off_note = "it ends before it is complete; " * is_text_cut_off(text, error)
+        cut_off_note = "the file is incomplete; " * is_text_cut_off(text, error)
         raise Finding(
-            "not-golden", f"this is not JSON: {cut_off_note}{line_note}{_describe_error(error)}", REWRITE_HINT
+            "not-golden", f"not valid JSON: {cut_off_note}{line_note}{_describe_error(error)}", REWRITE_HINT
         ) from None
     return validate_golden_data(data)
 
@@ -177,10 +177,10 @@ def read_golden_file(text: str) -> GoldenFile:
 def validate_golden_data(data: Any) -> GoldenFile:
     """Return the golden file of decoded JSON. Raises Finding [not-golden]."""
     if not isinstance(data, dict) or "format" not in data:
-        raise Finding("not-golden", "this is no golden file: it has no 'format'", REWRITE_HINT)
+        raise Finding("not-golden", "not a golden file: 'format' is missing", REWRITE_HINT)
     if data["format"] not in READABLE:
         readable = " and ".join(map(str, READABLE))
-        message = f"kept in format {data['format']!r:.40}; this version reads {readable}"
+        message = f"golden file format {data['format']!r:.40}; this version reads {readable}"
         raise Finding("not-golden", message, REWRITE_HINT)
     try:
         return GoldenFile.model_validate(data)

@@ -39,7 +39,7 @@ def read_run_snapshot(data: Mapping[str, Any], indices: Sequence[int] | None = N
     """
     missing_keys = [key for key in REQUIRED_KEYS if key not in data]
     if missing_keys:
-        raise Finding("not-a-result", f"this is no result of heun run: it has no '{missing_keys[0]}'", EXAMPLE_HINT)
+        raise Finding("not-a-result", f"not a result of heun run: '{missing_keys[0]}' is missing", EXAMPLE_HINT)
     try:
         results = _to_results(data)
         labels = _infer_labels(results)
@@ -50,7 +50,7 @@ def read_run_snapshot(data: Mapping[str, Any], indices: Sequence[int] | None = N
             page = make_page(results, labels, _find_magnitudes(results, labels))._replace(certain=page.certain)
         run = make_run_snapshot(_make_course(page, results, scope), page, scope)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-        raise Finding("not-a-result", f"this is no whole result of heun run: {error!s:.100}", EXAMPLE_HINT) from None
+        raise Finding("not-a-result", f"incomplete result of heun run: {error!s:.100}", EXAMPLE_HINT) from None
     unclear = {f"joints.{name}.drive" for name in results.joints if name not in labels.joints}
     unclear |= {
         f"forces.{name}.{key}" for name in results.forces if name not in labels.forces for key in KIND_DEPENDENT
@@ -114,7 +114,7 @@ def _to_results(data: Mapping[str, Any]) -> Results:
     blocks = {key: _to_arrays((key,), value) for key, value in data.items() if key in known}
     blocks["time"] = np.atleast_1d(np.asarray(data["time"], dtype=np.float64))
     if blocks["time"].ndim != 1 or not len(blocks["time"]) or not np.all(np.isfinite(blocks["time"])):
-        raise ValueError("time: expected instants")
+        raise ValueError("time: expected a list of times")
     accuracy = dict(data["accuracy"])
     estimate = accuracy.get("estimate") or {}
     accuracy["estimate"] = {kind: float("inf") if error is None else float(error) for kind, error in estimate.items()}

@@ -213,7 +213,7 @@ def measure_number(request: MeasureRequest, study: Study, option: str = "--measu
 def find_warnings(requests: Sequence[MeasureRequest], study: Study) -> list[str]:
     """Return why some numbers are `?`, and which stand at instants at which friction is not at its full value."""
     lost = [(request.path, find_exceeded_horizon(request, study)) for request in requests]
-    sentences = [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
+    sentences = [f"{path} is unknown: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
     if has_smoothed_friction(study.setup.scene.mechanism):
         known_requests = [request for request, (_, horizon) in zip(requests, lost, strict=True) if horizon is None]
         found = (

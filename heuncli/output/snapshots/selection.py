@@ -77,14 +77,16 @@ def _find_entry(path: str, spec: Spec, request: ReportChoice) -> EntryKeys:
     _require_similar(path, words, names, request)
     message = f"{request.option} {path}: not an entry of the results"
     if entry is not None:
-        hint = f"say {'.'.join(entry)}; {request.measures} prints single numbers"
+        hint = f"use {'.'.join(entry)}; {request.measures} prints single numbers"
     elif find_quantity(words) is not None and REPORT_OF.get(words[0]):
-        hint = f"say {words[0]}; {request.measures} prints single numbers"
+        hint = f"use {words[0]}; {request.measures} prints single numbers"
     elif words[0] not in REPORT_OF:
-        message = f"{request.option} {path}: known: {', '.join((*REPORTS, SHARES))}, or entries of them, as joints.NAME"
+        message = (
+            f"{request.option} {path}: unknown; known: {', '.join((*REPORTS, SHARES))}, or entries such as joints.NAME"
+        )
         hint = _make_hint(path, entries, request.option)
     else:
-        hint = suggest(path, names, "entries") if names else f"the scene has no {words[0]}"
+        hint = suggest(path, names, "entries") if names else f"the model has no {words[0]}"
     raise UsageError(Problem("bad-option", message, hint=hint))
 
 
@@ -117,7 +119,7 @@ def _make_hint(path: str, entries: Mapping[EntryKeys, Mapping[str, Any]], option
         rows = (row.path.split(".") for row in ROWS)
         report = next((REPORT_OF[words[0]] for words in rows if path in words[2:] and words[0] in REPORT_OF), None)
         if report is not None:
-            return f"{path} is told in {report}: {option} {report}"
+            return f"{path} is part of {report}: {option} {report}"
     elif "." not in path:
         return f"did you mean {similar}?"
     entry = find_similar_path(path, lambda words: split_entry(words, entries)[0] is not None)

@@ -18,8 +18,8 @@ from heuncli.study.queries.smoothed_friction import find_partial_friction
 from heuncli.study.queries.study import Study
 
 AXIS: EntryKeys = ("foundation", "axis")
-RUN_EXTREMES_SUFFIX = ", of some of the extremes along runs of cuts"
-AXIS_NOTE = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
+RUN_EXTREMES_SUFFIX = " (some of the extremes along runs of cuts)"
+AXIS_NOTE = "the central axis has no extremes: show it at given times with --at or --all"
 
 
 class TablesQuery(NamedTuple):
@@ -68,5 +68,5 @@ def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[TextTa
             tables.append(TextTable("", notes=(AXIS_NOTE,)))
     tables = add_pins_note(tables, study)
     if not tables:
-        tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(reports))}: the scene has none",))]
+        tables = [TextTable("", notes=(f"nothing to show for {', '.join(sorted(reports))}: the model has none",))]
     return tables

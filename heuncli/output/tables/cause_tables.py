@@ -34,9 +34,11 @@ from heuncli.study.quantities.series import Series
 
 TOTAL_COLUMNS = ("sum", "total")  # after those of the causes
 MAX_CAUSE_COLUMNS = 9  # further, smaller causes share one column
-ALONG_NOTE = "of |F| and |M| the share along the whole vector"
-CAUSES_NOTE = "motion: the part quadratic in the velocities; drives: that of prescribed accelerations"
-DIRECT_NOTE = "direct: the load itself, where it stands; the rest of its share acts through the motion it causes"
+ALONG_NOTE = "|F|, |M|: contribution along the total vector"
+CAUSES_NOTE = "motion: part quadratic in the velocities; drives: part from prescribed accelerations"
+DIRECT_NOTE = (
+    "direct: the load itself, where it is applied; the rest of its contribution acts through the motion it causes"
+)
 # Section force -> the vector, and the axis of the section, of which it is the component.
 AXES = {
     name: (vector, axis)
@@ -255,15 +257,15 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
         shown_lines += [line for line, _ in shown_here]
         number_cells += [cells_of_line for _, cells_of_line in shown_here]
     if not number_cells:
-        return TextTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("0 throughout",))
+        return TextTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("all values 0",))
     empty = [i for i in range(len(heads) - 2) if all(cells_of_line[i] in ("0", "") for cells_of_line in number_cells)]
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.position for line in all_lines) else 2
     cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
     titles = [distinguish(cause, TOTAL_COLUMNS) for cause in shown_causes] + heads[len(shown_causes) :]
     columns = [*(TextColumn(head, "left") for head in ("", "", "at")[:lead]), *(TextColumn(titles[i]) for i in shown)]
-    where = "in all that is not open" if special_words else "throughout"
-    notes = [f"0 {where}: {', '.join(heads[i] for i in empty)}"] if empty else []
+    where = " except where open" if special_words else ""
+    notes = [f"all values 0{where}: {', '.join(heads[i] for i in empty)}"] if empty else []
     notes += make_notes(shown_lines, {heads[i] for i in shown}, special_words.union(*number_cells))
     notes += [ZERO_NOTE] if left_out else []
     return TextTable(heading, tuple(columns), tuple(cells), tuple(notes))

@@ -1,5 +1,5 @@
-"""Format determinate sums of indeterminate components: `joints.top Fz + joints.bottom Fz = 49.05 N; the split is
-open`.
+"""Format determinate sums of indeterminate components: `joints.top Fz + joints.bottom Fz = 49.05 N; distribution
+indeterminate`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from heuncli.study.quantities.digits import StatedErrors, format_unclaimed, larg
 from heuncli.study.quantities.table_units import DisplayUnit
 
 MAX_TERMS = 6  # tables show short sums of forces, JSON shows all
-TURNING_FACTOR_NOTE = "(t): a factor that turns with the pose, as at the first instant; --format json has them all"
+TURNING_FACTOR_NOTE = "(t): factor varies with position, shown for the first instant; all values: --format json"
 FORCES = frozenset({"force", *AXIAL_FORCES, *SECTION_FORCES})
 
 
@@ -43,7 +43,7 @@ def make_sums_table(
         *([hidden_note] if hidden_note else []),
     ]
     axes = ", world axes" if "axes" in results.model else ""  # other axes are given elsewhere
-    return TextTable(f"CERTAIN SUMS  of components that redundancy leaves open{axes}", notes=tuple(notes))
+    return TextTable(f"DETERMINATE SUMS  of indeterminate reactions{axes}", notes=tuple(notes))
 
 
 def _format_sum(
@@ -63,14 +63,14 @@ def _format_sum(
     if last_instant is not None:
         texts[1] = format_unclaimed(size * last_instant["value"][-1], unit, certain, texts[1])
     if texts == ["0"] * 4 and _states_equality(terms):
-        return " = ".join(map(format_path, terms)) + "; the size is open"
+        return " = ".join(map(format_path, terms)) + "; magnitude indeterminate"
     sum_text = _format_terms(terms)
     if len(set(texts)) == 1:
         value = "0" if texts[0] == "0" else f"{texts[0]} {unit}"
-        return f"{sum_text} = {value}; the split is open"
+        return f"{sum_text} = {value}; distribution indeterminate"
     first, last, low, high = texts
-    range_text = f"{first} {unit} first, {last} {unit} last, {low} to {high} {unit} in the samples"
-    return f"{sum_text} = {range_text}; the split is open"
+    range_text = f"{first} {unit} first, {last} {unit} last, {low} to {high} {unit} over the output times"
+    return f"{sum_text} = {range_text}; distribution indeterminate"
 
 
 def format_path(path: str) -> str:

@@ -19,11 +19,13 @@ def make_collectives_schema(version: dict[str, Any]) -> dict[str, Any]:
 
 def make_collective_schema() -> dict[str, Any]:
     """Return the schema of one load collective."""
-    share = make_object_schema({"slope": NUMBER, "shares": add_description(NUMBER_LIST, "of each class in the damage")})
+    share = make_object_schema(
+        {"slope": NUMBER, "shares": add_description(NUMBER_LIST, "contribution of each class to the damage")}
+    )
     equivalent = make_object_schema({"slope": NUMBER, "cycles": NUMBER, "range": NUMBER, "error": NUMBER})
     ranges = {
-        "limits": add_description(NUMBER_LIST, "of the classes, n + 1"),
-        "cycles": add_description(NUMBER_LIST, "in each class, n"),
+        "limits": add_description(NUMBER_LIST, "class limits, n + 1"),
+        "cycles": add_description(NUMBER_LIST, "cycles per class, n"),
         "damage": {"type": "array", "items": share},
     }
     crossings = {
@@ -40,19 +42,19 @@ def make_collective_schema() -> dict[str, Any]:
     }
     return make_object_schema(
         {
-            "unit": add_description({"type": "string"}, "SI, of ranges, means and levels"),
-            "magnitude": add_description({"type": "boolean"}, "whether it is one, which has no sign"),
+            "unit": add_description({"type": "string"}, "SI unit of ranges, means and levels"),
+            "magnitude": add_description({"type": "boolean"}, "whether the path is a magnitude, which has no sign"),
             "time": add_description(NUMBER_LIST, "first and last instant [s]"),
             "repeat": add_description(
-                {"type": ["integer", "string"]}, "how often the motion is run through, or closed"
+                {"type": ["integer", "string"]}, "number of repetitions of the motion, or closed"
             ),
-            "error": add_description(NUMBER, "of each value of the history"),
+            "error": add_description(NUMBER, "error of each value of the time history"),
             "lowest": NUMBER,
             "highest": NUMBER,
             "turning_points": {"type": "integer"},
-            "cycles": add_description(NUMBER, "how many, halves as halves, without those below the error"),
+            "cycles": add_description(NUMBER, "number of cycles, half cycles as 0.5, without those below the error"),
             "below_error": add_description(
-                make_object_schema({"cycles": NUMBER, "range": NUMBER}), "no larger than that range, in no class"
+                make_object_schema({"cycles": NUMBER, "range": NUMBER}), "cycles up to this range, not in any class"
             ),
             "equivalent": add_description({"type": "array", "items": equivalent}, "damage-equivalent ranges"),
             "ranges": make_object_schema(ranges),
@@ -60,7 +62,7 @@ def make_collective_schema() -> dict[str, Any]:
             "crossings": make_object_schema(crossings),
             "rainflow": add_description(
                 make_object_schema({"from": NUMBER_LIST, "to": NUMBER_LIST, "count": NUMBER_LIST}),
-                "every cycle, and half cycle",
+                "every cycle and half cycle",
             ),
         }
     )

@@ -17,12 +17,11 @@ from heuncli.study.quantities.table_units import Units
 CLOSED = "closed"  # a history repeated endlessly
 CSV_COLUMNS = ("path", "quantity", "unit", "slope", "above", "up_to", "mean_above", "mean_up_to", "value")
 NO_SIGN = (
-    "a magnitude has no sign: where the load reverses it counts twice, with half the range; components (.x, .y, .z) "
-    "keep their sign"
+    "a magnitude has no sign: a reversing load counts twice, at half the range; components (.x, .y, .z) keep their sign"
 )
-NEVER_NEGATIVE = "a magnitude has no sign: where the load reverses it counts twice, with half the range"
-NO_CYCLES = "no cycles: it does not vary by more than its error"
-IMPACT_NOTE = "blows: the loads on both sides of their jumps count; their impulses (N·s) are in no collective"
+NEVER_NEGATIVE = "a magnitude has no sign: a reversing load counts twice, at half the range"
+NO_CYCLES = "no cycles: the variation is within the error"
+IMPACT_NOTE = "impulses: the loads before and after each jump count; the impulses themselves (N·s) are not included"
 
 
 def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> list[TextTable]:
@@ -44,7 +43,7 @@ def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool
         TextColumn(format_head("up to", unit)),
         TextColumn("cycles"),
     ]
-    columns += [TextColumn("with larger ones"), *(TextColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
+    columns += [TextColumn("cumulative"), *(TextColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
     rows = tuple(
         (
             limits[k],
@@ -72,8 +71,8 @@ def format_times(collective: Collective) -> str:
     begin, end = write_times((float(times[0]), float(times[-1])), float(np.ptp(times)))
     span = f"t = {begin} to {end} s"
     if collective.counting.is_endless:
-        return f"{span}, repeated for ever: of each time"
-    return f"{span}, {collective.counting.repeat} times in a row" if collective.counting.repeat > 1 else span
+        return f"{span}, repeated indefinitely: counts per repetition"
+    return f"{span}, repeated {collective.counting.repeat} times" if collective.counting.repeat > 1 else span
 
 
 def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> Iterator[str]:
@@ -93,8 +92,8 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
     if collective.below_error.cycles:
         small = format_error(collective.below_error.range * size)
         yield (
-            f"below the error: {format_cycles(collective.below_error.cycles)}, no larger than "
-            f"{small}{unit_suffix}; in no class, no sum"
+            f"below the error: {format_cycles(collective.below_error.cycles)} of at most "
+            f"{small}{unit_suffix}, not in any class or sum"
         )
     if collective.history.is_magnitude:
         yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE
@@ -105,7 +104,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
 def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
     """Make the table of damage-equivalent ranges and their errors."""
     unit, size = units.find(collective.history.unit)
-    columns = tuple(map(TextColumn, ("slope m", "of cycles", format_head("range", unit), format_head("error", unit))))
+    columns = tuple(map(TextColumn, ("slope m", "cycles", format_head("range", unit), format_head("error", unit))))
     rows = tuple(
         (
             f"{equivalent.slope:g}",
@@ -116,7 +115,7 @@ def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
         for equivalent in collective.equivalents
     )
     heading = (
-        f"EQUIVALENT RANGE {collective.history.path}  of equal cycles that do the damage of all: (Σ n R^m / N)^(1/m)"
+        f"EQUIVALENT RANGE {collective.history.path}  of constant cycles with the same damage: (Σ n R^m / N)^(1/m)"
     )
     return TextTable(heading, columns, rows)
 
@@ -139,7 +138,7 @@ def make_crossings_table(collective: Collective, units: Units) -> TextTable:
         TextColumn("upwards"),
         TextColumn("downwards"),
     )
-    heading = f"LEVEL CROSSINGS {collective.history.path}  (E1049, 5.1) upwards from 0 on, downwards below"
+    heading = f"LEVEL CROSSINGS {collective.history.path}  (ASTM E1049, 5.1) upward at levels ≥ 0, downward below 0"
     return TextTable(heading, columns, tuple(rows))
 
 

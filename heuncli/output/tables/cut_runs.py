@@ -27,7 +27,7 @@ from heuncli.study.quantities.digits import (
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.table_units import DisplayUnit, Units
 
-EXTREMES_NOTE = "extremes of the whole stretch, between the cuts and at its corners, too"
+EXTREMES_NOTE = "extremes over the whole bar, also between the listed cuts"
 MAX_CUTS = 25  # in a diagram: evenly spaced cuts, with all jumps and extremes
 
 
@@ -100,10 +100,10 @@ def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] | No
         if "s" not in section:
             continue
         info = labels.sections.get(name)
-        subject = f"{name} {info.body}" if info else name
+        subject = f"{name}, body {info.body}" if info else name
         axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
         reference_point = info.moment_point if info else "the cut's point"
-        meaning = f"{'impulse of ' * bool(units)}the piece beyond the cut ON the part before it; N > 0 tension"
+        meaning = f"{'impulse' if units else 'force'} of the far side on the near side of the cut; N > 0 tension"
         heading = f"SECTION {subject}  {meaning}; {axis}; moments about {reference_point}"
         stress = section.get("stress", {})
         stresses = tuple(
@@ -147,8 +147,8 @@ def make_extremes_tables(
         columns = run.values[:, :, shown_cuts].transpose(1, 0, 2).reshape(run.values.shape[1], -1)
         cuts = find_sample_extremes(times, columns)
     extremes, places, cuts = merge_extremes(run, shown_cuts, extremes, places, cuts)
-    where = "between the samples, too" if cuts.is_searched else f"in {run.values.shape[1]} samples"
-    notes = [f"envelope: lowest and highest at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
+    where = "also between the output times" if cuts.is_searched else f"at {run.values.shape[1]} output times"
+    notes = [f"envelope: minimum and maximum at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
     table = make_extremes_table(run, times, extremes, places, certain)
     styles = _choose_styles(run, certain, extremes)
     bounds = {"min": cuts.low.reshape(shape), "max": cuts.high.reshape(shape)}
@@ -203,7 +203,7 @@ def _make_envelope(
             for word in words
         ]
     if not columns:
-        return TextTable("", notes=(*notes, "0 throughout"))
+        return TextTable("", notes=(*notes, "all values 0"))
     shown = {text for column in texts for text in column}
     all_notes = [*notes, *[ZERO_NOTE] * left_out]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
@@ -263,7 +263,7 @@ def make_extremes_table(
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
-        return TextTable(run.heading, notes=("0 throughout",))
+        return TextTable(run.heading, notes=("all values 0",))
     notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
     return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(quantities))))
 
@@ -393,6 +393,5 @@ def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:
     if len(shown_cuts) == len(run.s):
         return ""
     return (
-        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, jumps and extremes among them; every cut: "
-        "--all, or --format csv"
+        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, including jumps and extremes; all cuts: --all or --format csv"
     )

@@ -10,14 +10,14 @@ from heuncli.results.results import Block, Results
 from heuncli.results.results_schema import EVENTS, find_row
 from heuncli.study.quantities.digits import UNKNOWN, choose_style, trim_zeros
 
-HEADING = "EVENTS  instants at which conditions change, and what they become"
+HEADING = "EVENTS  times at which conditions change, and their new values"
 COLUMNS = (
     TextColumn("event", "left"),
     TextColumn("condition", "left"),
     TextColumn("t [s]"),
     TextColumn("becomes", "left"),
 )
-ONLY_JUST = "only just: a run beside this one may not show it, as its margin is as small as its error"
+ONLY_JUST = "marginal: the margin is as small as the error, so a slightly different run may not show it"
 MAX_INSTANTS = 20  # instants of an event in a table, unless all are requested
 
 
@@ -30,7 +30,7 @@ def make_events_table(results: Results, *, all_instants: bool = False) -> TextTa
         only_just = only_just or any(not math.isfinite(error) for error in event["error"])
         shown = event_lines if all_instants else event_lines[:MAX_INSTANTS]
         begins = "true" if event["begins"] else "false"
-        shown = shown or [("", f"{begins} throughout")]
+        shown = shown or [("", f"{begins} at all times")]
         rows += [(name, event["condition"], *shown[0]), *(("", "", *line) for line in shown[1:])]
         if len(event_lines) > len(shown):
             rows.append(("", f"{len(event_lines) - len(shown)} more with --all", "", ""))
@@ -44,7 +44,7 @@ def iter_event_lines(event: Block) -> Iterator[tuple[str, str]]:
         known = math.isfinite(error)
         number_style = choose_style(t, error if known else 0.5 * t)
         text = trim_zeros([number_style.write(t)])[0] if number_style.is_known else UNKNOWN
-        yield (text, becomes) if known else (f"{t:.3g}", f"{becomes}, only just")
+        yield (text, becomes) if known else (f"{t:.3g}", f"{becomes}, marginal")
 
 
 def iter_csv_lines(results: Results, end: str) -> Iterator[str]:

@@ -24,8 +24,8 @@ from heuncli.study.quantities.digits import (
 )
 
 MAX_FULL_GROUPS = 40  # with more groups, each has one line
-PARTLY_OPEN_NOTE = "* open at some instants; the extremes are those of the others"
-NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
+PARTLY_OPEN_NOTE = "* open at some times; extremes of the other times"
+NOT_SEARCHED = "extremes at output times only: too many quantities to search between them"
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 
 
@@ -165,7 +165,7 @@ def _make_rows(
     if open_labels:
         notes.add(OPEN_NOTE)
         lines.append(f"{INDENT}{OPEN}: {', '.join(open_labels)}")
-    return lines or [f"{INDENT}0 throughout"], notes
+    return lines or [f"{INDENT}all values 0"], notes
 
 
 def _format_extremes(part: GroupExtremes, certain: StatedErrors) -> list[list[str]]:
@@ -213,8 +213,8 @@ def _make_short_table(
         (part.group.name, *(text for head in heads for text in cells_of_group.get(head, ("", ""))))
         for part, cells_of_group in zip(parts, cells, strict=True)
     )
-    what = f"{len(parts)} {block.what or 'group'}s, a line each: the value farthest from zero"
-    notes = (*block.notes, f"{what}; components: --at, or --format csv")
+    what = f"{len(parts)} {block.what or 'group'}s, one line each: value of largest magnitude"
+    notes = (*block.notes, f"{what}; components: --at or --format csv")
     shown = {text for row in rows for text in row}
     notes += tuple(note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
     notes += (doubtful.note,) if any(text.endswith(MARK) for text in shown) else ()

@@ -16,8 +16,8 @@ from heuncli.study.quantities.digits import LOADS, format_error
 
 MAX_SENTENCES = 5
 MAX_MOVED_BODIES = 3
-PLANAR_NOTE = "; what points out of the xy plane does not exist and reads 0"
-STIFF_PREFIX = "stiff: "  # beginning of the reason for a restart with an implicit method
+PLANAR_NOTE = "; planar model: out-of-plane components are 0"
+STIFF_PREFIXES = ("stiff: ", "stiff system: ")  # beginnings of the reason for a restart with an implicit method
 
 
 def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[str, str]]:
@@ -26,7 +26,7 @@ def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[
         ("heun", f"{results.version}  {results.title}"),
         ("model", _describe_model(results)),
         *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
-        *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
+        *(("unknown", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_describe_moved_bodies(results.model.get("moved", ())),
         *_describe_start(results.model.get("started", ())),
         ("run", _describe_run(results)),
@@ -39,10 +39,10 @@ def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[
         *(("moves", sentence) for sentence in results.model.get("moves", ())),
     ]
     if results.model.get("split"):
-        lines.append(("split", f"{results.model['split']}; other splits do as well"))
+        lines.append(("split", f"{results.model['split']}; other distributions are equally possible"))
     if (horizon := results.horizon) is not None:
         lines.append(
-            ("horizon", f"from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 (? in tables)")
+            ("horizon", f"no results are claimed from t = {horizon:.4g} s on: the error may exceed 1e-3 (? in tables)")
         )
     if results.status.get("code", "completed") != "completed":
         lines.append(("status", f"{results.status['code']}: {results.status.get('message', '')}"))
@@ -71,19 +71,17 @@ def _label_sentences(label: str, sentences: Sequence[str]) -> list[tuple[str, st
 
 
 def _describe_moved_bodies(displacements: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the line on bodies that had to leave their place in the drawing, those that moved most first."""
+    """Return the line on bodies that had to leave their given start position, those that moved most first."""
     first_displacements = ", ".join(displacements[:MAX_MOVED_BODIES])
     more = f" and {len(displacements) - MAX_MOVED_BODIES} more" if len(displacements) > MAX_MOVED_BODIES else ""
-    return (
-        [("moved", f"to close the joints: {first_displacements}{more}; heun model lists it")] if displacements else []
-    )
+    return [("moved", f"to assemble the joints: {first_displacements}{more}; see heun model")] if displacements else []
 
 
 def _describe_start(sentences: Sequence[str]) -> list[tuple[str, str]]:
     """Return the lines on what starts to move, or rests, in an unexpected manner."""
     shown_sentences = list(sentences[:MAX_SENTENCES])
     if len(sentences) > MAX_SENTENCES:
-        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more: heun model lists them")
+        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more: see heun model")
     return _label_sentences("start", shown_sentences)
 
 
@@ -101,22 +99,27 @@ def _describe_stiff_restart(reasons: Sequence[str]) -> list[tuple[str, str]]:
     A restart with a method of fewer stages, where events end most steps, points to no mistake; only `heun model` tells
     it.
     """
-    return [("stiff", text.removeprefix(STIFF_PREFIX)) for text in reasons if text.startswith(STIFF_PREFIX)]
+    return [("stiff", text.partition(": ")[2]) for text in reasons if text.startswith(STIFF_PREFIXES)]
 
 
 def _describe_model(results: Results) -> str:
     model = results.model
     parts = [str(model.get("space", "spatial"))]
-    counted_keys = (("bodies", "body"), ("freedoms", "freedom"), ("loops", "loop"), ("redundant", "redundant row"))
+    counted_keys = (
+        ("bodies", "body"),
+        ("freedoms", "degree of freedom"),
+        ("loops", "loop"),
+        ("redundant", "redundant constraint"),
+    )
     parts += [
         format_count(int(model[key]), what)
         for key, what in counted_keys
         if isinstance(model.get(key), int) and (model[key] or key in ("bodies", "freedoms"))
     ]
     if model.get("given_way"):
-        parts[-1] += f", of which {int(model['given_way'])} give way"
+        parts[-1] += f" ({int(model['given_way'])} released by zero stiffness)"
     if model.get("driven"):
-        parts[2] += f" beside {int(model['driven'])} driven"
+        parts[2] += f", {int(model['driven'])} driven"
     return ", ".join(parts) + (PLANAR_NOTE if model.get("plane") == "declared" else "")
 
 
@@ -145,21 +148,21 @@ def _describe_errors(results: Results) -> str:
     estimate, parts = results.accuracy.get("estimate", ErrorEstimate()), []
     loads = max(estimate.get(kind) or 0.0 for kind in LOADS)
     if "rest" in results.model:
-        parts = _fill_number("pose within {} of the scene's size", estimate.get("motion"))
+        parts = _fill_number("position within {} of model size", estimate.get("motion"))
     elif results.work.get("steps"):
-        parts = _fill_number("motion within {} of the scene's size", estimate.get("motion"))
+        parts = _fill_number("motion within {} of model size", estimate.get("motion"))
     elif loads <= tolerances.WRITTEN:
-        return "exact but for rounding"
-    parts += _fill_number("loads within {} of the largest", loads or None)
+        return "rounding errors only"
+    parts += _fill_number("loads within {} of the largest load", loads or None)
     return ", ".join(parts) if parts else "not estimated"
 
 
 def _describe_residuals(results: Results) -> str:
     accuracy = results.accuracy
     moves = results.work.get("steps") and "rest" not in results.model
-    parts = _fill_number("energy kept to {}", accuracy.get("energy_drift")) if moves else []
-    parts += _fill_number("joints closed to {} m", accuracy.get("constraint_gap") or None)
-    parts += _fill_number("forces balance to {}", accuracy.get("balance_residual"))
+    parts = _fill_number("relative energy error {}", accuracy.get("energy_drift")) if moves else []
+    parts += _fill_number("largest constraint error {} m", accuracy.get("constraint_gap") or None)
+    parts += _fill_number("force balance error {}", accuracy.get("balance_residual"))
     return ", ".join(parts)
 
 

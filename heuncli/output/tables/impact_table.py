@@ -38,7 +38,7 @@ def make_impact_table(
         cells = {text for line in nonzero for text in line}
         notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in cells]
     if not rows:
-        return TextTable(heading, notes=("0 throughout",))
+        return TextTable(heading, notes=("all values 0",))
     table = _drop_empty_columns(TextTable(heading, _make_columns(), tuple(rows)))
     numbers = {column.head for column in table.columns} & set(NUMBER_HEADS)
     notes += [ZERO_NOTE] if not complete or len(numbers) < len(NUMBER_HEADS) else []

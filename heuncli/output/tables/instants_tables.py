@@ -37,7 +37,7 @@ def make_instants_tables(
         units = {row.label: row.unit for group in groups for row in group.rows}
         labels = _find_nonzero_labels(groups, cells) if word == OPEN else _order_labels(groups)
         if len(labels) < len(units):
-            notes.append(ZERO_NOTE if labels else f"0 throughout: {', '.join(group.name for group in groups)}")
+            notes.append(ZERO_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")
         vectors = {row.label: row.vector for group in groups for row in group.rows}
         columns = [TextColumn(format_head(label, units[label]), vector=vectors[label]) for label in labels]
         lead, rows = layout(block, groups, labels, cells, times)
@@ -45,7 +45,7 @@ def make_instants_tables(
     shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
-        return [TextTable(block.heading, notes=("0 throughout",))]
+        return [TextTable(block.heading, notes=("all values 0",))]
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
 
 

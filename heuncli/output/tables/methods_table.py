@@ -7,15 +7,15 @@ from typing import Any
 from heuncli.base.method_rows import AUTO, DEFAULT, METHODS
 from heuncli.output.tables.text_table import TextColumn, TextTable
 
-HEADING = "METHODS  of integration, for analysis: {method: NAME} and --method NAME"
+HEADING = "METHODS  integration methods, for analysis: {method: NAME} and --method NAME"
 COLUMNS = tuple(
     TextColumn(head, "point" if head == "order" else "left")
-    for head in ("name", "order", "kind", "steps", "attitude", "what for")
+    for head in ("name", "order", "kind", "steps", "attitude", "purpose")
 )
 NOTES = (
-    f"{AUTO}, the default, chooses by the scene and by what the run meets: {DEFAULT} where nothing speaks against it.",
-    "steps: adaptive ones follow analysis: {tolerance: 1e-9}; fixed ones are given, analysis: {step: 0.001}.",
-    "attitude: in what numbers a body's attitude is held within a step. SciPy's are independent checks.",
+    f"{AUTO} (default) chooses from the model and the behaviour during the run: normally {DEFAULT}.",
+    "steps: adaptive steps follow analysis: {tolerance: 1e-9}; fixed steps are set by analysis: {step: 0.001}.",
+    "attitude: how a body's orientation is represented within a step. SciPy methods are independent checks.",
 )
 
 

@@ -10,9 +10,9 @@ from heuncli.motion.linearisation.modes import SceneModes
 from heuncli.motion.linearisation.oscillations import Mode
 from heuncli.study.quantities.digits import choose_style, format_error
 
-STATE_PHRASES = {"rest": "about the rest pose", "state": "about the start"}
-FRAME_PHRASE = ", as seen by what moves steadily there"
-HELD_DRIVES_PHRASE = ", its drives held where they are"
+STATE_PHRASES = {"rest": "about the rest position", "state": "about the start"}
+FRAME_PHRASE = ", in the frame of the steady motion"
+HELD_DRIVES_PHRASE = ", with drives fixed in place"
 SOFT_GROWTH = 1e-3  # [1/s]: a bound is shown if it allows motions faster than one or two hours
 
 
@@ -23,15 +23,23 @@ def describe_modes(scene_modes: SceneModes) -> list[str]:
     if scene_modes.omitted_paths:
         lines.append(f"without {', '.join(map(describe_excluded, scene_modes.omitted_paths))}")
     if not scene_modes.modes:
-        return [*lines, "nothing is free to oscillate"]
+        return [*lines, "no degree of freedom can oscillate"]
     unstable = any(mode.growth > 0.0 for mode in scene_modes.modes)
     has_free = any(mode.kind == "free" for mode in scene_modes.modes)
-    return [*lines, "unstable" if unstable else "stable, but for what nothing holds" if has_free else "stable"]
+    return [*lines, "unstable" if unstable else "stable, except for unrestrained motions" if has_free else "stable"]
+
+
+def describe_coordinate(name: str) -> str:
+    """Describe a coordinate by its axis: `tub.z` becomes `tub: rotation about z`, others keep their name."""
+    owner, _, quantity = name.rpartition(".")
+    if quantity in ("x", "y", "z"):
+        return f"{owner}: rotation about {quantity}"
+    return f"{owner}: displacement along {quantity[1]}" if quantity in ("dx", "dy", "dz") else name
 
 
 def describe_excluded(entry: str) -> str:
     """Describe an entry that was left out or is held fixed."""
-    return f"{entry}'s motion, held where it starts" if entry.startswith("drives.") else entry
+    return f"motion of {entry}, fixed at its start" if entry.startswith("drives.") else entry
 
 
 class ModeTexts(NamedTuple):
@@ -60,10 +68,10 @@ def format_mode(mode: Mode) -> ModeTexts:
 def iter_notes(scene_modes: SceneModes) -> Iterator[str]:
     """Yield sentences on what is unstable and what is free."""
     for k, mode in enumerate(scene_modes.modes):
-        names = ", ".join(scene_modes.largest[k])
+        names = ", ".join(map(describe_coordinate, scene_modes.largest[k]))
         if mode.kind == "free":
             bound = format_error(mode.error / (2.0 * math.pi))
-            stiffness_note = f", or too softly to tell it beside what is so stiff: less than {bound} Hz"
-            yield f"free: {names}: nothing holds it{stiffness_note if mode.error > SOFT_GROWTH else ''}"
+            stiffness_note = f" that can be resolved next to the stiff parts: below {bound} Hz"
+            yield f"free: {names}: no restoring force{stiffness_note if mode.error > SOFT_GROWTH else ''}"
         elif mode.growth > 0.0:
-            yield f"unstable: mode {k + 1}, {names}: e times as large after every {1.0 / mode.growth:.3g} s"
+            yield f"unstable: mode {k + 1}, {names}: grows by a factor of e every {1.0 / mode.growth:.3g} s"

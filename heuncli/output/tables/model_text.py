@@ -14,14 +14,14 @@ MAX_NAMES = 12
 # Key of the model -> title of its list of sentences.
 LIST_TITLES = (
     ("reasons", "Why this model"),
-    ("reduced", "Left out, or made smaller"),
-    ("not_reduced", "Not made smaller"),
-    ("cannot_tell", "What this model cannot tell"),
-    ("integrates", "What is integrated"),
-    ("chosen", "Start values chosen for you"),
-    ("moved", "Moved from the drawing"),
-    ("started", "How it starts to move"),
-    ("notes", "Worth knowing"),
+    ("reduced", "Simplifications"),
+    ("not_reduced", "Not simplified"),
+    ("cannot_tell", "Not covered by this model"),
+    ("integrates", "Integrated variables"),
+    ("chosen", "Start values chosen by heun"),
+    ("moved", "Moved from the given start position"),
+    ("started", "Start of the motion"),
+    ("notes", "Notes"),
 )
 
 
@@ -45,13 +45,13 @@ def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     freedoms, names = model.get("freedoms"), model.get("names", {})
     grubler = model.get("grubler")
     spins = int(model.get("undetermined", 0))
-    among = f", {format_count(spins, 'undetermined spin')} among them" if spins else ""
+    among = f", including {format_count(spins, 'undetermined spin')}" if spins else ""
     grubler_text = f" (Grübler's count: {grubler}{among})" if grubler is not None else ""
     return [
         ("space", str(model.get("space", "")) + (f" ({model['plane']})" if "plane" in model else "")),
         ("bodies", _format_names(names.get("bodies", model.get("bodies")))),
         ("joints", _format_names(names.get("joints", model.get("joints")))),
-        ("freedoms", f"{freedoms}{grubler_text}" if freedoms is not None else ""),
+        ("DOF", f"{freedoms}{grubler_text}" if freedoms is not None else ""),
         ("loops", _format_loops(model)),
         ("redundant", _format_redundant(model.get("redundant"))),
         ("method", str(model.get("method") or "")),
@@ -78,10 +78,10 @@ def _format_loops(model: Mapping[str, Any]) -> str:
     if not isinstance(loops, int):
         return ""
     closed = format_count(loops, "closed loop")
-    return f"{closed} of joints; {format_count(coupled, 'coupling')} beside them" if coupled else closed
+    return f"{closed} of joints, and {format_count(coupled, 'coupling')}" if coupled else closed
 
 
 def _format_redundant(redundant: Any) -> str:
     if isinstance(redundant, int):
-        return format_count(redundant, "redundant row") if redundant else "none"
+        return format_count(redundant, "redundant constraint") if redundant else "none"
     return _format_names(redundant) if redundant else ""

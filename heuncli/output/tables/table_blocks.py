@@ -55,7 +55,7 @@ FAMILIES = {
     **dict.fromkeys((*TILTING_MOMENTS, *SECTION_MOMENTS, "moment_orbital", "moment_spin"), "moment"),
 }
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length has no meaning
-FREE_SCENE_NOTE = "nothing stands on the ground: the scene is free"
+FREE_SCENE_NOTE = "no connection to the ground: the model is free"
 
 
 class NumberRow(NamedTuple):
@@ -217,7 +217,7 @@ def _select_foundation_groups(groups: list[RowGroup], results: Results) -> tuple
     if not supports and not elements:
         return groups, (FREE_SCENE_NOTE,) * ("supports" in results.foundation)
     if len(supports) == 1 and not elements and "force" in results.foundation:
-        note = f"all of it goes through {next(iter(supports))}, the only support"
+        note = f"carried entirely by {next(iter(supports))}, the only support"
         return [group for group in groups if group.is_whole_scene], (note,)
     return groups, ('supports: moment about the joint\'s "to" point; elements: about their own point',)
 
@@ -229,7 +229,7 @@ def describe_chosen_components(results: Results) -> tuple[str, ...]:
         for name, joint in results.joints.items()
         if joint.get("chosen")
     ]
-    return (f"chosen, not certain: {', '.join(chosen)}",) if chosen else ()
+    return (f"indeterminate, one distribution chosen: {', '.join(chosen)}",) if chosen else ()
 
 
 def format_component(component: str) -> str:

@@ -16,7 +16,7 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE
 from heuncli.study.quantities.labels import Labels
 
 POINT_PHRASES = ("the origin", "the point")
-NO_AXIS = ("none", "none: there is no force, so no axis")
+NO_AXIS = ("none", "none: no axis, the force is zero")
 
 
 class TablePlan(NamedTuple):
@@ -66,7 +66,8 @@ def _make_joint_note(name: str, labels: Labels) -> str:
 
 def _make_force_note(name: str, labels: Labels) -> str:
     info = labels.forces.get(name)
-    return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
+    kind = info.type.replace("turn_spring", "torsion spring") if info else ""
+    return f"{kind} on {info.joint}" if info and info.joint else kind
 
 
 def _make_stop_note(name: str, labels: Labels) -> str:
@@ -117,7 +118,7 @@ MASS_EFFECT = TablePlan(
     "",
     ("force", "moment_orbital", "moment_spin"),
     lambda results, labels: (
-        "MASS EFFECT  F = Σ m ẍ, moments the rates of Σ m x × ẋ (orbital) and Σ I σ (spin),"
+        "MASS EFFECT  F = Σ m ẍ, moments d/dt Σ m x × ẋ (orbital) and d/dt Σ I σ (spin),"
         f" world axes, about {_format_moment_point(results, labels)}"
     ),
     only="mass_effect",
@@ -128,7 +129,9 @@ AXIS = TablePlan(
     "foundation",
     "",
     ("point", "direction", "pitch"),
-    lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
+    lambda results, labels: (
+        "CENTRAL AXIS  of the foundation load, with its point nearest the moment reference point, world axes"
+    ),
     only="axis",
     has_extremes=False,
     missing=NO_AXIS,
@@ -140,7 +143,7 @@ JOINTS = TablePlan(
     "joint",
     ("force", "moment", "axial", "radial", "tilting", "tension", "torque", "pressure", "drive"),
     lambda results, labels: (
-        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_format_axes(results)}, '
+        f'JOINTS  reaction of "from" on "to"; drive and friction are listed separately; {_format_axes(results)}, '
         'moment about the "to" point'
     ),
     _make_joint_note,
@@ -150,9 +153,7 @@ STOPS = TablePlan(
     "stops",
     "stop",
     ("force", "moment"),
-    lambda results, labels: (
-        f'STOPS  {_name_stop_load(labels)} ON "to", along the coordinate that is limited; 0 where free'
-    ),
+    lambda results, labels: f'STOPS  {_name_stop_load(labels)} on "to" along the limited coordinate; 0 without contact',
     _make_stop_note,
 )
 COUPLING_QUANTITIES = (
@@ -164,14 +165,14 @@ COUPLINGS = TablePlan(
     "couplings",
     "coupling",
     COUPLING_QUANTITIES,
-    lambda results, labels: "COUPLINGS  the load that each carries",
+    lambda results, labels: "COUPLINGS  transmitted load",
 )
 SECTIONS = TablePlan(
     "sections",
     "sections",
     "section",
     (*RESULTANTS, *STRESSES),
-    lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
+    lambda results, labels: "SECTIONS  force of the far side on the near side of the cut; N > 0 tension; e2 = n × e1",
     _make_section_note,
 )
 ENERGY = TablePlan(
@@ -179,7 +180,7 @@ ENERGY = TablePlan(
     "energy",
     "",
     ("kinetic", "potential", "work"),
-    lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
+    lambda results, labels: "ENERGY  potential relative to the world origin; kinetic + potential − work is constant",
 )
 PLANS = (
     TablePlan(
@@ -187,14 +188,14 @@ PLANS = (
         "bodies",
         "body",
         ("center", "center_velocity", "center_acceleration", "angular_velocity", "angular_acceleration"),
-        lambda results, labels: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
+        lambda results, labels: "MOTION  of the centres of mass, and angular motion of the bodies, world axes",
     ),
     TablePlan(
         "motion",
         "coordinates",
         "joint",
         ("angle", "rate", "travel", "speed", "acceleration", "angular_acceleration"),
-        lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
+        lambda results, labels: 'COORDINATES  of the joints, "to" relative to "from"',
         _make_joint_note,
     ),
     TablePlan(
@@ -217,8 +218,8 @@ PLANS = (
         "force",
         ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
         lambda results, labels: (
-            "FORCES  value, length of its line, angle of a turn spring, their rate, power put in"
-            + ("; of a bushing in its own axes" if any("shift" in own for own in results.forces.values()) else "")
+            "FORCES  force value, length or angle, rate, power"
+            + ("; bushings in their own axes" if any("shift" in own for own in results.forces.values()) else "")
         ),
         _make_force_note,
     ),
@@ -231,7 +232,7 @@ IMPULSES = (
         "bodies",
         "body",
         ("center_velocity_jump", "angular_velocity_jump"),
-        lambda results, labels: "BODIES  jumps of the centre's velocity and of the angular velocity, world axes",
+        lambda results, labels: "BODIES  changes in centre-of-mass velocity and angular velocity, world axes",
     ),
     FOUNDATION._replace(
         heading=lambda results, labels: (
@@ -241,30 +242,30 @@ IMPULSES = (
     ),
     AXIS._replace(
         heading=lambda results, labels: (
-            "CENTRAL AXIS  of the foundation's impulse: its point nearest the moment's, world axes"
+            "CENTRAL AXIS  of the foundation impulse, with its point nearest the moment reference point, world axes"
         ),
-        missing=("none", "none: there is no impulse, so no axis"),
+        missing=("none", "none: no axis, the impulse is zero"),
     ),
     JOINTS._replace(
         heading=lambda results, labels: (
-            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_format_axes(results)}, '
+            f'JOINTS  reaction impulse of "from" on "to"; drive is listed separately; {_format_axes(results)}, '
             'moment about the "to" point'
         )
     ),
     STOPS._replace(
         key="stops",
-        heading=lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
+        heading=lambda results, labels: 'STOPS  impulse on "to" along the limited coordinate',
     ),
-    COUPLINGS._replace(key="couplings", heading=lambda results, labels: "COUPLINGS  the impulse that each carries"),
+    COUPLINGS._replace(key="couplings", heading=lambda results, labels: "COUPLINGS  transmitted impulse"),
     SECTIONS._replace(
         quantities=RESULTANTS,
         heading=lambda results, labels: (
-            "SECTIONS  impulse of the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1"
+            "SECTIONS  impulse of the far side on the near side of the cut; N > 0 tension; e2 = n × e1"
         ),
     ),
     ENERGY._replace(
         kind="",
         quantities=("energy_before", "energy_after", "energy_jump"),
-        heading=lambda results, labels: "ENERGY  kinetic, before and after the blow",
+        heading=lambda results, labels: "ENERGY  kinetic energy before and after",
     ),
 )

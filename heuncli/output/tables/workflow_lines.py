@@ -54,4 +54,4 @@ def iter_lines(annotations: Iterable[Annotation]) -> Iterator[str]:
     for kind, count in counts.items():
         if count > MAX_OF_KIND:
             more = count - MAX_OF_KIND
-            yield f"{Annotation(kind, f'{more} more', f'{more} more like these: see the log, or the report')}\n"
+            yield f"{Annotation(kind, f'{more} more', f'{more} more of this kind: see the log or the report')}\n"

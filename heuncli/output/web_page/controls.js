@@ -10,8 +10,8 @@ import { arrowChoices } from "./wrenches.js";
 /** How opaque bodies are. */
 const LOOKS = [
   [1, "solid"],
-  [0.35, "glass"],
-  [0, "edges"],
+  [0.35, "transparent"],
+  [0, "wireframe"],
 ];
 const MANY_ARROWS = 40;
 const MANY_NAMES = 7;
@@ -143,7 +143,7 @@ export function listenToTime(data, player) {
     button.addEventListener("click", () => player.halt(mark.frame));
     return button;
   });
-  by("marks").replaceChildren(made("span", "events and blows", { class: "word" }), ...buttons);
+  by("marks").replaceChildren(made("span", "events and impulses", { class: "word" }), ...buttons);
   if (marks.length > MOST_BUTTONS) by("marks").append(made("span", `and ${marks.length - MOST_BUTTONS} more`));
 }
 

@@ -27,7 +27,7 @@ function ofRow(row, count) {
   if (parts.length === 1) return [course(row.path, row.path, (k) => parts[0].values[k])];
   if (!row.sized)
     return parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k]));
-  const size = course(row.path, `${row.path} (size)`, (k) => Math.hypot(...parts.map((part) => part.values[k])));
+  const size = course(row.path, `${row.path} (magnitude)`, (k) => Math.hypot(...parts.map((part) => part.values[k])));
   return [
     size,
     ...parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k])),
@@ -50,7 +50,7 @@ function ofLoad(section, load, count) {
     }
     return { path: load.path, label: load.path, unit: load.unit, style: load.style, low, high };
   };
-  return { path: load.path, label: section.s ? `${load.path} (least, greatest)` : load.path, make };
+  return { path: load.path, label: section.s ? `${load.path} (min, max)` : load.path, make };
 }
 
 /** All curves there are; each is made when it is asked for. @param {object} data */

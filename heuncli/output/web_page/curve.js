@@ -165,7 +165,7 @@ export function drawCurve(canvas, data, course, frame, colours) {
   if (!course.high.some(Number.isFinite)) {
     words(
       pen,
-      "open throughout",
+      "open at all times",
       (panel.left + panel.right) / 2,
       panel.top + 24,
       colours.faint,

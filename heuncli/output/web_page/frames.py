@@ -28,8 +28,8 @@ MAX_PAGE_FRAMES = 600  # frames, unless the user gives another limit
 MAX_JUMPS = 60  # with a frame on both sides; the knots of tables are jumps, too
 MIN_PEAK_DISTANCE = 1e-3  # parts of the interval; the error of the peak value is of second order in it
 MISSED_PEAKS_NOTE = (
-    "Of the instants at which loads are largest {} found no room in this page: what is highest here is so at frames "
-    "alone; heun run tells the largest."
+    "This page leaves out {} of the times at which loads are largest: maxima shown here are those at the frames; heun "
+    "run gives the actual maxima."
 )
 MAX_BYTES = 24_000_000  # of a page's numbers, before they are encoded as text
 
@@ -53,7 +53,7 @@ def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES)
     sample_times = results.time if horizon is None else results.time[results.time < horizon]
     if len(sample_times) < 2:
         horizon_note = (
-            ("Nothing is claimed of this motion beyond its start.",) if len(results.time) > len(sample_times) else ()
+            ("No results are claimed after the start of this motion.",) if len(results.time) > len(sample_times) else ()
         )
         return PageFrames(results.time[:1], horizon_note)
     limit = max(2, min(max_frames, MAX_BYTES // _estimate_frame_bytes(study)))
@@ -61,7 +61,7 @@ def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES)
     capacity = limit - len(extra)
     notes = [MISSED_PEAKS_NOTE.format(missed)] if missed else []
     if len(sample_times) > capacity:
-        notes.append(f"The run was asked for at {len(sample_times)} instants; {capacity} of them are in this page.")
+        notes.append(f"This page contains {capacity} of the {len(sample_times)} output times.")
         regular = sample_times[np.linspace(0, len(sample_times) - 1, capacity).round().astype(np.intp)]
     else:
         regular = _fill_between(study, sample_times, capacity)
@@ -69,8 +69,8 @@ def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES)
     largest_turn = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
     if largest_turn > tolerances.MAX_INTERPOLATED_TURN:
         notes.append(
-            f"Between two frames a body turns up to {math.degrees(largest_turn):.0f}°: only the "
-            "frames show where it is."
+            f"A body rotates by up to {math.degrees(largest_turn):.0f}° between frames: only "
+            "positions at the frames are exact."
         )
     return PageFrames(times, tuple(notes))
 

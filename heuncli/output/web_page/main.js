@@ -14,7 +14,7 @@ import { View } from "./view.js";
 const AT_ONCE = 400; // cells of the table that are written at every image while the machine plays
 const PAUSE = 0.25; // ms for each cell beyond these until they are written again
 
-const COUPLED = "Of a coupling: what it exerts on the body named beside it, on its line of action.";
+const COUPLED = "Couplings: force on the named body, along its line of action.";
 
 /** What stands above and below: the run, what is to be known of it. */
 function tellRun(data) {
@@ -32,15 +32,15 @@ function signsOf(chosen, data) {
   if (choice) {
     const ofCouplings = choice.rows.some((row) => row.coupling);
     if (choice.key.startsWith("couplings")) parts.push(COUPLED);
-    else if (choice.key.startsWith("foundation")) parts.push("Arrows: what the machine exerts on the ground.");
+    else if (choice.key.startsWith("foundation")) parts.push("Arrows: load of the machine on the ground.");
     else if (choice.frame !== undefined)
-      parts.push("Arrows: the impulses of “from” on “to”, at the blow’s own frame.");
-    else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.", ofCouplings ? COUPLED : "");
+      parts.push("Arrows: impulses of “from” on “to”, shown at the frame of the impulse.");
+    else parts.push("Arrows: reaction of “from” on “to”, at the “to” point.", ofCouplings ? COUPLED : "");
   }
   if (section && load) {
     const [unit, size] = data.length;
     parts.push(
-      `Section ${section.name}: what the piece beyond the cut exerts on the part before it; N > 0 is tension.`,
+      `Section ${section.name}: force of the far side on the near side of the cut; N > 0 is tension.`,
     );
     const s = section.s?.[section.chosen ?? 0];
     by("place").textContent = s === undefined ? "" : `s = ${short(s * size)} ${unit}`;
@@ -58,7 +58,7 @@ function tellInstant(data, player) {
   output.dataset.value = String(time[player.frame]);
   by("time").value = String(player.frame);
   by("time").setAttribute("aria-valuetext", text);
-  by("play").textContent = player.playing ? "Halt" : "Play";
+  by("play").textContent = player.playing ? "Pause" : "Play";
   by("play").setAttribute("aria-pressed", String(player.playing));
 }
 
@@ -107,7 +107,7 @@ function begin() {
   }
 
   tellRun(data);
-  by("caption").textContent = data.count > 1 ? "Numbers of this frame" : "Numbers of this instant";
+  by("caption").textContent = data.count > 1 ? "Values at this frame" : "Values at this instant";
   listenToView(view, player, changed);
   listenToTime(data, player);
   listenToDrawn(chosen, player, changed);

@@ -27,7 +27,7 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
 MAX_TIME_MARKS = 400  # events and impacts on the time line
-PEAKS_NOTE = "There are too many loads to seek the largest between the instants of the run: they may be larger there."
+PEAKS_NOTE = "Too many loads to search for maxima between output times: loads may be larger there."
 MAX_IMPACTS = 12  # whose tables are included
 HEADING_NOTES = ("stiff", "split", "status", "warning")  # lines of the heading that are shown as notes
 
@@ -82,11 +82,11 @@ def _iter_notes(results: Results, horizon: float | None) -> Iterator[str]:
     """Yield the notes that a reader needs before reading the numbers."""
     yield from (escape(f"{label}: {text}") for label, text in make_heading(results) if label in HEADING_NOTES)
     if horizon is not None:
-        yield f"The motion is known up to t = {horizon:.6g} s: nothing beyond is claimed, and nothing of it is here."
+        yield f"The motion is known up to t = {horizon:.6g} s; later results are not claimed and not shown."
     if len(results.impulses) > MAX_IMPACTS:
-        yield f"There are {len(results.impulses)} blows; the numbers of the first {MAX_IMPACTS} are listed."
+        yield f"{len(results.impulses)} impulses; values are listed for the first {MAX_IMPACTS}."
     if any(joint.get("open") for joint in results.joints.values()):
-        yield "Open: redundant supports leave some numbers open; they are told as such, and have no arrow."
+        yield "Open: some values are statically indeterminate (they depend on stiffness) and have no arrow."
 
 
 def _iter_impacts(
@@ -96,7 +96,7 @@ def _iter_impacts(
     for number, impact in enumerate(results.impulses[:MAX_IMPACTS]):
         time = float(impact["time"])
         if frames.times[0] <= time <= frames.times[-1]:
-            caption = f"{', '.join(impact['names']) or 'blow'}, {time:.6g} s"
+            caption = f"{', '.join(impact['names']) or 'impulse'}, {time:.6g} s"
             tables = make_impact_page_tables(number, impact, results, labels, certain)
             yield {"number": number, "frame": _find_frame(frames, time), "words": escape(caption), "blocks": tables}
 

@@ -23,7 +23,7 @@ from heuncli.study.quantities.digits import OPEN, StatedErrors, Style
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.series import Series, convert_units, iter_impulse_series, iter_series
 
-ZERO_ROWS_PREFIX = "0 throughout: "
+ZERO_ROWS_PREFIX = "All values 0: "
 EXCLUDED_KINDS = frozenset({"bodies", "points", "sections"})  # sections have rows of their own
 
 
@@ -43,7 +43,7 @@ def make_impact_page_tables(
 ) -> list[dict[str, Any]]:
     """Make the tables of one impact; their numbers hold only at its instant."""
     series = [item for item in iter_impulse_series(impact, labels) if not item.cause]
-    prefix = f"AT {float(impact['time']):.6g} s, {', '.join(impact['names']) or 'blow'}: "
+    prefix = f"AT {float(impact['time']):.6g} s, {', '.join(impact['names']) or 'impulse'}: "
     tables = []
     for plan in IMPULSES:
         if plan.kind in ("foundation", "joints", "stops", "sections") and plan.only is None:
@@ -78,7 +78,7 @@ def _make_block(
         and (only := [name for name in series_by_name if name.startswith("supports.")])
     ):
         series_by_name = {"": series_by_name[""]}
-        notes = [f"all of it goes through {only[0].removeprefix('supports.')}, the only support"]
+        notes = [f"carried entirely by {only[0].removeprefix('supports.')}, the only support"]
     if (
         plan is AXIS
         and series_by_name

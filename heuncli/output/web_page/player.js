@@ -7,14 +7,14 @@ const LONG_ENOUGH = 1.5;
 
 /** The speeds to choose from: times true speed, as words. */
 export const SPEEDS = [
-  [100, "100 times"],
-  [10, "10 times"],
-  [1, "true"],
-  [0.5, "1/2"],
-  [0.1, "1/10"],
-  [0.01, "1/100"],
-  [0.001, "1/1000"],
-  [0.0001, "1/10000"],
+  [100, "100×"],
+  [10, "10×"],
+  [1, "real time"],
+  [0.5, "1/2×"],
+  [0.1, "1/10×"],
+  [0.01, "1/100×"],
+  [0.001, "1/1000×"],
+  [0.0001, "1/10000×"],
 ];
 
 /** The speed that is proposed for a run that lasts so long [s]: true speed, unless nothing could be seen. */

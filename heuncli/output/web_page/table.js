@@ -140,7 +140,7 @@ export class NumberTable {
     for (const section of this.data.sections) {
       if (section.s) {
         const [unit, size] = this.data.length;
-        const side = section.side[section.chosen] ? `, ${section.side[section.chosen]} what acts there` : "";
+        const side = section.side[section.chosen] ? `, ${section.side[section.chosen]} the load there` : "";
         const place = `s = ${short(section.s[section.chosen] * size)} ${unit}`;
         section.spoken.textContent = `${section.note}; value: at ${place}${side}`;
       }

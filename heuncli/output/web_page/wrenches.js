@@ -74,7 +74,7 @@ export function arrowChoices(data) {
     },
     {
       key: "foundation.axis",
-      label: "foundation: force on its axis",
+      label: "foundation: force on the central axis",
       rows: of("foundation.force", "foundation", onAxis),
     },
     ...data.blows.map((blow) => ({

@@ -55,7 +55,7 @@ def across(x: float) -> str:
     whole = TurningRun(np.array([0.0, 2.0]), "", np.zeros(0), 0)
     curve = TipCurve("F", "foundation.force", "N", 0, turned(), whole, vectors, make_axis_plane("z"))
     notes = make_notes(curve, LargestVector(1.0, 0.0, 1.0, 0.0, 0.0, is_constant=False), Units())
-    return "told" if any("across the plane" in note for note in notes) else "silent"
+    return "told" if any("normal to the plane" in note for note in notes) else "silent"
 
 
 def from_turn_to_turn(x: float) -> str:
