@@ -100,7 +100,7 @@ def test_the_value_may_be_an_expression(heun: Heun) -> None:
     told = json.loads(heun("find", "-", "a=5:95deg", f"{TENSION} = 2*m*g", "--format", "json", text=PENDULUM).stdout)
     assert told["value"] == 2.0 * 2.0 * 9.81
     done = heun("find", "-", "m=1:5kg", f"{TENSION} = 2*m*g", text=PENDULUM)
-    assert done.returncode == 2 and "hangs on what is varied" in done.stderr
+    assert done.returncode == 2 and "depends on what is varied" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -108,8 +108,8 @@ def test_the_value_may_be_an_expression(heun: Heun) -> None:
     [
         ("a=5:95deg", f"{TENSION} = 30 mm", "dimension", "a length, expected a force"),
         ("a=5:95deg", f"{TENSION}", "bad-option", "expected MEASURE"),
-        ("a=5:95deg", f"{TENSION} =", "bad-option", "a value behind the '='"),
-        ("a=5:95deg", "= 3 N", "bad-option", "a measure before the '='"),
+        ("a=5:95deg", f"{TENSION} =", "bad-option", "no value after the '='"),
+        ("a=5:95deg", "= 3 N", "bad-option", "no measure before the '='"),
         ("a=5:95deg", "max joints.pivt.force = 3 N", "unknown-path", "did you mean"),
         ("a=5:5deg", f"{TENSION} = 30 N", "bad-option", "both ends are the same"),
         ("a=5deg", f"{TENSION} = 30 N", "bad-option", "an interval"),

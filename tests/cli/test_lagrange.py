@@ -207,7 +207,7 @@ def test_over_in_all_forms(heun: Heun) -> None:
     ("words", "code", "says"),
     [
         (["--coordinates", "A.angel,B.angle"], 3, "A.angel"),
-        (["--coordinates", "A.angle"], 3, "2 motions are free"),
+        (["--coordinates", "A.angle"], 3, "2 degrees of freedom, but 1 coordinate named"),
         (["--seen", "b.f:1,0,0"], 3, "b.f"),
         (["--seen", "b.e:1,0"], 2, "three numbers"),
         (["--over", "A.angle=0:1"], 3, "something is free"),
@@ -229,7 +229,7 @@ def test_what_is_refused(heun: Heun, pendulum: str, words: list[str], code: int,
 
 def test_coordinates_that_all_stand(heun: Heun) -> None:
     done = heun("lagrange", str(ROOT / "specs" / "table.yaml"), "--coordinates", "A.x,A.y,A.dz")
-    assert done.returncode == 3 and "cannot tell the motion here" in done.stderr and "(dead centre)" in done.stderr
+    assert done.returncode == 3 and "cannot describe the motion here" in done.stderr and "(dead centre)" in done.stderr
 
 
 @pytest.mark.heavy

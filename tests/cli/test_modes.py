@@ -74,7 +74,7 @@ NEAR_A_ROOT = with_force("{type: torque, joint: rail, value: '-10*sqrt(rail.trav
     ("text", "code", "said"),
     [
         (with_force("{type: force, on: bob.b, vector: [sin(t), 0, 0]}"), "no-modes", "forces.f depends on t"),
-        (with_force("{type: force, on: bob.b, vector: [1, 0, 0]}"), "not-at-rest", "is pushed"),
+        (with_force("{type: force, on: bob.b, vector: [1, 0, 0]}"), "not-at-rest", "accelerates"),
         (with_force("{type: torque, joint: hinge, value: -3*sign(hinge.rate)}"), "no-modes", "forces.f jumps or bends"),
         (with_force("{type: torque, joint: hinge, value: -3*abs(hinge.angle)}"), "no-modes", "forces.f jumps or bends"),
         (with_force("{type: spring, from: ground.O, to: cart.c, stiffness: 9, length: 1}"), "no-modes", "no direction"),
@@ -118,7 +118,7 @@ joints:
 """
     with pytest.raises(HeunError) as caught:
         compute_spec_modes(load("scene.yaml", scene))
-    assert "give way to the first order only" in caught.value.problems[0].message
+    assert "can move to first order only" in caught.value.problems[0].message
 
 
 EXCITED = """

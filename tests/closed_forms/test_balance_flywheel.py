@@ -53,7 +53,7 @@ def test_work_that_does_not_come_back_is_evened_out_and_told() -> None:
     plain = wheel(SHAFT.replace("LAW", TORQUE), rate=20.0, flywheel=FlywheelRequest("", 0.01))
     assert told.flywheel is not None and told.flywheel.even == pytest.approx(-300.0, rel=1e-9)
     assert told.flywheel.added == pytest.approx(plain.added, rel=1e-9)
-    assert "an even torque of -300 N·m on shaft" in " ".join(told.notes)
+    assert "a constant torque of -300 N·m on shaft" in " ".join(told.notes)
 
 
 def test_orders_of_the_loads() -> None:

@@ -12,7 +12,7 @@ from heuncli.scene.file_format.resolve_couplings import SLACK_BELT_MESSAGE, form
 from heuncli.study.compose.impulses import Impulses
 
 PUSHED_AT_IMPULSE = (
-    "at the impulse at t = {:.6g} s the belt {} would have to push: no pretension withstands an impulse, and the force "
+    "in the impulse at t = {:.6g} s the belt {} would have to push: no pretension withstands an impulse, and the force "
     "with which the belt then pulls its pulleys together is not computed"
 )
 

@@ -30,7 +30,7 @@ def warn_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
     for k, jump in enumerate(impulses.jumps):
         for name, wheel in wheels.items():
             for sentence in iter_problems(wheel, couplings[name], k):
-                yield f"at the impulse at t = {jump.reported_time:.6g} s {sentence.format(name)}"
+                yield f"in the impulse at t = {jump.reported_time:.6g} s {sentence.format(name)}"
 
 
 def iter_problems(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
