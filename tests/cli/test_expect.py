@@ -150,14 +150,14 @@ def test_what_stays_within_bounds(item: Any) -> None:
     ("item", "why"),
     [
         (expectation(FX, None, below=2.99), "the largest, 3 at t = 0.785398 s, is not below 2.99"),
-        (expectation(FX, None, above=-2.2), "the least, -2.27040749 at t = 2 s, is not above -2.2"),
+        (expectation(FX, None, above=-2.2), "the smallest, -2.27040749 at t = 2 s, is not above -2.2"),
         (expectation(FX, None, below=5.0, above=-2.2), "is not above -2.2"),
         (expectation(FX, None, below=2.7, at=1.0), "2.72789228 at t = 1 s, is not below 2.7"),
         (expectation(FX, None, below=2.9, peak="abs"), "the largest magnitude, 3 at t = 0.785398 s, is not below 2.9"),
         (expectation("joints.pivot.force", None, below=10.0), "the largest, 10.81 at t = 0 s, is not below 10"),
         (expectation("sections.along.M2", None, below=2.3), "at t = 0.785398 s, s = 0.8 m, is not below 2.3"),
         (expectation("model.freedoms", None, below=4.0), "the largest, 4, is not below 4"),
-        (expectation("model.freedoms", None, above=4.0), "the least, 4, is not above 4"),
+        (expectation("model.freedoms", None, above=4.0), "the smallest, 4, is not above 4"),
     ],
 )
 def test_what_leaves_its_bounds_says_how_far_when_and_where(item: Any, why: str) -> None:

@@ -112,7 +112,7 @@ def test_other_words_are_refused_with_the_forms(words: str) -> None:
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        ("energy.kinetic", "runs over 21 instants: say max, min"),
+        ("energy.kinetic", "has values at 21 instants: use max, min"),
         ("max model.freedoms", "has no time history"),
         ("foundation.about", "is 3 numbers"),
         ("at 3 energy.kinetic", "the run goes from 0 to 2 s"),

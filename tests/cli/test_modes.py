@@ -139,7 +139,7 @@ def test_without_what_excites(heun: Heun, folder: Path) -> None:
         assert found.pop("without") == ["forces.push", "forces.pull"] and found == free
     assert "without forces.push, forces.pull\n" in heun("modes", "excited.yaml", "--without", "push,pull").stdout
     refused = heun("modes", "excited.yaml")
-    assert refused.returncode == 3 and "--without push,pull leaves out what excites" in refused.stderr
+    assert refused.returncode == 3 and "--without push,pull leaves out the excitation" in refused.stderr
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ def test_what_would_not_fit_is_refused_with_what_would(
     done = heun(*words.split(), "many.yaml")
     assert (done.returncode, done.stdout) == (4, "")
     assert "the results at 100,001 output times need about" in done.stderr and f"{told} is allowed" in done.stderr
-    fit = re.search(r"hint: ([\d,]+) instants would fit", done.stderr)
+    fit = re.search(r"hint: ([\d,]+) samples would fit", done.stderr)
     assert fit is not None
     samples = int(fit[1].replace(",", ""))
     assert 100 < samples < 20_000

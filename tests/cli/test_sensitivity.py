@@ -92,7 +92,7 @@ def test_a_scene_that_cannot_be_solved_is_its_own_error(heun: Heun) -> None:
     [
         ((), "bad-option", "nothing is measured"),
         (("mm", "--measure", TENSION), "bad-option", "no number there"),
-        (("joints.pivot.type", "--measure", TENSION), "bad-option", "this is no number"),
+        (("joints.pivot.type", "--measure", TENSION), "bad-option", "not a number"),
         (("m=3", "--measure", TENSION), "bad-option", "expected a parameter"),
         (("--measure", "max joints.pivt.force"), "unknown-path", "did you mean"),
         (("--measure", TENSION, "--spread", "L=0.1"), "bad-option", "L is given in mm"),

@@ -291,5 +291,5 @@ def test_the_cycle_of_a_cam_that_presses() -> None:
     near(first.amplitude, [0.0, 0.5 * E * 400.0, 0.0], 2.0, 1e-6)
     with pytest.raises(SolveError, match=r"couplings\.cam may open and close"):
         balance(read(text.replace("two_sided: false", "restitution: 0.5")))
-    with pytest.raises(SolveError, match=r"it ends at 40°: .* turns off its lift"):
+    with pytest.raises(SolveError, match=r"it stops at 40°: .* turns off its lift"):
         balance(read(part_of_a_turn("angle: 20*t")))

@@ -165,7 +165,7 @@ analysis: {duration: 20, samples: 401}
     assert (
         0.4 * reference.horizon < reference.last_time < reference.horizon and (reference.error["motion"] or 1) <= 1e-8
     )
-    assert "nobody can compare" in reference.notes[0]
+    assert "allows no comparison" in reference.notes[0]
     coarse, fine = (run.error["motion"] or 0.0 for run in found.runs)
     assert coarse > 1e-3 > fine
 

@@ -584,5 +584,5 @@ def test_beside_a_root_no_stiffness_is_told(force: str, is_decided: bool) -> Non
         f'forces: {{pull: {{type: torque, joint: s, value: "{force}"}}}}\n'
     )
     said = " ".join(solved(text).model["notes"])
-    assert ("stable: the least eigenvalue" in said) == is_decided
+    assert ("stable: smallest eigenvalue" in said) == is_decided
     assert ("forces.pull has no slope there" in said) != is_decided

@@ -103,7 +103,7 @@ def test_the_note_on_the_model_and_the_run_agree(name: str) -> None:
     ("change", "words"),
     [
         ("duration: 0.5", "short: "),
-        ("duration: 600", "long and conservative, some 150 "),
+        ("duration: 600", "long and conservative, about 150 "),
     ],
 )
 def test_reasons_tell_the_kind_of_motion(change: str, words: str) -> None:
