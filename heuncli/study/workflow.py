@@ -148,10 +148,10 @@ def list_names(setup: Setup) -> Block:
 
 def describe_conditions(spec: Spec) -> list[str]:
     """Describe in sentences what ends the run, what is watched, and which impulses act when."""
-    times = {True: "every time", False: "the first time"}
-    impulses = [f"impulse: {b.name}, {times[b.every]} that {b.when.text}" for b in spec.impulses.values() if b.when]
+    times = {True: "each time", False: "the first time"}
+    impulses = [f"impulse: {b.name}, {times[b.every]} {b.when.text}" for b in spec.impulses.values() if b.when]
     return [*impulses, *(describe_latch(name, stop) for name, stop in spec.latches.items())] + [
-        f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
+        f"ends when {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
     ]
 
 

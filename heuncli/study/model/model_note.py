@@ -81,7 +81,7 @@ def has_rolling_wheels(mechanism: Mechanism) -> bool:
 def describe_pose_freedoms(model: Block) -> str:
     """Say in a sentence how many freedoms the pose has, and how many the speeds."""
     poses, speeds = format_count(model["pose_freedoms"], "degree of freedom", "degrees of freedom"), model["freedoms"]
-    return f"{poses} of position, {speeds} of velocity: rolling without slip constrains velocities, not positions"
+    return f"{poses} in position, {speeds} in velocity: rolling without slip constrains velocities, not positions"
 
 
 def describe_reductions(left_out: Sequence[str], scene: PreparedScene, reduction: ReducedScene | None) -> Block:
