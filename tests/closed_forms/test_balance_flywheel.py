@@ -181,4 +181,4 @@ def test_what_a_counterweight_costs_under_a_load_in_time(law: str, back: bool) -
     """The loads of joints are those of one cycle: of another law in time the next one has others."""
     scene = GEARED.replace("LOAD", f'{{type: torque, joint: sb, value: "{law}"}}')
     told = balance_of(scene, weights=(WeightRequest("a", "o", 0.03),))
-    assert any(note.startswith("forces.tool does not repeat after a turn") for note in told.notes) != back
+    assert any(note.startswith("forces.tool does not repeat after one revolution") for note in told.notes) != back

@@ -156,7 +156,7 @@ analysis: {{type: state}}
     assert np.abs(symbols - [-1.2662465643950, 1.6523302716625, -2.5108940402715, -5.0298877387374]).max() < 1e-12
     plain = told(scene)
     near(plain.accelerations, [0.4932529300063537, 1.313088604140905, -0.07622707697735152])
-    assert plain.gamma is None and any("without coordinates" in note for note in plain.notes)
+    assert plain.gamma is None and any("quasi-velocities" in note for note in plain.notes)
 
 
 CART = """\

@@ -80,4 +80,4 @@ def test_hinges_apart_do_not_turn(apart: float) -> None:
 
 def test_a_scene_everywhere_near_to_a_singular_pose_passes_through_none() -> None:
     found = solved(three_rods(1e-7, analysis="analysis: {duration: 0.1, samples: 3}"))
-    assert not any(w.startswith("singular position at t = ") for w in found.warnings)
+    assert not any("two motions are possible" in w for w in found.warnings)

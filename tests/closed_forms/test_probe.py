@@ -176,12 +176,12 @@ forces: {{drag: {{type: torque, joint: pivot, value: "-0.1*sqrt(pivot.rate**2)"}
 analysis: {analysis}
 """).to_block()
     assert (block["stiffness"] is not None) == told
-    assert ("no slope" in block["not_told"].get("stiffness", "")) != told
+    assert ("no derivative" in block["not_told"].get("stiffness", "")) != told
 
 
 def test_a_flat_four_bar_is_told_as_singular() -> None:
     found = probed(FLAT.read_text(encoding="utf-8"))
-    assert len(instants(found, SINGULAR)) == 2 and found.verdict.startswith("singular poses")
+    assert len(instants(found, SINGULAR)) == 2 and found.verdict.startswith("singular positions")
 
 
 def test_a_stiff_damper_bounds_explicit_steps() -> None:

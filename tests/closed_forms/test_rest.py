@@ -521,7 +521,7 @@ def test_what_nothing_holds() -> None:
 def test_what_does_not_keep_still() -> None:
     load = "forces: {f: {type: force, on: bar.end, vector: [sin(t), 0, 0]}}"
     assert "forces.f depends on t" in refused(pendulum("0", load))
-    assert "drives.w does not run at a constant rate" in refused(spindle(PIN, "t**2"))
+    assert "drives.w does not go on at a constant rate" in refused(spindle(PIN, "t**2"))
     assert "does not stay at rest in the frame" in refused(spindle(PIN, gravity="[0, 1e-6, -9.81]"))
     assert "changes as drives.w goes on" in refused(spindle(PIN, gravity="[0, -9.81, 0]"))
     assert "a load jumps" in refused(

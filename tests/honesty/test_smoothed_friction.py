@@ -43,7 +43,7 @@ def test_a_start_from_rest_says_that_friction_is_nothing_there(heun: Heun, folde
     assert re.search(r"4\.1750*†", table)
     assert "† smoothed friction (rub) is below full value there" in table
     result = json.loads(heun("run", "s.yaml", "--format", "json").stdout)
-    assert any("at 1 of 11 instants" in note for note in result["model"]["notes"])
+    assert any("at 1 of 11 samples" in note for note in result["model"]["notes"])
     report = heun("report", "s.yaml", "--format", "md", "-o", "-").stdout
     assert "† smoothed friction (rub)" in report
     drawn = heun("plot", "s.yaml", "coordinates.guide.acceleration").stdout

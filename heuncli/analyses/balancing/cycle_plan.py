@@ -137,7 +137,7 @@ def require_steady(joint: Joint) -> None:
         raise SolveError(Problem("no-cycle", message, hint=hint, entry_path=where))
     value = joint.drive.value
     if not value.time_dependent or not has_constant_rate(value):
-        message = f"drives.{joint.drive.name} does not run at a constant rate while other drives vary with time"
+        message = f"drives.{joint.drive.name} does not have a constant rate while other drives vary with time"
         hint = "give it a constant rate, such as angle: 100*t"
         raise SolveError(Problem("no-cycle", message, hint=hint, entry_path=f"drives.{joint.drive.name}"))
 

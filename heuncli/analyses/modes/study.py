@@ -178,7 +178,7 @@ def require_steady_drives(setup: Setup) -> None:
         hint = f"--without {','.join(drives)}: modes with it fixed at its start"
         hint = hint if drives else "give a length that is constant or grows at a constant rate"
         raise SolveError(*(
-            Problem("no-modes", f"{law.path} does not run at a constant rate", hint=hint) for law in laws
+            Problem("no-modes", f"{law.path} does not have a constant rate", hint=hint) for law in laws
         ))  # fmt: skip
 
 
