@@ -26,7 +26,7 @@ from heuncli.study.model.counts_and_lists import list_some
 FINE_METHOD = "Verner98"
 LONG_MOTION = 100.0  # turns or swings from which on a conservative motion is called long
 MAY_BE_STIFF = (
-    "stiffness is monitored: if {} should keep explicit steps short, the motion is restarted with an implicit "
+    "monitored for stiffness: if {} should keep explicit steps short, the motion is restarted with an implicit "
     "method, where that is faster"
 )
 NOTHING_STIFF = "no stiffness expected: no spring, damper, friction or force law in coordinates"
