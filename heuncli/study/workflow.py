@@ -148,10 +148,10 @@ def list_names(setup: Setup) -> Block:
 
 def describe_conditions(spec: Spec) -> list[str]:
     """Describe in sentences what ends the run, what is watched, and which impulses act when."""
-    times = {True: "every time", False: "the first time"}
-    impulses = [f"strikes: {b.name}, {times[b.every]} that {b.when.text}" for b in spec.impulses.values() if b.when]
+    times = {True: "each time", False: "the first time"}
+    impulses = [f"impulse: {b.name}, {times[b.every]} {b.when.text}" for b in spec.impulses.values() if b.when]
     return [*impulses, *(describe_latch(name, stop) for name, stop in spec.latches.items())] + [
-        f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
+        f"ends when {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
     ]
 
 
@@ -163,9 +163,9 @@ def describe_latch(name: str, stop: Stop[str]) -> str:
     if latch.position is not None:
         where = f"at {latch.position:.6g} {'rad' if stop.quantity == 'angle' else 'm'}"
     begins = f" while {latch.when.text}" if latch.when is not None else ""
-    again = "and catches again after" if latch.every else "once"
-    ends = f", until {latch.release.text}, {again}" if latch.release is not None else ", and never lets go"
-    return f"catches: {name}, {what} {where}{begins}{ends}"
+    again = "and latches again after" if latch.every else "once"
+    ends = f", until {latch.release.text}, {again}" if latch.release is not None else ", and never releases"
+    return f"latches: {name}, {what} {where}{begins}{ends}"
 
 
 def with_restart_method(setup: Setup, method: Method, why: str) -> Setup:

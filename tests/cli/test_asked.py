@@ -81,9 +81,7 @@ def test_a_pendulum_beside_a_hundred_costs_what_it_costs_alone() -> None:
     assert among.results.work["evaluations"] == alone.results.work["evaluations"]
     assert np.array_equal(numbers(among.results, path), numbers(alone.results, path))
     left_out, _ = among.results.model["reduced"]  # and that what is left swings in a plane
-    assert left_out == (
-        f"left out, because nothing that is asked for depends on it: b1, b2, b3, b4, b5 and {MANY - 5} more"
-    )
+    assert left_out == (f"left out, because no requested result depends on it: b1, b2, b3, b4, b5 and {MANY - 5} more")
 
 
 def test_what_is_told_of_a_part_is_what_the_whole_scene_tells_of_it() -> None:
@@ -364,7 +362,7 @@ def test_the_axis_and_the_mass_effect_are_shown_where_they_are_asked_for(heun: H
 def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
     more = "  other: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}\njoints:\n"
     (folder / "two.yaml").write_text(SPECS_OF["swinging"].replace("joints:\n", more) + "report: [joints]\n")
-    line = "reduced   left out, because nothing that is asked for depends on it: other"
+    line = "reduced   left out, because no requested result depends on it: other"
     assert line in heun("run", "two.yaml", "--verbose").stdout
     assert "reduced" not in heun("run", "two.yaml").stdout
     assert line not in heun("run", "two.yaml", "--verbose", "--no-reduce").stdout
@@ -374,7 +372,7 @@ def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
 
 def test_the_note_tells_what_is_integrated_and_what_its_beginning_takes() -> None:
     sentences = describe(load(str(SPECS / "double.yaml")))["integrates"]
-    assert sentences[0].startswith("14 numbers of state, by DOP853, an explicit method of order 8, to 1e-09 of")
+    assert sentences[0].startswith("14 state variables, by DOP853, an explicit method of order 8, to 1e-09 of")
     took = r"the first 0\.2 s take \d+ steps, \d+ evaluations, [\d.e+]+ ms: 10 times that .*"
     assert re.fullmatch(took, sentences[1])
     assert describe(load(str(SPECS / "table.yaml")))["integrates"] == ["nothing: one instant is solved"]

@@ -198,7 +198,11 @@ def test_what_comes_back_after_two_turns_alone_is_told(heun: Heun, folder: Path)
     text = CARRIAGE + "drives: {one: {joint: first, angle: 10*t}, two: {joint: second, angle: 5*t}}\n"
     (folder / "half.yaml").write_text(text)
     done = heun("balance", "half.yaml", "--cycle", "first")
-    assert done.returncode == 3 and "after a turn it is not back" in done.stderr and "--turns 2" in done.stderr
+    assert (
+        done.returncode == 3
+        and "not back at its start after one revolution" in done.stderr
+        and "--turns 2" in done.stderr
+    )
     told = found(heun, "half.yaml", "--cycle", "first", "--turns", "2")
     verdicts = {row["order"]: row["verdict"] for row in told["harmonics"]["force"]}
     assert verdicts[1.0] == verdicts[1.5] == "remains" and verdicts[0.5] == "does not arise"

@@ -70,7 +70,7 @@ def test_a_failed_chart_leaves_no_file(heun: Heun, folder: Path) -> None:
         (("--tolerances", "-1e-4"), "positive"),
         (("--steps", "0"), "positive"),
         (("--steps", "nan"), "positive"),
-        (("--methods", "DOP853", "--steps", "0.1"), "none of the methods would take fixed steps"),
+        (("--methods", "DOP853", "--steps", "0.1"), "none of the methods uses fixed steps"),
         (("--save", "chart.gif"), "accepted file extensions: .svg, .png, .pdf"),
         (("--save", "no/chart.svg"), "there is no folder"),
         (("--save", "swinging.yaml"), "unknown picture format"),
@@ -122,7 +122,7 @@ def test_what_is_driven_is_followed_and_integrated_beside(heun: Heun, folder: Pa
     few = ("--tolerances", "1e-6", "--steps", "0.1", "--format", "json")
     found = json.loads(heun("chart", "driven.yaml", *few).stdout)
     assert found["runs"][0]["method"] == "followed" and found["runs"][0]["tolerance"] is None
-    assert any("solves every instant by itself" in note for note in found["notes"])
+    assert any("solves each instant" in note for note in found["notes"])
     assert any(run["method"] == "DOP853" and run["status"] == "completed" for run in found["runs"])
 
 

@@ -63,7 +63,7 @@ def test_an_angle_that_the_run_never_has_fails_by_its_line(check: Callable[..., 
     rows = [(math.degrees(W * t), force(t)) for t in [*TIMES, 1.2]]
     code, told, _ = check(rows, "x: coordinates.pivot.angle, x_unit: deg, abs: 1e-9")
     assert code == 1
-    assert "is never 3.6 (bench.csv:22)" in told
+    assert "never reaches 3.6 (bench.csv:22)" in told
 
 
 def test_the_worst_point_is_told_with_its_line_and_by_how_much(check: Callable[..., tuple[int, str, str]]) -> None:

@@ -66,10 +66,10 @@ def test_what_holds(item: Any) -> None:
         (expectation(FX, FX_AT_1 + 1.1e-3, at=1.0, abs=1e-3), "off by 0.0011, allowed 0.001"),
         (expectation(FX, FX_AT_1 * (1.0 + 2e-6), at=1.0), "off by"),
         (expectation(FX, None, at=1.0), "expected open, found a number"),
-        (expectation("joints.pivot.force", None, at=1.0), "3 of 3 are not open (is: null is all of it"),
-        (expectation("model.freedoms", 4.0, peak="max"), "has no instants"),
+        (expectation("joints.pivot.force", None, at=1.0), "3 of 3 are not open (is: null means all of them"),
+        (expectation("model.freedoms", 4.0, peak="max"), "has no time history"),
         (expectation("joints.pivot.open", None), "is not a number"),
-        (expectation(FX, 1.0, at=1.03), "t = 1.03 s is not an instant of the output; the nearest is 1 s"),
+        (expectation(FX, 1.0, at=1.03), "t = 1.03 s is not an output time; the nearest is 1 s"),
         (expectation(FX, 1.0), "one number expected, a list of 21 found"),
         (expectation("joints.pivot.force", 1.0, at=1.0), "one number expected, a list of 3 found"),
         (expectation("joints.pivt.force", 1.0, at=1.0), "joints has no 'pivt'"),
@@ -99,7 +99,7 @@ SERIES = tuple((3.0 * np.sin(2.0 * STUDY.times)).tolist())
 def test_beyond_the_horizon_nothing_holds_by_luck(item: Any) -> None:
     """The number is there, and in the JSON, and is not what can be relied on."""
     case = compare(LOST, item)
-    assert case.failure == "from t = 1.25 s on nothing is claimed"
+    assert case.failure == "not reliable from t = 1.25 s on"
     assert case.found_values is None
 
 
@@ -150,14 +150,14 @@ def test_what_stays_within_bounds(item: Any) -> None:
     ("item", "why"),
     [
         (expectation(FX, None, below=2.99), "the largest, 3 at t = 0.785398 s, is not below 2.99"),
-        (expectation(FX, None, above=-2.2), "the least, -2.27040749 at t = 2 s, is not above -2.2"),
+        (expectation(FX, None, above=-2.2), "the smallest, -2.27040749 at t = 2 s, is not above -2.2"),
         (expectation(FX, None, below=5.0, above=-2.2), "is not above -2.2"),
         (expectation(FX, None, below=2.7, at=1.0), "2.72789228 at t = 1 s, is not below 2.7"),
         (expectation(FX, None, below=2.9, peak="abs"), "the largest magnitude, 3 at t = 0.785398 s, is not below 2.9"),
         (expectation("joints.pivot.force", None, below=10.0), "the largest, 10.81 at t = 0 s, is not below 10"),
         (expectation("sections.along.M2", None, below=2.3), "at t = 0.785398 s, s = 0.8 m, is not below 2.3"),
         (expectation("model.freedoms", None, below=4.0), "the largest, 4, is not below 4"),
-        (expectation("model.freedoms", None, above=4.0), "the least, 4, is not above 4"),
+        (expectation("model.freedoms", None, above=4.0), "the smallest, 4, is not above 4"),
     ],
 )
 def test_what_leaves_its_bounds_says_how_far_when_and_where(item: Any, why: str) -> None:
@@ -168,7 +168,7 @@ def test_what_leaves_its_bounds_says_how_far_when_and_where(item: Any, why: str)
 
 def test_no_bound_is_met_by_nothing() -> None:
     study = FakeStudy(STUDY.times, {"accuracy": {**ACCURATE, "unknown": []}})
-    assert compare(study, expectation("accuracy.unknown", None, below=1.0)).failure == "there is none"
+    assert compare(study, expectation("accuracy.unknown", None, below=1.0)).failure == "there is no value"
 
 
 def test_no_bound_is_met_by_what_is_open_or_beyond_the_horizon() -> None:
@@ -178,7 +178,7 @@ def test_no_bound_is_met_by_what_is_open_or_beyond_the_horizon() -> None:
     assert compare(study, expectation("joints.pivot.force.z", None, below=1e9)).failure == "open at t = 0 s"
     assert compare(study, expectation("joints.pivot.force.x", None, below=1e9)).is_met
     lost = compare(LOST, expectation(FX, None, below=1e9))
-    assert (lost.failure, lost.found_values) == ("from t = 1.25 s on nothing is claimed", None)
+    assert (lost.failure, lost.found_values) == ("not reliable from t = 1.25 s on", None)
     assert compare(LOST, expectation(FX, None, below=3.0, at=1.0)).is_met
 
 
@@ -200,7 +200,7 @@ expect:
 
 
 @pytest.mark.parametrize(
-    ("at", "failure"), [(0.3, None), (0.25, "off by"), (0.4, "not an instant of the output; the nearest is 0.3 s")]
+    ("at", "failure"), [(0.3, None), (0.25, "off by"), (0.4, "not an output time; the nearest is 0.3 s")]
 )
 def test_where_a_run_ends_is_known_after_it(at: float, failure: str | None) -> None:
     """The instant at which a condition ends it is one of the output: what is expected there is compared."""

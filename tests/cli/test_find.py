@@ -76,7 +76,7 @@ def test_open_values_are_told_with_their_word(heun: Heun) -> None:
     text = TWO_BARS.replace("space: planar\n", "")  # pins in space hold each other: what is across the plane is open
     text = text.replace("inertia: 1", "inertia: [1, 1, 1]").replace("type: pin,", "type: pin, axis: [0, 0, 1],")
     done = heun("find", "-", "b=0.6:1.4", "joints.C.force.z = 1 N", text=text)
-    assert done.returncode == 3 and "redundant supports" in done.stderr and "[open]" in done.stderr
+    assert done.returncode == 3 and "statically indeterminate" in done.stderr and "[open]" in done.stderr
 
 
 def test_a_spent_budget_is_told(heun: Heun) -> None:
@@ -100,7 +100,7 @@ def test_the_value_may_be_an_expression(heun: Heun) -> None:
     told = json.loads(heun("find", "-", "a=5:95deg", f"{TENSION} = 2*m*g", "--format", "json", text=PENDULUM).stdout)
     assert told["value"] == 2.0 * 2.0 * 9.81
     done = heun("find", "-", "m=1:5kg", f"{TENSION} = 2*m*g", text=PENDULUM)
-    assert done.returncode == 2 and "hangs on what is varied" in done.stderr
+    assert done.returncode == 2 and "depends on what is varied" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -108,8 +108,8 @@ def test_the_value_may_be_an_expression(heun: Heun) -> None:
     [
         ("a=5:95deg", f"{TENSION} = 30 mm", "dimension", "a length, expected a force"),
         ("a=5:95deg", f"{TENSION}", "bad-option", "expected MEASURE"),
-        ("a=5:95deg", f"{TENSION} =", "bad-option", "a value behind the '='"),
-        ("a=5:95deg", "= 3 N", "bad-option", "a measure before the '='"),
+        ("a=5:95deg", f"{TENSION} =", "bad-option", "no value after the '='"),
+        ("a=5:95deg", "= 3 N", "bad-option", "no measure before the '='"),
         ("a=5:95deg", "max joints.pivt.force = 3 N", "unknown-path", "did you mean"),
         ("a=5:5deg", f"{TENSION} = 30 N", "bad-option", "both ends are the same"),
         ("a=5deg", f"{TENSION} = 30 N", "bad-option", "an interval"),

@@ -33,7 +33,7 @@ def test_a_page_with_the_verdict_at_the_top(heun: Heun, folder: Path) -> None:
     done = heun("probe", "free.yaml", "-o", "free.txt")
     text = (folder / "free.txt").read_text()
     assert done.returncode == 0 and not done.stdout
-    assert "verdict  nothing in this motion troubles heun's default method" in text
+    assert "verdict  no difficulties for heun's default method in this motion" in text
     for heading in ("GROWTH", "STEPS", "CONDITION", "ATTITUDES", "INSTANTS"):
         assert f"\n{heading}" in text
     assert max(map(len, text.splitlines())) <= 120

@@ -36,8 +36,8 @@ def test_what_would_not_fit_is_refused_with_what_would(
     (folder / "many.yaml").write_text(many)
     done = heun(*words.split(), "many.yaml")
     assert (done.returncode, done.stdout) == (4, "")
-    assert "the results at 100,001 instants would take about" in done.stderr and f"{told} may be taken" in done.stderr
-    fit = re.search(r"hint: ([\d,]+) instants would fit", done.stderr)
+    assert "the results at 100,001 output times need about" in done.stderr and f"{told} is allowed" in done.stderr
+    fit = re.search(r"hint: ([\d,]+) samples would fit", done.stderr)
     assert fit is not None
     samples = int(fit[1].replace(",", ""))
     assert 100 < samples < 20_000
@@ -57,8 +57,8 @@ def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monke
     monkeypatch.setattr(available_memory, "_left", lambda: iter([8e6]))
     done = heun("run", "dense.yaml")
     assert (done.returncode, done.stdout) == (4, "")
-    assert "loads and drives jump or bend at 10,000 instants" in done.stderr and "[too-much-memory]" in done.stderr
-    assert "hint: a shorter duration, or tables of fewer points" in done.stderr
+    assert "loads and drives have 10,000 jumps or kinks" in done.stderr and "[too-much-memory]" in done.stderr
+    assert "hint: a shorter duration, or tables with fewer points" in done.stderr
     monkeypatch.setattr(available_memory, "_left", lambda: iter([8e8]))
     assert heun("run", "dense.yaml", "--quiet").returncode == 0
 

@@ -69,7 +69,7 @@ def test_csv(heun: Heun, folder: Path) -> None:
 def test_refused_derivatives_fail_under_strict(heun: Heun) -> None:
     words = ("sensitivity", "-", "at_once", "--measure", "joints.root.force.z")
     done = heun(*words, text=CANTILEVER)
-    assert done.returncode == 0 and "[not-smooth]" in done.stdout and "jumps" in done.stdout
+    assert done.returncode == 0 and "[not-smooth]" in done.stdout and "jump of" in done.stdout
     assert heun(*words, "--strict", text=CANTILEVER).returncode == 1
     assert heun("explain", "not-smooth").returncode == heun("explain", "no-error").returncode == 0
 
@@ -92,7 +92,7 @@ def test_a_scene_that_cannot_be_solved_is_its_own_error(heun: Heun) -> None:
     [
         ((), "bad-option", "nothing is measured"),
         (("mm", "--measure", TENSION), "bad-option", "no number there"),
-        (("joints.pivot.type", "--measure", TENSION), "bad-option", "this is no number"),
+        (("joints.pivot.type", "--measure", TENSION), "bad-option", "not a number"),
         (("m=3", "--measure", TENSION), "bad-option", "expected a parameter"),
         (("--measure", "max joints.pivt.force"), "unknown-path", "did you mean"),
         (("--measure", TENSION, "--spread", "L=0.1"), "bad-option", "L is given in mm"),

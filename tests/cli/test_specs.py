@@ -35,8 +35,8 @@ NAMES = [
 ]
 WARNED = {
     "flat_four_bar": [
-        "passes through a singular pose",
-        "extremes are searched without what rounding reaches beside singular poses",
+        "singular position",
+        "extremes leave out the numerically uncertain interval around the singular positions",
     ],
     "cradle": ["in the impact"],
 }

@@ -73,8 +73,8 @@ REFUSED = {
     "m=3 --jobs 0": "--jobs 0: expected 1 or more [bad-option]",
     "m=3 --variants no.csv": "no.csv:1:1: there is no such file [unreadable]",
     "": "sweep: nothing is varied [bad-option]",
-    "m=1:3": "m=1:3: an interval needs a count of its values [bad-option]",
-    "m=1,2 L=1,2,3 --zip": "--zip: the axes have not the same count of values: m 2, L 3 [bad-option]",
+    "m=1:3": "m=1:3: an interval needs its number of values [bad-option]",
+    "m=1,2 L=1,2,3 --zip": "--zip: the axes have different numbers of values: m 2, L 3 [bad-option]",
     "m=3 --show scene.yaml": "--show with scene.yaml m=3 [bad-option]",
 }
 

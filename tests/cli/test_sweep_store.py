@@ -176,16 +176,16 @@ def foreign(folder: Path, kind: str) -> str:
     path = folder / "s.sqlite"
     if kind == "text":
         path.write_text("heun: 1\n" * 1000)
-        return "s.sqlite: this is no store of sweeps [not-a-store]"
+        return "s.sqlite: not a store of sweeps [not-a-store]"
     with closing(sqlite3.connect(path)) as connection:
         if kind == "another program":
             connection.execute("CREATE TABLE notes (text)")
-            said = "s.sqlite: this is no store of sweeps: it is a database of another program [not-a-store]"
+            said = "s.sqlite: not a store of sweeps: it is a database of another program [not-a-store]"
         elif kind == "another form":
             connection.execute(f"PRAGMA application_id = {0x6865756E}")
             connection.execute("PRAGMA user_version = 99")
             connection.execute("CREATE TABLE heun (version)")
-            said = "s.sqlite: a store in form 99, of another version of heun; this one has form 1 [not-a-store]"
+            said = "s.sqlite: store format 99, of another version of heun; this version uses format 1 [not-a-store]"
         connection.commit()
     return said
 
@@ -209,8 +209,8 @@ def test_a_store_of_another_version_is_shown_and_not_written(heun: Heun, folder:
         connection.commit()
     done = heun(*MASSES, *STORED)
     assert done.returncode == 2
-    assert done.stderr.startswith("heun: s.sqlite: this store is of heun 0.0.1, this is heun ")
-    assert "hint: name another file; heun sweep --show s.sqlite prints what is in it" in done.stderr
+    assert done.stderr.startswith("heun: s.sqlite: written by heun 0.0.1, this is heun ")
+    assert "hint: give another file; heun sweep --show s.sqlite prints its contents" in done.stderr
     assert heun("sweep", "--show", "s.sqlite", "--format", "csv") == first
 
 
@@ -261,7 +261,7 @@ def test_a_full_disk_is_5_and_what_is_done_is_kept(heun: Heun, folder: Path) -> 
 def test_without_a_store_the_folder_of_temporary_files_may_be_full() -> None:
     with Store(None) as store:
         store.connection.execute("PRAGMA max_page_count = 30")
-        with pytest.raises(OutputError, match="the folder of temporary files: the disk is full") as error:
+        with pytest.raises(OutputError, match="the temporary folder: the disk is full") as error:
             for number in range(10_000):
                 store.add_result(1, number, number.to_bytes(32, "big"), ("1.0",), VariantResult((MeasureValue(1.0),)))
         assert error.value.exit_code == 5

@@ -221,7 +221,7 @@ def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
         (["hanging.yaml", "m=1:2mm", *WEIGHT], "[wrong-dimension]"),
         (["hanging.yaml", "m=1:2kg", "--minimise", "joints.pivot.force.q"], "[unknown-path]"),
         (["hanging.yaml", "m=1:2kg", "--minimise", "largest joints.pivot.force.z"], "expected [max | min"),
-        (["swinging.yaml", "m=1:2kg", *WEIGHT], "say max, min"),
+        (["swinging.yaml", "m=1:2kg", *WEIGHT], "use max, min"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z = 3"], "has < or >"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z < 3 mm"], "'3 mm' is a length"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z"], "expected MEASURE"),

@@ -53,7 +53,7 @@ def test_work_that_does_not_come_back_is_evened_out_and_told() -> None:
     plain = wheel(SHAFT.replace("LAW", TORQUE), rate=20.0, flywheel=FlywheelRequest("", 0.01))
     assert told.flywheel is not None and told.flywheel.even == pytest.approx(-300.0, rel=1e-9)
     assert told.flywheel.added == pytest.approx(plain.added, rel=1e-9)
-    assert "an even torque of -300 N·m on shaft" in " ".join(told.notes)
+    assert "a constant torque of -300 N·m on shaft" in " ".join(told.notes)
 
 
 def test_orders_of_the_loads() -> None:
@@ -71,7 +71,7 @@ def test_orders_of_the_loads() -> None:
 def test_what_runs_evenly_needs_no_wheel() -> None:
     told = balance_of(SHAFT.replace("LAW", TORQUE), rate=2000.0, flywheel=FlywheelRequest("", 0.01))
     assert told.flywheel is not None and told.flywheel.added == 0.0 and told.flywheel.present < 0.01
-    assert "no flywheel is needed" in " ".join(told.notes)
+    assert "no flywheel needed" in " ".join(told.notes)
 
 
 def test_the_engine_runs_as_a_run_has_it() -> None:
@@ -181,4 +181,4 @@ def test_what_a_counterweight_costs_under_a_load_in_time(law: str, back: bool) -
     """The loads of joints are those of one cycle: of another law in time the next one has others."""
     scene = GEARED.replace("LOAD", f'{{type: torque, joint: sb, value: "{law}"}}')
     told = balance_of(scene, weights=(WeightRequest("a", "o", 0.03),))
-    assert any(note.startswith("forces.tool does not repeat after a turn") for note in told.notes) != back
+    assert any(note.startswith("forces.tool does not repeat after one revolution") for note in told.notes) != back

@@ -134,7 +134,7 @@ def test_v_twin_on_one_throw_turns_with_the_shaft() -> None:
     assert first is not None and second is not None
     assert first.with_turn == pytest.approx(4386.490844928604, rel=DIGITS) and first.against_turn == 0.0
     assert second.amplitude[0] == 0.0 and second.amplitude[1] == pytest.approx(1575.827798727024, rel=DIGITS)
-    assert "with the turn" in found.summaries["force"]
+    assert "rotating with the shaft" in found.summaries["force"]
 
 
 def test_schlicks_engine_is_left_with_little() -> None:
@@ -187,7 +187,7 @@ def test_what_stands_still_in_the_disc_turns_with_it_whichever_way_it_turns(axis
     assert (
         row is not None and row.with_turn == pytest.approx(2.0 * 0.01 * 100.0**2, rel=1e-12) and row.against_turn == 0.0
     )
-    assert found.summaries["force"] == "order 1 alone remains, with the turn"
+    assert found.summaries["force"] == "only order 1 remains, rotating with the shaft"
 
 
 @pytest.mark.parametrize("rate", [100.0, -100.0])

@@ -89,7 +89,7 @@ def test_a_slider_crank_by_time_and_by_angle() -> None:
 
 
 def test_what_strikes_has_no_orders() -> None:
-    with pytest.raises(SolveError, match=r"something strikes at t = 7\.9 s"):
+    with pytest.raises(SolveError, match=r"impulse or impact at t = 7\.9 s"):
         of(
             SHAFTS.format(duration=8).replace(
                 "analysis:", "impulses: {hit: {on: m.c, vector: [1, 0, 0], time: 7.9}}\nanalysis:"

@@ -283,7 +283,7 @@ def test_the_cycle_of_a_cam_that_presses() -> None:
 
     text = eccentric(lift(flat, 72), "flat, normal: [0, 1, 0]", more="two_sided: false")
     pressed, guided = (balance(read(t)) for t in (text, text.replace("two_sided: false", "two_sided: true")))
-    assert any("the follower of cam cam is taken to stay" in note for note in pressed.notes)
+    assert any("the follower of cam cam is assumed to stay" in note for note in pressed.notes)
     assert not guided.notes
     for kind, rows in guided.orders.items():
         near([row.amplitude for row in pressed.orders[kind]], [row.amplitude for row in rows], 1.0, 1e-12)
@@ -291,5 +291,5 @@ def test_the_cycle_of_a_cam_that_presses() -> None:
     near(first.amplitude, [0.0, 0.5 * E * 400.0, 0.0], 2.0, 1e-6)
     with pytest.raises(SolveError, match=r"couplings\.cam may open and close"):
         balance(read(text.replace("two_sided: false", "restitution: 0.5")))
-    with pytest.raises(SolveError, match=r"it ends at 40°: .* rotates past its lift curve"):
+    with pytest.raises(SolveError, match=r"it stops at 40°: .* rotates past its lift curve"):
         balance(read(part_of_a_turn("angle: 20*t")))

@@ -165,7 +165,7 @@ analysis: {duration: 20, samples: 401}
     assert (
         0.4 * reference.horizon < reference.last_time < reference.horizon and (reference.error["motion"] or 1) <= 1e-8
     )
-    assert "nobody can compare" in reference.notes[0]
+    assert "allows no comparison" in reference.notes[0]
     coarse, fine = (run.error["motion"] or 0.0 for run in found.runs)
     assert coarse > 1e-3 > fine
 
@@ -192,7 +192,7 @@ def test_what_a_coarser_tolerance_did_not_finish_is_not_run_at_a_finer_one() -> 
     charting.limit = -1.0
     first, second = (charting.one(ChartRow("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
     assert isinstance(first, ChartRun) and first.code == "unfinished"
-    assert isinstance(second, ChartRun) and second.code == "too-long" and "0.0001 was not finished" in second.reason
+    assert isinstance(second, ChartRun) and second.code == "too-long" and "0.0001 did not finish" in second.reason
 
 
 def test_a_run_may_take_its_time_where_the_machine_does_other_work(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -193,7 +193,7 @@ def test_true_at_the_start_ends_nothing() -> None:
     found = study.changes["until"]
     assert found.begins
     met(found, np.array([quarter, 3 * quarter]), up=False)
-    assert study.results.status["message"].endswith("it is true at the start, which ends nothing")
+    assert study.results.status["message"].endswith("it is true at the start, which does not count")
 
 
 def test_nothing_is_made_of_noise() -> None:

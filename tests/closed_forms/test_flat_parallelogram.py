@@ -39,7 +39,7 @@ def test_rates_of_a_branch_pass(rates: tuple[float, float]) -> None:
     found, wanted = solved(scene), solve(scene, start_state(scene))
     assert (wanted.rows, wanted.rank, wanted.residual < 1e-14) == (20, 16, True)
     assert (found.model["freedoms"], found.model["redundant"]) == (1, 3)  # as in any other pose
-    assert "the start is a singular pose: 1 condition depends on the others just there" in found.model["notes"]
+    assert "the start is a singular position: 1 constraint is redundant only there" in found.model["notes"]
     assert any("singular position at t = 0" in w for w in found.warnings)
     for name, body in found.bodies.items():
         near(body["center_acceleration"][0], wanted.acceleration[name], 10.0, 1e-13)

@@ -121,7 +121,7 @@ analysis: {duration: 2, samples: 5}
     for method in METHODS:
         found = solved(pin, method=method)
         assert np.array_equal(found.bodies["bar"]["rotation"], wanted)
-        assert any("so this is DOP853" in reason for reason in found.model["reasons"])
+        assert any("so this equals DOP853" in reason for reason in found.model["reasons"])
 
 
 # no luck

@@ -39,7 +39,7 @@ def test_dependent_to_typed_digits(off: float) -> None:
 @pytest.mark.parametrize("analysis", ["", "analysis: {duration: 0.1, samples: 3}"])
 def test_what_cannot_be_held_is_refused(off: float, analysis: str) -> None:
     """A couple turns the disc out of the pose that is taken as singular, where the rods do not let it."""
-    with pytest.raises(SolveError, match="no finite force holds it"):
+    with pytest.raises(SolveError, match="no finite force resists it"):
         solved(three_rods(off, analysis=analysis))
 
 
@@ -80,4 +80,4 @@ def test_hinges_apart_do_not_turn(apart: float) -> None:
 
 def test_a_scene_everywhere_near_to_a_singular_pose_passes_through_none() -> None:
     found = solved(three_rods(1e-7, analysis="analysis: {duration: 0.1, samples: 3}"))
-    assert not any(w.startswith("passes through a singular pose") for w in found.warnings)
+    assert not any("two motions are possible" in w for w in found.warnings)

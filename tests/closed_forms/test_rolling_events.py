@@ -91,7 +91,7 @@ def test_at_one_instant_a_warning_says_so() -> None:
     """A state has no events."""
     r = solved(CART.replace('"30*t"', "15").replace("analysis: {duration: 1, samples: 3}", "analysis: {type: state}"))
     assert [w for w in r.warnings if "rear_tyre would have to be pulled" in w]
-    assert [w for w in r.warnings if "front_tyre would take more friction" in w]
+    assert [w for w in r.warnings if "front_tyre would need more friction" in w]
 
 
 def test_a_blow_through_the_wheels() -> None:
@@ -101,7 +101,7 @@ def test_a_blow_through_the_wheels() -> None:
     r = solved(blow + "impulses: {kick: {on: frame.r, vector: [-26, 0, 0]}}\n")
     jump = r.impulses[0]["bodies"]["frame"]["center_velocity_jump"]
     near(jump, [-26 / 13, 0, 0], 1.0)
-    assert any("in the blow" in w and "lifts" in w for w in r.warnings)
+    assert any("in the impulse" in w and "lifts" in w for w in r.warnings)
 
 
 DISC = """

@@ -24,7 +24,7 @@ def refused(text: str) -> None:
         solved(text)
     (problem,) = refusal.value.problems
     assert problem.code == "singular-pose"
-    assert "no finite force holds it" in problem.message and problem.message.startswith("at t = 0 s")
+    assert "no finite force resists it" in problem.message and problem.message.startswith("at t = 0 s")
     assert problem.hint is not None and "sag" in problem.hint
 
 

@@ -132,7 +132,7 @@ def test_what_is_held_twice_cannot_press() -> None:
 def test_a_blow_goes_through_it_as_if_nothing_rubbed() -> None:
     scene = jack(0.3) | {"analysis": {"type": "impulse"}}
     scene["impulses"] = {"blow": {"on": "nut.o", "vector": [0, 0, 2]}}
-    with pytest.warns(heuncli.HeunWarning, match="through the thread thread as if nothing rubbed"):
+    with pytest.warns(heuncli.HeunWarning, match="passes the thread thread without friction"):
         blow = heuncli.solve(text=to_yaml(scene))
     p = LEAD / math.tau
     near(float(blow["impulses.0.couplings.thread.force"]), -2 * 0.05 / (0.05 + 100 * p * p), 2.0, ROUNDING)

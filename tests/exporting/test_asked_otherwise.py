@@ -48,7 +48,7 @@ def test_the_joints_are_told_whatever_was_asked_for(only: str) -> None:
 
 def test_a_body_that_was_left_out() -> None:
     study = heuncli.solve(SCENE | {"analysis": MOTION}, only="joints.elbow")
-    with pytest.raises(heuncli.UsageError, match="other: nothing that this run was asked for depends on it"):
+    with pytest.raises(heuncli.UsageError, match="other: left out, because no requested result depends on it"):
         study.load_cases("other", "first")
 
 

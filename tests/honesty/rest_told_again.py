@@ -31,9 +31,9 @@ from tests.shared.scenes import study
 FACTOR = 2.0  # of what is stated: an estimate, no bound
 APART = 1e-5  # of the size: farther apart are two poses
 PRINTED = 1e-3  # of a number in a sentence, which has four digits
-LEAST = re.compile(r"least eigenvalue of stiffness over inertia is (\S+) 1/s²")
-GROWS = re.compile(r"leaves it by exp\((\S+) t\)")
-SWINGS = re.compile(r"oscillation has (\S+) Hz")
+LEAST = re.compile(r"smallest eigenvalue of stiffness over inertia (\S+) 1/s²")
+GROWS = re.compile(r"departs as exp\((\S+) t\)")
+SWINGS = re.compile(r"oscillation (\S+) Hz")
 RATES = {
     "velocity",
     "acceleration",
@@ -59,7 +59,7 @@ class Finding(NamedTuple):
 
 def verdicts(run: Study) -> list[str]:
     """What a rest pose is, in the first words of what is told of it."""
-    told = (sentence.partition(":")[0].partition(" but")[0] for sentence in run.results.model["rest"])
+    told = (sentence.partition(":")[0].partition(" except")[0] for sentence in run.results.model["rest"])
     return [words for words in told if not words.startswith("at rest in")]
 
 

@@ -36,14 +36,14 @@ def test_a_start_from_rest_says_that_friction_is_nothing_there(heun: Heun, folde
     (folder / "s.yaml").write_text(SLEDGE.replace("FORCE", size).replace("BEGIN", "0"))
     done = heun("run", "s.yaml", "--measure", MEASURE)
     assert float(done.stdout) == pytest.approx(4.175, rel=1e-12)
-    assert "smoothed friction rub is at 0 % of its value" in done.stderr
+    assert "smoothed friction rub is at 0 % of its full value" in done.stderr
     told = json.loads(heun("run", "s.yaml", "--measure", MEASURE, "--format", "json").stdout)
     assert "rub" in told["notes"][0]
     table = heun("run", "s.yaml", "--only", "motion").stdout
     assert re.search(r"4\.1750*†", table)
-    assert "† smoothed friction (rub) is not at its value there" in table
+    assert "† smoothed friction (rub) is below full value there" in table
     result = json.loads(heun("run", "s.yaml", "--format", "json").stdout)
-    assert any("at 1 of 11 instants" in note for note in result["model"]["notes"])
+    assert any("at 1 of 11 samples" in note for note in result["model"]["notes"])
     report = heun("report", "s.yaml", "--format", "md", "-o", "-").stdout
     assert "† smoothed friction (rub)" in report
     drawn = heun("plot", "s.yaml", "coordinates.guide.acceleration").stdout

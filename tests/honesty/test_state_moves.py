@@ -35,7 +35,7 @@ def line(results: Results) -> str:
 def test_a_forgotten_jack() -> None:
     """Without its jack the deck falls: by g m c²/(I + m c²) at its centre, at once and in the heading; with it, not."""
     forgotten = found(LIFT)
-    hint = "not at rest; analysis: {type: rest} looks for the pose at rest"
+    hint = "not at rest; analysis: {type: rest} finds the rest position"
     assert forgotten.model["moves"] == [f"deck {G * 100 / 120:.3g} m/s²: {hint}"]
     assert "deck 8.18 m/s²: not at rest" in line(forgotten)
     assert line(found(LIFT + JACK)) == ""

@@ -85,6 +85,6 @@ def scaled(weight: CounterweightResult, factor: float) -> CounterweightResult:
 
 
 def test_a_weight_that_hangs_on_its_radius_asks_for_it() -> None:
-    with pytest.raises(SolveError, match="hangs on its radius") as error:
+    with pytest.raises(SolveError, match="depends on its radius") as error:
         balance_of(linkage(0), weights=(WeightRequest("coupler", "B", None),))
     assert error.value.problems[0].code == "radius-needed"

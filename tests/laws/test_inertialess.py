@@ -154,7 +154,7 @@ def test_bead_on_a_wire(plane: str) -> None:
     near(found.bodies["bead"]["center"][1], [-0.06 * G, -0.08 * G, 0], 1.0, 1e-11)
     near(found.joints["wire"]["force"], 2 * 0.6 * G * np.array([[-0.8, 0.6, 0]] * 2), G, 1e-14)
     which = "the spin about its own axis" if plane else "its spin"
-    assert f"bead: {which} is undetermined and harmless; taken as zero" in found.model["reasons"]
+    assert f"bead: {which} is undetermined but harmless; set to zero" in found.model["reasons"]
     assert found.model["freedoms"] == 1
 
 

@@ -372,7 +372,7 @@ sections: {{run: {{body: bar, from: a, to: b, count: 3}}}}
     near(found["M2"][0], [-29.43, -29.43 / 4, 0.0], 29.43, 1e-12)
     near(found["Q1"][0], [-29.43, -29.43 / 2, 0.0], 29.43, 1e-12)
     (heading,) = (info.first_axis for info in make_labels(load("bar.yaml", bar)).sections.values())
-    assert heading.startswith("body y") and ("nearest to body x" in heading) == (abs(slope) > 1e-9)
+    assert heading.startswith("body y") and ("closest to body x" in heading) == (abs(slope) > 1e-9)
 
 
 def test_a_run_says_where_it_is() -> None:

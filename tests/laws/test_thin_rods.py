@@ -1,4 +1,4 @@
-"""Rods without axial inertia on balls: the spin is undetermined and harmless, a moment is refused.
+"""Rods without axial inertia on balls: the spin is undetermined but harmless, a moment is refused.
 
 manual/theory.md, "Thin rods".
 """
@@ -89,7 +89,7 @@ def test_spin_is_harmless(seed: int) -> None:
         near(np.sum(along * spun.bodies[name]["angular_velocity"], axis=1), 0.0, max(1.0, rate))
     for name, joint in still.joints.items():
         near(spun.joints[name]["force"], joint["force"], F)
-    assert any("spin about its own axis is undetermined and harmless" in r for r in still.model["reasons"])
+    assert any("spin about its own axis is undetermined but harmless" in r for r in still.model["reasons"])
 
 
 ROD = """

@@ -199,7 +199,7 @@ WRONG = {
     "one.csv": ("\n".join(CSV.format(e=0).splitlines()[:2]) + "\n", "a single variant gives no curve"),
     "bare.csv": ("number,m,code,reason\n0,1,,\n", "it has no measures"),
     "empty.sqlite": ("", "it is empty"),
-    "text.sqlite": ("heun: 1\n" * 200, "this is no store of sweeps"),
+    "text.sqlite": ("heun: 1\n" * 200, "not a store of sweeps"),
     "huge.csv": (CSV.format(e=0) + "3,4,1e308,0,0,,\n", "is 1e+308"),
     "text.csv": ("\0\0\0", "this is no CSV of a sweep"),
 }

@@ -85,7 +85,7 @@ def test_how_many_digits_were_printed(text: str, last: float, digits: int) -> No
 
 @pytest.mark.parametrize("text", ["one", "0x10", "", ".", "1e", "1,5", "nan"])
 def test_what_is_no_printed_number(text: str) -> None:
-    with pytest.raises(ValueError, match="no decimal number"):
+    with pytest.raises(ValueError, match="not a decimal number"):
         parse_decimal(text)
 
 

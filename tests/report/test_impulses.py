@@ -130,7 +130,7 @@ def test_a_blow_is_told_in_one_table_without_what_it_does_not_load() -> None:
         numbers = [float(cell) if cell[-1].isdigit() else cell for cell in told[line][: len(cells)]]
         assert numbers == cells
     assert not any("idle" in name or "Δω" in name or "radial" in name for name in told)
-    assert "what is 0 throughout is left out" in whole
+    assert "Rows that are zero at all times are not shown." in whole
 
 
 def test_a_blow_that_loads_nothing_says_so() -> None:
@@ -226,8 +226,8 @@ def test_what_is_open_measures_open() -> None:
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    ("first impulses.0.energy_jump", "one instant, that of the blow"),
-    ("at 0.5 impulses.0.energy_jump", "one instant, that of the blow"),
+    ("first impulses.0.energy_jump", "one instant, that of the impulse"),
+    ("at 0.5 impulses.0.energy_jump", "one instant, that of the impulse"),
     ("impulses.0.sections.along.N", "is 3 numbers"),
 ])  # fmt: skip
 def test_measures_that_are_no_number(words: str, message: str) -> None:

@@ -34,8 +34,9 @@ def test_without_any_stresses_alone_are_not_in_si() -> None:
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    ("kN,N", "kN and N stand for the same: a force"), ("J,kJ", "same: an energy"), ("deg,mrad", "same: an angle"),
-    ("kg", "tables show no mass"), ("ms", "instants stay in s"), ("kN/m", "tables show no stiffness"),
+    ("kN,N", "kN and N are units of the same quantity: a force"),
+    ("J,kJ", "same quantity: an energy"), ("deg,mrad", "same quantity: an angle"),
+    ("kg", "tables show no mass"), ("ms", "times stay in s"), ("kN/m", "tables show no stiffness"),
     ("", "expected units"), ("kN;mm", "is not a unit"), ("Newton", "is not a unit"), ("m^4", "tables show no second"),
 ])  # fmt: skip
 def test_what_is_refused(words: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ from heuncli.analyses.work_precision.results import (
 )  # fmt: skip
 
 OWN = {"motion": 1e-13, "reactions": 2e-13, "sections": None}
-REFERENCE = Reference("A at 3e-14 and B at 3e-14 agree: motion to 1e-13 of the scene's size", OWN, 2.0, 201)
+REFERENCE = Reference("A at 3e-14 and B at 3e-14 agree: motion to 1e-13 of the model size", OWN, 2.0, 201)
 
 
 def run(method: str, seconds: float, error: float, evaluations: int = 100, local: float = 1e-6) -> ChartRun:

@@ -190,7 +190,7 @@ def scales_of(study: Study, largest: Mapping[str, float]) -> dict[str, float]:
     }
 
 
-OF_THE_RUN = ("the tolerance 0 was not reached", "of 0 steps it could not be decided")
+OF_THE_RUN = ("tolerance 0 not reached", "in 0 steps the loads could not be checked")
 ANGULAR = ("rotation", "angular_velocity", "angular_acceleration")
 # the estimates that speak for the values of a block; of what is missing here the worst of all
 ESTIMATED = {

@@ -43,7 +43,7 @@ def test_read(text: str, condition: MeasureCondition) -> None:
         ("1 < x.y < 3", "expected MEASURE"),
         ("x.y <> 3", "expected MEASURE"),
         ("x.y < ", "expected MEASURE"),
-        ("3 kN > x.y", "the measure stands first"),
+        ("3 kN > x.y", "put the measure first"),
     ],
 )
 def test_refused(text: str, said: str) -> None:
@@ -81,5 +81,5 @@ def test_a_unit_that_does_not_fit(text: str, unit: str, said: str) -> None:
 def test_a_value_that_hangs_on_what_is_varied() -> None:
     other = SCENE._replace(parameters={"F": 8.0})
     assert find_si_value(read("x < 2"), "N", [SCENE, other], HINT) == 2.0
-    with pytest.raises(AxisError, match="hangs on what is varied"):
+    with pytest.raises(AxisError, match="depends on what is varied"):
         find_si_value(read("x < 2*F"), "N", [SCENE, other], HINT)

@@ -13,7 +13,7 @@ UNITS_PER_RATE = {
     "torque": "kg·m²",
     "load": "N·m",
 }  # at 1 rad/s, if no rate is known
-UNIT_RATE_TEXT = "at 1 rad/s: by the square of the rate, in kg·m"
+UNIT_RATE_TEXT = "at 1 rad/s (loads grow with its square; in kg·m)"
 RPM = 30.0 / math.pi
 
 
@@ -21,11 +21,9 @@ def format_cycle(results: BalanceResults) -> str:
     """Describe the cycle in words."""
     if results.period is not None:
         period = results.period
-        difference = f"the period before differs by {period.relative_difference:.1g} of the mean"
-        return (
-            f"the last {period.seconds:.6g} s of the motion, {results.samples} instants; order k is k/T; {difference}"
-        )
-    turns = "one turn" if results.turns == 1 else "two turns"
+        difference = f"the previous period differs by {period.relative_difference:.1g} of the mean"
+        return f"the last {period.seconds:.6g} s of the motion, {results.samples} samples; order k is k/T; {difference}"
+    turns = "one revolution" if results.turns == 1 else "two revolutions"
     rate = f"at {results.rate:.6g} rad/s ({results.rate * RPM:.6g} rpm)" if results.rate is not None else UNIT_RATE_TEXT
     return f"{turns} of {results.coordinate} {rate}, {results.samples} angles"
 

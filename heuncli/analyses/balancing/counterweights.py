@@ -88,8 +88,8 @@ def require_radii(candidates: Sequence[Candidate]) -> None:
     missing = [one.weight_place.name for one in candidates if one.weight_place.radius is None]
     if missing:
         raise SolveError(*(
-            Problem("radius-needed", f"{name}: what a weight does there hangs on its radius, too",
-                    hint=f"say how far out it stands: --counterweight {name}:radius=50mm")
+            Problem("radius-needed", f"{name}: the effect of a weight there also depends on its radius",
+                    hint=f"give its radius: --counterweight {name}:radius=50mm")
             for name in missing
         ))  # fmt: skip
 
@@ -143,11 +143,13 @@ def find_rotation_axis(cycle: Cycle, weight_place: WeightPlace) -> Array:
     _, sizes, directions = np.linalg.svd(own, full_matrices=False)
     name = cycle.mechanism.bodies[weight_place.body].name
     if sizes[0] <= tolerances.SAME_VALUE * math.sqrt(len(own)):
-        message = f"bodies.{name} does not turn: a weight on it adds to what moves to and fro, and takes nothing away"
+        message = f"bodies.{name} does not rotate: a weight on it only adds to the reciprocating mass"
         raise SolveError(Problem("no-counterweight", message, hint="name a point of a crank or a coupler"))
     if sizes[1] > tolerances.PARALLEL * sizes[0]:
-        message = f"bodies.{name} turns about no one axis of its own: across what its weight should stand is not known"
-        raise SolveError(Problem("no-counterweight", message, hint="name a point of a body that turns about one axis"))
+        message = f"bodies.{name} does not rotate about one body-fixed axis: the plane of its weight is undefined"
+        raise SolveError(
+            Problem("no-counterweight", message, hint="name a point of a body that rotates about one axis")
+        )
     axis = directions[0]
     return np.asarray(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis)
 
@@ -189,7 +191,7 @@ def find_default_radius(mechanism: Mechanism, weight_place: WeightPlace, axis: A
     if distance <= tolerances.PARALLEL:
         hint = f"such as --counterweight {weight_place.name}:radius=50mm"
         raise SolveError(
-            Problem("radius-needed", f"{weight_place.name}: nothing tells how far out a weight stands", hint=hint)
+            Problem("radius-needed", f"{weight_place.name}: the radius of the weight is not known", hint=hint)
         )
     return distance
 

@@ -88,11 +88,11 @@ class FollowedScene:
     def describe_incomplete_cycle(self, error: SolveError | LimitError) -> Problem:
         """Return the problem for a scene that cannot be followed over its cycle."""
         reached = error.reached if isinstance(error, SolveError) else None
-        where = "" if reached is None else f", it ends at {math.degrees(self.begin + self.rate * reached):.6g}°"
+        where = "" if reached is None else f", it stops at {math.degrees(self.begin + self.rate * reached):.6g}°"
         problem = error.problems[0]
         why = problem.message if problem.code in EXPLAINED_CODES else "it locks there, or passes a dead centre"
-        message = f"the scene does not go round its cycle{where}: {why}"
-        hint = "--cycle names an angle that turns all the way; heun probe tells what a motion of it comes near to"
+        message = f"the mechanism does not complete its cycle{where}: {why}"
+        hint = "name an angle that makes full revolutions with --cycle; heun probe lists the critical positions"
         return Problem("no-cycle", message, hint=hint, entry_path=error.problems[0].entry_path)
 
 
@@ -160,13 +160,13 @@ def require_determined(runner: Runner, plan: CyclePlan) -> None:
     dependent_count = runner.integrated_scene.workspace.count_independent_rows(0.0, layout.y0) if layout.rows else 0
     free_count = layout.tree_freedoms - dependent_count
     if free_count > 0:
-        phrase = "another freedom is" if free_count == 1 else f"{free_count} other freedoms are"
-        message = f"joints.{plan.joint}: with its angle driven {phrase} left: how they move is not told by the cycle"
-        hint = "drive them, too, or hold them (a rod on two balls: one `universal`); or --period T, orders of time"
+        phrase = "1 degree of freedom remains" if free_count == 1 else f"{free_count} degrees of freedom remain"
+        message = f"joints.{plan.joint}: with its angle driven, {phrase} that the cycle does not determine"
+        hint = "drive or constrain them too (rod on two balls: make one a `universal`); or use --period T"
         raise SolveError(Problem("several-freedoms", message, hint=hint, entry_path=f"joints.{plan.joint}"))
     message = f"joints.{plan.joint}: its angle does not determine the motion"
     raise SolveError(
-        Problem("no-cycle", message, hint="--cycle names another angle", entry_path=f"joints.{plan.joint}")
+        Problem("no-cycle", message, hint="name another angle with --cycle", entry_path=f"joints.{plan.joint}")
     )
 
 
@@ -187,9 +187,11 @@ def require_closed(scene: PreparedScene, states: BodyStates, turns: int) -> None
     worst = int(np.argmax(deviation))
     if deviation[worst] > tolerances.SAME_VALUE:
         name = bodies[worst].name
-        message = f"bodies.{name}: after {'a turn' if turns == 1 else 'two turns'} it is not back where it was"
+        message = f"bodies.{name}: not back at its start after {'one revolution' if turns == 1 else 'two revolutions'}"
         hint = (
-            "--turns 2, if the scene takes two; --cycle names another angle" if turns == 1 else "--cycle names another"
+            "--turns 2 if the cycle takes two revolutions; or another angle with --cycle"
+            if turns == 1
+            else "name another angle with --cycle"
         )
         raise SolveError(Problem("no-cycle", message, hint=hint, entry_path=f"bodies.{name}"))
 

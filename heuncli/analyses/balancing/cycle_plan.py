@@ -65,10 +65,10 @@ def require_no_contacts(mechanism: Mechanism) -> None:
     names = [stop.path for stop in mechanism.stops]
     names += [f"joints.{joint.name}" for joint in mechanism.joints if joint.can_open]
     names += [f"couplings.{own.name}" for own in mechanism.couplings if can_open(own)]
-    hint = "leave it out; or --period tells orders of time, of a motion that comes back"
+    hint = "leave it out; or use --period for the orders of a periodic motion"
     if names:
         raise SolveError(*(
-            Problem("opens-and-closes", f"{name} may open and close: a cycle by the angle does not tell when",
+            Problem("opens-and-closes", f"{name} may open and close: the cycle angle does not determine when",
                     hint=hint, entry_path=name)
             for name in names
         ))  # fmt: skip
@@ -86,7 +86,7 @@ def can_open(coupling: Coupling) -> bool:
 def describe_cam_assumptions(mechanism: Mechanism) -> tuple[str, ...]:
     """Return notes on cams that only press: the cycle is computed as if their followers never lifted off."""
     return tuple(
-        f"the follower of cam {own.name} is taken to stay on its cam: `heun run` tells where the contact would be lost"
+        f"the follower of cam {own.name} is assumed to stay on its cam; `heun run` shows where contact would be lost"
         for own in mechanism.couplings
         if own.entry.type == "cam" and any(row.tension_only for row in own.rows)
     )
@@ -102,7 +102,7 @@ def find_named_joint(mechanism: Mechanism, text: str) -> Joint:
     name = text.removesuffix(".angle")
     known = [joint.name for joint in find_angle_joints(mechanism)]
     if name not in known:
-        hint = suggest(name, known, "angles") if known else "the scene has no pin"
+        hint = suggest(name, known, "angles") if known else "the model has no pin"
         raise SolveError(Problem("no-cycle", f"--cycle {text}: no joint with an angle has this name", hint=hint or ""))
     return next(joint for joint in mechanism.joints if joint.name == name)
 
@@ -121,8 +121,8 @@ def find_cycle_joint(mechanism: Mechanism) -> Joint:
     if len(candidates) == 1:
         return candidates[0]
     names = [joint.name for joint in candidates or find_angle_joints(mechanism)]
-    what = "several angles may be meant" if names else "no joint has an angle"
-    hint = f"--cycle {'|'.join(names)}" if names else "a cycle is counted in the angle of a pin"
+    what = "several angles are possible" if names else "no joint has an angle"
+    hint = f"--cycle {'|'.join(names)}" if names else "a cycle is measured by the angle of a pin"
     raise SolveError(Problem("no-cycle", f"the cycle is not known: {what}", hint=hint))
 
 
@@ -132,12 +132,12 @@ def require_steady(joint: Joint) -> None:
     """
     where = f"joints.{joint.name}"
     if joint.drive is None:
-        message = f"{where} has no drive, and several others have: their motion is not told by its angle"
-        hint = "--cycle names one that is driven"
+        message = f"{where} has no drive but several other joints have: its angle does not determine their motion"
+        hint = "name a driven joint with --cycle"
         raise SolveError(Problem("no-cycle", message, hint=hint, entry_path=where))
     value = joint.drive.value
     if not value.time_dependent or not has_constant_rate(value):
-        message = f"drives.{joint.drive.name} does not turn at a constant rate, and other drives move in time beside it"
+        message = f"drives.{joint.drive.name} does not have a constant rate while other drives vary with time"
         hint = "give it a constant rate, such as angle: 100*t"
         raise SolveError(Problem("no-cycle", message, hint=hint, entry_path=f"drives.{joint.drive.name}"))
 

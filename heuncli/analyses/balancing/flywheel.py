@@ -301,10 +301,10 @@ def require_position_loads(mechanism: Mechanism) -> None:
     work.
     """
     found = dict.fromkeys((load_path(load), why) for load in mechanism.loads for why in iter_dependence_reasons(load))
-    hint = "leave it out of the scene, or run the motion with the wheel in it"
+    hint = "leave it out of the model, or run the motion with the flywheel in it"
     if found:
         raise SolveError(*(
-            Problem("no-flywheel", f"{name} {why}: its work over a cycle is not told by the angle", hint=hint,
+            Problem("no-flywheel", f"{name} {why}: the angle does not determine its work over a cycle", hint=hint,
                     entry_path=name)
             for name, why in found
         ))  # fmt: skip
@@ -313,9 +313,9 @@ def require_position_loads(mechanism: Mechanism) -> None:
 def iter_dependence_reasons(load: Load) -> Iterator[str]:
     """Yield the reasons why the pose does not determine the work of a load; none if it does."""
     if isinstance(load, JointLoad) and load.kind in ("damper", "friction"):
-        yield "hangs on the rate of its joint"
+        yield "depends on the rate of its joint"
     if isinstance(load, ThreadLoad):
-        yield "hangs on the way that its thread turns"
+        yield "depends on the direction of rotation of its thread"
     if isinstance(load, JointLoad) and load.kind == "turn_spring" and load.turning:
         yield "has damping"
     if isinstance(load, PairLoad | RopeLoad) and load.damping:

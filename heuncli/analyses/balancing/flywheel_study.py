@@ -25,18 +25,16 @@ def add_flywheel(
 def find_requested_flywheel(spec: Spec, scene: PreparedScene, plan: CyclePlan, request: FlywheelRequest) -> Flywheel:
     """Find the flywheel on the cycle's shaft. Raises SolveError [no-flywheel]."""
     if request.joint not in ("", plan.joint):
-        message = (
-            f"--flywheel {request.joint}: a wheel is found for the shaft that the cycle is counted on, {plan.joint}"
-        )
+        message = f"--flywheel {request.joint}: a flywheel is sized only for the shaft of the cycle, {plan.joint}"
         raise SolveError(
             Problem("no-flywheel", message, hint=f"--cycle {request.joint}, or --flywheel {plan.joint}=1%")
         )
     if plan.in_time:
-        message = "a scene of several drives does not run by itself: their motors hold every rate"
-        raise SolveError(Problem("no-flywheel", message, hint="leave the drives out that the wheel is to replace"))
+        message = "no flywheel for a model with several drives: they prescribe every speed"
+        raise SolveError(Problem("no-flywheel", message, hint="leave out the drives that the flywheel is to replace"))
     if plan.rate is None:
-        message = "how fast the machine runs in the mean is not known"
-        raise SolveError(Problem("no-flywheel", message, hint="--rate 1500rpm, say"))
+        message = "the mean speed of the machine is not known"
+        raise SolveError(Problem("no-flywheel", message, hint="such as --rate 1500rpm"))
     require_position_loads(scene.mechanism)
     loaded_scene = make_loaded_scene(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
     return find_flywheel(loaded_scene, plan.joint, abs(plan.rate), request.delta)
@@ -47,9 +45,9 @@ def describe_flywheel(wheel: Flywheel) -> tuple[str, ...]:
     notes = []
     if wheel.even:
         notes.append(
-            f"the loads do work over the cycle: for the flywheel an even torque of {wheel.even:.6g} N·m "
-            f"on {wheel.joint} takes or gives it"
+            f"the loads do net work over the cycle: the flywheel is sized with a constant torque of "
+            f"{wheel.even:.6g} N·m on {wheel.joint} that balances it"
         )
     if wheel.added == 0.0:
-        notes.append(f"no flywheel is needed: the machine runs with an unevenness of {wheel.present:.4g} as it is")
+        notes.append(f"no flywheel needed: the speed fluctuation is {wheel.present:.4g} without one")
     return tuple(notes)

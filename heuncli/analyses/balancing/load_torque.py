@@ -50,12 +50,12 @@ def compute_load_torque(
         return LoadTorque()
     time_loads = [load_path(load) for load in mechanism.loads if any(value.time_dependent for value in load.values)]
     if time_loads:
-        return LoadTorque(notes=(f"orders of the loads are not told: {time_loads[0]} depends on t",))
+        return LoadTorque(notes=(f"no orders of the loads: {time_loads[0]} depends on t",))
     rate = plan.rate or 1.0
     try:
         powers = compute_load_powers(make_loaded_scene(spec, scene, mechanism, plan, rate))
     except SolveError as error:
-        return LoadTorque(notes=(f"orders of the loads are not told: {error.problems[0].message}",))
+        return LoadTorque(notes=(f"no orders of the loads: {error.problems[0].message}",))
     nodes, values = powers.nodes, powers.values[:, :, None] / rate
     total = values.sum(axis=1)
     threshold = ORDERS_SETTLED * float(np.abs(values).max())
@@ -67,8 +67,8 @@ def compute_load_torque(
     if last_order >= MAX_ORDERS:
         order_bound = bound_higher_orders(nodes, total, last_order)
         notes += (
-            f"orders of the loads beyond {last_order:g} are not listed, each of {order_bound:.2g} N·m "
-            "at most: --orders",
+            f"orders of the loads above {last_order:g} are not listed, each at most {order_bound:.2g} N·m: "
+            "set --orders",
         )
     return LoadTorque(rows, mean, mean_error, notes)
 

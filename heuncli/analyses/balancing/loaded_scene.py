@@ -94,15 +94,12 @@ class LoadedScene:
                 break
         else:
             undecided += ("the loads",)
-        notes = [
-            f"bounds do not tell what {law_source} does between the angles that were looked at"
-            for law_source in undecided
-        ]
+        notes = [f"{law_source}: no bounds found between the sampled angles" for law_source in undecided]
         if run.run.uncertain_count:
             steps = "one step" if run.run.uncertain_count == 1 else f"{run.run.uncertain_count} steps"
-            notes.append(f"in {steps} bounds could not decide what loads do: shorter events may be missing")
+            notes.append(f"no bounds on the loads found in {steps}: short events may be missing")
         if not resolved.is_resolved:
-            notes.append("loads vary too much to be followed to their digits: what is told errs by as much as it says")
+            notes.append("loads vary too much for full accuracy: results are as uncertain as their stated errors")
         settled = resolved.is_resolved and not notes
         notes += describe_nonperiodic_loads(run, resolved.nodes)
         return CycleNumbers(resolved.nodes, resolved.values, tuple(dict.fromkeys(notes)), settled)

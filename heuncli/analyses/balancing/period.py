@@ -109,10 +109,8 @@ def balance_over_period(spec: Spec, seconds: float, options: BalanceOptions, ref
     }
     largest_difference = max(residual.relative for residual in differences.values())
     if largest_difference > tolerances.SAME_PERIOD:
-        message = (
-            f"--period {seconds:g} s: the last period and the one before differ by {largest_difference:.1g} of the mean"
-        )
-        hint = "another period; or a longer motion, until it has settled: --set analysis.duration=..."
+        message = f"--period {seconds:g} s: the last two periods differ by {largest_difference:.1g} of the mean"
+        hint = "another period; or a longer motion that has settled: --set analysis.duration=..."
         raise SolveError(Problem(PROBLEM_CODE, message, hint=hint))
     scale = periods.rate**2
     stated_errors = {name: np.nan_to_num(stated_error(study, ("foundation", "mass_effect", name))) for name in KINDS}
@@ -140,10 +138,10 @@ def solve_motion(spec: Spec, seconds: float) -> Study:
     """Return the motion of at least two periods. Raises SolveError [no-period]."""
     analysis = spec.analysis
     if analysis.type != "motion" or analysis.duration is None:
-        message = f"--period is of a motion, and this analysis is none (type: {analysis.type})"
+        message = f"--period needs a motion, this analysis has type: {analysis.type}"
         raise SolveError(Problem(PROBLEM_CODE, message, hint="give analysis.duration"))
     if analysis.duration < 2.0 * seconds:
-        message = f"--period {seconds:g} s: the motion takes {analysis.duration:g} s, less than two of them"
+        message = f"--period {seconds:g} s: the motion lasts {analysis.duration:g} s, less than two periods"
         raise SolveError(Problem(PROBLEM_CODE, message, hint=f"--set analysis.duration={2.0 * seconds:g}, or more"))
     begin = analysis.duration - 2.0 * seconds
     times = sorted({0.0, max(begin, 0.0), analysis.duration - seconds, analysis.duration})
@@ -151,15 +149,15 @@ def solve_motion(spec: Spec, seconds: float) -> Study:
     end = float(study.history.times[-1])
     if end < analysis.duration:
         message = f"--period {seconds:g} s: the motion ends at t = {end:g} s"
-        raise SolveError(Problem(PROBLEM_CODE, message, hint="leave out what ends it"))
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="remove what ends it"))
     horizon = study.results.horizon
     if horizon is not None:
-        message = f"--period {seconds:g} s: from t = {horizon:.4g} s on nothing is claimed of this motion"
+        message = f"--period {seconds:g} s: this motion is not reliable from t = {horizon:.4g} s on"
         raise SolveError(Problem(PROBLEM_CODE, message, hint="a smaller analysis.tolerance, or a shorter motion"))
     blows = [blow for blow in study.history.impulses if blow.time >= begin]
     if blows:
-        message = f"--period {seconds:g} s: something strikes at t = {blows[-1].time:g} s: a blow has no orders"
-        raise SolveError(Problem(PROBLEM_CODE, message, hint="soften it by a spring; or leave it out"))
+        message = f"--period {seconds:g} s: impulse or impact at t = {blows[-1].time:g} s: it has no orders"
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="soften it with a spring, or leave it out"))
     return study
 
 

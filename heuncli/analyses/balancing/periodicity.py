@@ -111,9 +111,9 @@ def describe_nonperiodic_loads(run: FollowedRun, nodes: PieceNodes) -> tuple[str
     differ.
     """
     next_cycle = NextCycle(run, nodes)
-    cycle, hint = ("a turn", "; try --turns 2") if run.turns == 1 else ("two turns", "")
+    cycle, hint = ("one revolution", "; try --turns 2") if run.turns == 1 else ("two revolutions", "")
     return tuple(
-        f"{load_path(load)} does not repeat after {cycle}; its orders assume that it starts again there{hint}"
+        f"{load_path(load)} does not repeat after {cycle}; its orders assume that it restarts there{hint}"
         for load in run.layout.mechanism.loads
         if not next_cycle.is_periodic(load)
     )

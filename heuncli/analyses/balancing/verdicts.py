@@ -14,7 +14,7 @@ NEGLIGIBLE_PART = 1e-9  # of the larger of two parts: a smaller one counts as ze
 NEGLIGIBLE_ORDER = 1e-3  # of the largest order: smaller ones are not named one by one
 MAX_NAMED = 6
 SMALLER = "smaller ones"
-ENDLESS = ", fainter ones without end"
+ENDLESS = ", weaker ones without limit"
 LETTERS = ("x", "y", "z")
 
 
@@ -48,7 +48,7 @@ def format_remaining_orders(rows: Sequence[OrderRow], *, endless: bool = False) 
         for row in named
     ]
     if len(remaining) == 1:
-        return f"order {names[0]} alone remains{f', {common_direction}' if common_direction else ''}"
+        return f"only order {names[0]} remains{f', {common_direction}' if common_direction else ''}"
     joined_names = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
     sentence = f"order{'s' if len(names) > 1 else ''} {joined_names} remain{'' if len(names) > 1 else 's'}"
     sentence += f", {common_direction}" if common_direction else ""
@@ -69,5 +69,9 @@ def format_direction(row: OrderRow) -> str:
     if row.with_turn is None or row.against_turn is None:
         return ""
     if row.against_turn <= NEGLIGIBLE_PART * row.with_turn and row.is_across_axis:
-        return "with the turn"
-    return "against the turn" if row.with_turn <= NEGLIGIBLE_PART * row.against_turn and row.is_across_axis else ""
+        return "rotating with the shaft"
+    return (
+        "rotating against the shaft"
+        if row.with_turn <= NEGLIGIBLE_PART * row.against_turn and row.is_across_axis
+        else ""
+    )

@@ -52,12 +52,12 @@ def compute_apparent_inertia(
         rows = make_candidate_rows(instant.freed_scene.layout, instant.linear_equations)
         if name not in rows:
             hint = suggest(name, list(rows), "coordinates") or "or BODY.POINT:nx,ny,nz"
-            raise SolveError(Problem("no-coordinate", f"--seen {name}: no coordinate is called so", hint=hint))
+            raise SolveError(Problem("no-coordinate", f"--seen {name}: there is no such coordinate", hint=hint))
         row, unit = rows[name] @ choice.S, get_units(name).inertia
     inverse = float(row @ eta @ row)
     if inverse <= IMMOBILE * float(np.abs(eta).max()) * max(float(row @ row), IMMOBILE):
-        message = f"--seen {name}: it cannot move there: the inertia seen is without bound"
-        raise SolveError(Problem("no-coordinate", message, hint="look at another instant, or in another direction"))
+        message = f"--seen {name}: it cannot move there: the apparent inertia is infinite"
+        raise SolveError(Problem("no-coordinate", message, hint="use another instant or another direction"))
     return ApparentInertia(name, unit, None, 1.0 / inverse)
 
 
@@ -69,7 +69,7 @@ def make_point_row(instant: Instant, partials: Partials, place: str, direction: 
     }
     if place not in points:
         hint = suggest(place, list(points), "points") or ""
-        raise SolveError(Problem("no-coordinate", f"--seen {option_text}: no point is called {place}", hint=hint))
+        raise SolveError(Problem("no-coordinate", f"--seen {option_text}: there is no point {place}", hint=hint))
     n = np.array([float(word) for word in direction.split(",")])
     body, point = points[place]
     states = make_body_states(instant.freed_scene.layout, instant.freed_recovered)

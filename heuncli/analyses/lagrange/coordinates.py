@@ -86,7 +86,7 @@ def choose_coordinates(
     T, left_out = compute_admitted_motions(scene, linear_equations)
     if not T.shape[1]:
         raise SolveError(
-            Problem(PROBLEM_CODE, "nothing is free to move: no coordinate tells anything", hint=NOTHING_FREE_HINT)
+            Problem(PROBLEM_CODE, "nothing is free to move: there are no coordinates", hint=NOTHING_FREE_HINT)
         )
     require_known(requested, rows)
     factors = {name: 1.0 / layout.size if is_length(name) else 1.0 for name in rows}
@@ -100,7 +100,7 @@ def choose_coordinates(
     )
 
 
-NOTHING_FREE_HINT = "leave a joint free, or drive one: drives are freed here"
+NOTHING_FREE_HINT = "free a joint, or drive one: drives are released here"
 
 
 def compute_admitted_motions(
@@ -187,7 +187,7 @@ def require_known(requested: Sequence[str], rows: Mapping[str, Array]) -> None:
         raise SolveError(
             *(
                 Problem(
-                    PROBLEM_CODE, f"no coordinate is called {name}", hint=suggest(name, list(rows), "coordinates") or ""
+                    PROBLEM_CODE, f"there is no coordinate {name}", hint=suggest(name, list(rows), "coordinates") or ""
                 )
                 for name in wrong
             )
@@ -201,16 +201,16 @@ def require_independent(names: Sequence[str], rates: Array, count: int, scaled_r
     rates (names, count): their rates for the free motions
     """
     if len(names) != count or len(set(names)) != len(names):
-        phrase = "motion is" if count == 1 else "motions are"
-        message = f"{count} {phrase} free, and {len(names)} coordinate{'s are' if len(names) != 1 else ' is'} named"
+        phrase = "degree of freedom" if count == 1 else "degrees of freedom"
+        message = f"{count} {phrase}, but {len(names)} coordinate{'s' if len(names) != 1 else ''} named"
         raise SolveError(Problem(PROBLEM_CODE, message, hint=f"name {count} of {', '.join(list(scaled_rows)[:8])}"))
     U, s, V = np.linalg.svd(rates)
     if s[-1] * tolerances.COORDINATE_RATIO < max(s[0], find_largest_rate(scaled_rows)):
         along = {name: abs(float(row @ V[-1])) for name, row in scaled_rows.items()}
         moving = max(along, key=lambda name: along[name])
         stationary = names[int(np.argmax(np.abs(U[:, -1])))]
-        message = f"{stationary} cannot tell the motion here: it stands while {moving} moves (dead centre)"
-        raise SolveError(Problem(PROBLEM_CODE, message, hint=f"take another coordinate: --coordinates {moving}"))
+        message = f"{stationary} cannot describe the motion here: it stops while {moving} moves (dead centre)"
+        raise SolveError(Problem(PROBLEM_CODE, message, hint=f"use another coordinate: --coordinates {moving}"))
 
 
 def find_largest_rate(scaled_rows: Mapping[str, Array]) -> float:

@@ -75,8 +75,8 @@ def invert_inertia(names: Sequence[str], epsilon: Array) -> Array:
     except np.linalg.LinAlgError:
         _, V = np.linalg.eigh(epsilon)
         name = names[int(np.argmax(np.abs(V[:, 0])))]
-        message = f"{name} moves without inertia: no acceleration follows from a force along it"
-        raise SolveError(Problem("no-inertia", message, hint="give the bodies that it moves a mass")) from None
+        message = f"{name} has no inertia: a force along it gives no finite acceleration"
+        raise SolveError(Problem("no-inertia", message, hint="give a mass to the bodies that it moves")) from None
     half = np.linalg.inv(L)
     return np.asarray(half.T @ half)
 

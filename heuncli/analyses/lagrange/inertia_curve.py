@@ -152,33 +152,33 @@ def follow_branch(
     layout = setup.scene.layout
     for load in layout.mechanism.joint_friction:
         joint_path = layout.mechanism.describe_friction(load)
-        message = f"friction hangs on what presses, {joint_path}: it is told of an instant, not over a range"
-        raise make_refusal(coordinate_range, message, "leave it out; or take one instant")
+        message = f"friction depends on the joint reaction, {joint_path}: available at one instant, not over a range"
+        raise make_refusal(coordinate_range, message, "leave it out, or use one instant")
     if find_speed_rows(layout).any() and not layout.mechanism.planar:
-        message = "what rolls comes to poses by its way: no coordinate tells them"
-        raise make_refusal(coordinate_range, message, "heun run tells its motion; in the plane wheels roll along lines")
+        message = "positions of rolling bodies depend on the path: no coordinate determines them"
+        raise make_refusal(
+            coordinate_range, message, "heun run computes the motion; in a planar model wheels roll along lines"
+        )
     if layout.contacts:
-        message = f"{layout.contacts[0].name} may open and close on the way"
+        message = f"{layout.contacts[0].name} may open and close within the range"
         raise make_refusal(coordinate_range, message, "leave stops and ropes out")
     if not find_determined_motion(setup.runner.integrated_scene).is_determined:
-        message = f"with {coordinate_range.name} held something is free: the inertia of one motion is told over it"
+        message = f"with {coordinate_range.name} fixed something is still free: a range needs 1 degree of freedom"
         raise make_refusal(
-            coordinate_range, message, "heun lagrange SPEC tells all of one instant; --at T of a later one"
+            coordinate_range, message, "heun lagrange SPEC gives all of them at one instant; --at T at a later one"
         )
     try:
         run = setup.runner.run(MotionTask(times, spec.analysis.tolerance, DRIVE_DETERMINED))
     except LimitError as error:
         if error.problems[0].code != "step-limit":
             raise
-        raise make_refusal(
-            coordinate_range, "it takes too many steps to be followed so far", "a shorter range"
-        ) from None
+        raise make_refusal(coordinate_range, "following it this far takes too many steps", "a shorter range") from None
     except SolveError as error:
-        ends = "" if error.reached is None else f" beyond {start + span * error.reached:.6g}"
+        ends = "" if error.reached is None else f" past {start + span * error.reached:.6g}"
         reason = error.problems[0].message
         message = f"it cannot be followed{ends}: {reason.partition(' s: ')[2] or reason}"
         raise make_refusal(
-            coordinate_range, message, "a shorter range; or another coordinate, that turns all the way"
+            coordinate_range, message, "a shorter range, or a coordinate that makes full revolutions"
         ) from None
     return free_drives(setup.scene), setup.runner.evaluate_run(run, times), span
 

@@ -60,7 +60,7 @@ def make_instant(spec: Spec, time: float | None, time_limit: float | None) -> In
         t = float(spec.analysis.times[0]) if kind == "state" else 0.0
         runner, layout = setup.runner, setup.scene.layout
         recovered = runner.evaluate(np.array([t]), layout.y0[None, :])
-        heading = "at the rest pose" if kind == "rest" else f"at t = {t:.6g} s"
+        heading = "at the rest position" if kind == "rest" else f"at t = {t:.6g} s"
     require_holonomic(setup)
     scene = free_drives(setup.scene)
     state, holding = scene.convert_states(recovered)[0], scene.convert_holding(recovered.holding[0])
@@ -83,8 +83,8 @@ def require_holonomic(setup: Setup) -> None:
     layout = setup.scene.layout
     if layout.mechanism.planar or not find_speed_rows(layout).any():
         return
-    message = "what rolls has more poses than speeds: no coordinates have its speeds as their rates"
-    hint = "heun run tells its motion and loads, heun modes its small motions; in the plane wheels roll along lines"
+    message = "rolling contact is nonholonomic: no coordinates have its speeds as their rates"
+    hint = "heun run gives motion and loads, heun modes small motions; in a planar model wheels roll along lines"
     raise SolveError(Problem("no-coordinate", message, hint=hint))
 
 
@@ -95,5 +95,5 @@ def solve_until(spec: Spec, time: float, time_limit: float | None) -> tuple[Setu
     recovered = study.history.solutions
     if float(recovered.times[-1]) < time:
         message = f"--at {time:g}: the motion ends at t = {recovered.times[-1]:.6g} s"
-        raise SolveError(Problem("bad-option", message, hint="ask for an earlier instant"))
+        raise SolveError(Problem("bad-option", message, hint="use an earlier instant"))
     return study.setup, recovered.select(np.array([len(recovered.times) - 1]))

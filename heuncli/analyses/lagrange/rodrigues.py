@@ -41,10 +41,8 @@ def compute_vector(R: Array, body: str) -> Array:
     """Return k (3,) of an attitude, body to world. Raises SolveError [half-turn] where it is unbounded."""
     q = quaternion_from_matrix(R)
     if abs(q[0]) < np.sin(0.5 * HALF_TURN):
-        message = (
-            f"{body} is within {HALF_TURN:g} rad of half a turn from its own axes: its Rodrigues vector has no bound"
-        )
-        hint = "draw the body in another attitude, its axes nearer to the world's"
+        message = f"{body} within {HALF_TURN:g} rad of 180 deg from the world axes: its Rodrigues vector is unbounded"
+        hint = "choose body axes closer to the world axes"
         raise SolveError(Problem("half-turn", message, hint=hint))
     return np.asarray(q[1:] / q[0])
 

@@ -37,7 +37,7 @@ from heuncli.scene.expressions.programs import Expression
 PROBLEM_CODE = "no-state-space"
 UNIT_VALUE = Expression.from_number(1.0)
 AXES = "xyz"
-NO_INPUTS_HINT = "this scene has no input: forces, couples, torques, actuators and drives are inputs; bushings are none"
+NO_INPUTS_HINT = "this model has no input: forces, couples, torques, actuators and drives are inputs; bushings are not"
 
 
 @record
@@ -116,7 +116,7 @@ def require_driven_chosen(instant: Instant, choice: CoordinateChoice) -> None:
     """
     missing = [name for name in instant.freed_scene.driven_coordinates if name not in choice.names]
     if missing:
-        message = f"{', '.join(missing)}: what is driven has to be among the coordinates of a state space"
+        message = f"{', '.join(missing)}: driven coordinates must be among those of the state space"
         raise SolveError(Problem(PROBLEM_CODE, message, hint=f"--coordinates {','.join(missing)},...; or leave it out"))
 
 
@@ -127,9 +127,9 @@ def require_given_friction(instant: Instant) -> None:
     mechanism = instant.setup.scene.mechanism
     for load in mechanism.joint_friction:
         joint_path = mechanism.describe_friction(load)
-        message = f"friction hangs on what presses, {joint_path}, and so on the inputs: no state space has it yet"
+        message = f"friction depends on the joint reaction, {joint_path}, and so on the inputs: no state space yet"
         raise SolveError(
-            Problem(PROBLEM_CODE, message, hint="give friction a size: friction: {type: friction, force: 20 N}")
+            Problem(PROBLEM_CODE, message, hint="give friction a fixed size: friction: {type: friction, force: 20 N}")
         )
 
 
@@ -142,11 +142,11 @@ def require_derivatives(scene: FreedScene, instant: Instant, linear_equations: L
     if not sentences and not (
         np.isfinite(linear_equations.by_place).all() and np.isfinite(linear_equations.by_rate).all()
     ):
-        sentences = ["a load has no slope there"]
-    hint = "take a state a little beside it, or give the load a slope there: sqrt(x**2 + 1e-6) for abs(x)"
+        sentences = ["a load has no derivative there"]
+    hint = "use a nearby state, or smooth the load there: sqrt(x**2 + 1e-6) for abs(x)"
     if sentences:
         raise SolveError(
-            *(Problem(PROBLEM_CODE, f"{x}: motions beside it are not linear", hint=hint) for x in sentences)
+            *(Problem(PROBLEM_CODE, f"{x}: motions near it cannot be linearised", hint=hint) for x in sentences)
         )
 
 
@@ -210,8 +210,8 @@ def require_tree_coordinates(
     }
     wrong = [name for name in choice.names if name not in freedoms]
     if wrong:
-        message = f"{', '.join(wrong)}: beside a state that moves the equations are those of coordinates of the tree"
-        hint = f"take others: {', '.join(sorted(freedoms))}; or a state at rest"
+        message = f"{', '.join(wrong)}: about a moving state only coordinates of the spanning tree can be used"
+        hint = f"use others: {', '.join(sorted(freedoms))}; or a state at rest"
         raise SolveError(Problem(PROBLEM_CODE, message, hint=hint))
 
 
@@ -237,7 +237,7 @@ def select_inputs(instant: Instant, choice: CoordinateChoice, requested: Sequenc
         known = [*dict.fromkeys(forces), *drives]
         raise SolveError(*(
             Problem(
-                PROBLEM_CODE, f"--inputs {name}: no force with a value and no drive is called so",
+                PROBLEM_CODE, f"--inputs {name}: no force with a value and no drive has this name",
                 hint=suggest(name, known, "inputs") if known else NO_INPUTS_HINT,
             )
             for name in wrong
@@ -302,8 +302,8 @@ def make_unit_load(load: Load) -> Load:
         return replace(load, value=UNIT_VALUE)
     values = find_direction(load)
     if values is None:
-        message = f"--inputs {load.name}: a force of several components that vary has no one value"
-        raise SolveError(Problem(PROBLEM_CODE, message, hint="make it several forces, each along one axis"))
+        message = f"--inputs {load.name}: a force with several varying components has no single value"
+        raise SolveError(Problem(PROBLEM_CODE, message, hint="split it into several forces, each along one axis"))
     x, y, z = (Expression.from_number(float(value)) for value in values)
     return replace(load, vector=(x, y, z))
 
@@ -381,4 +381,4 @@ def make_output(
                 return OutputRow(X, zero, zero, "m")
             return OutputRow(slopes.point_slope(i, position)[axis], X, zero, "m/s")
     hint = suggest(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
-    raise SolveError(Problem(PROBLEM_CODE, f"--outputs {name}: no coordinate and no point is called so", hint=hint))
+    raise SolveError(Problem(PROBLEM_CODE, f"--outputs {name}: no coordinate and no point has this name", hint=hint))

@@ -42,7 +42,7 @@ from heuncli.study.compose.blocks import make_blocks as blocks_of
 from heuncli.study.model.error_places import attach_locations
 
 QUASI_VELOCITY_NOTE = (
-    "{names}: rates without coordinates, components of angular velocity and of velocity along the world's axes: "
+    "{names}: quasi-velocities, components of angular velocity and of velocity along the world axes: "
     "Christoffel symbols and alpha are not defined for them"
 )
 
@@ -223,5 +223,5 @@ def make_notes(choice: CoordinateChoice) -> list[str]:
     quasi = [name for name, is_quasi in zip(choice.names, choice.is_quasi_velocity, strict=True) if is_quasi]
     if quasi:
         notes.append(QUASI_VELOCITY_NOTE.format(names=", ".join(quasi)))
-    notes += [f"{name}: a spin without inertia is no part of the motion" for name in choice.left_out]
+    notes += [f"{name}: a spin without inertia is left out of the motion" for name in choice.left_out]
     return notes

@@ -23,10 +23,10 @@ from heuncli.study.queries.study import Study
 
 BALANCE_TOLERANCE = 1e-9  # of the largest: loads of one instant are solved together, and balance to rounding
 MAX_SUMS = 4  # named in an error message
-CHOOSE_HINT = "--least-norm or a stiffness of the joints chooses a split"
-PLANAR_HINT = "; the scene moves in the plane: space: planar leaves out what is across it"
+CHOOSE_HINT = "choose a split with --least-norm or joint stiffnesses"
+PLANAR_HINT = "; the motion is planar: space: planar leaves out the out-of-plane components"
 ALL_JOINTS = Selection(frozenset({"joints"}))
-EXPLAIN_HINT = "heun explain open tells how to draw what the machine leaves loose"
+EXPLAIN_HINT = "heun explain open shows how to release what the real machine leaves free"
 
 
 def select_results(body: str, joints: Iterable[str], with_impulses: bool) -> Selection:
@@ -47,8 +47,8 @@ def assemble_load_cases(study: Study, body: str, requested: Sequence[InstantRequ
     mechanism = study.setup.scene.mechanism
     index = next((i for i, one in enumerate(mechanism.bodies) if one.name == body), None)
     if index is None:
-        message = f"{body}: nothing that this run was asked for depends on it, so it was left out"
-        raise UsageError(Problem("bad-option", message, hint="solve the whole scene: without only="))
+        message = f"{body}: left out, because no requested result depends on it"
+        raise UsageError(Problem("bad-option", message, hint="solve the whole model: without only="))
     instants = find_load_case_instants(requested, study)
     cases = dict([*_iter_instant_cases(study, index, instants), *_iter_impulse_cases(study, index, instants)])
     mechanism_body, results = mechanism.bodies[index], study.results
@@ -147,9 +147,9 @@ def require_unique(recovery: Recovery, body: int, joints: Block, times: Array) -
     listed = ", ".join(name for name, _ in indeterminate[:6]) + (", ..." if len(indeterminate) > 6 else "")
     first_time = min(t for _, t in indeterminate)
     sums_text = "".join(
-        f"; certain is {told}" for told in _format_determinate_sums(find_determinate_sums(recovery), names)
+        f"; determinate: {told}" for told in _format_determinate_sums(find_determinate_sums(recovery), names)
     )
-    message = f"open at t = {first_time:.6g} s: {listed}: a load case of open forces is none{sums_text}"
+    message = f"open at t = {first_time:.6g} s: {listed}: a load case cannot contain open forces{sums_text}"
     planar = PLANAR_HINT if recovery.setup.model.get("space") == "planar" and not mechanism.planar else ""
     raise SolveError(Problem("open-load-case", message, hint=f"{CHOOSE_HINT}{planar}; {EXPLAIN_HINT}"))
 
@@ -185,9 +185,9 @@ def require_balance(body: LoadedBody, case: LoadCase) -> None:
     if relative_remainder <= BALANCE_TOLERANCE:
         return
     message = (
-        f"{case.name}: the forces or moments on {body.name} do not balance: they leave "
+        f"{case.name}: the forces or moments on {body.name} do not balance: residual "
         f"{relative_remainder:.2g} of the largest, "
         f"more than {BALANCE_TOLERANCE:g}"
     )
-    hint = "near a singular pose rounding grows: take an instant beside it; else please report it"
+    hint = "rounding errors grow near a singular position: use an instant away from it; otherwise please report this"
     raise SolveError(Problem("unbalanced-load-case", message, hint=hint))

@@ -39,7 +39,7 @@ KINDS = {
     "C3D15": SolidKind(15, WEDGE), "C3D8": SolidKind(8, HEXAHEDRON), "C3D20": SolidKind(20, HEXAHEDRON),
 }  # fmt: skip
 INTEGRATION_SUFFIXES = "RIHMT"  # suffixes of an element type: its integration
-SOLIDS_HINT = "a mesh of solids alone: C3D4, C3D10, C3D6, C3D15, C3D8, C3D20"
+SOLIDS_HINT = "only solid elements are accepted: C3D4, C3D10, C3D6, C3D15, C3D8, C3D20"
 
 
 @record
@@ -92,11 +92,13 @@ def read_mesh(text: str, name: str) -> SolidMesh:
                 continue
             node_numbers = [int(word) for word in words]
         except ValueError:
-            raise Finding("bad-mesh", f"{where}: '{', '.join(words)[:60]}' are no numbers", SOLIDS_HINT) from None
+            raise Finding("bad-mesh", f"{where}: '{', '.join(words)[:60]}' are not numbers", SOLIDS_HINT) from None
         assert kind is not None
         if len(node_numbers) != kind.nodes + 1:
-            message = f"{where}: an element of {kind.nodes} nodes has {len(node_numbers) - 1}"
-            raise Finding("bad-mesh", message, "its number, then its nodes; a line that ends with a comma goes on")
+            message = f"{where}: an element with {kind.nodes} nodes lists {len(node_numbers) - 1}"
+            raise Finding(
+                "bad-mesh", message, "give its number, then its nodes; a line that ends with a comma continues"
+            )
         corners += [tuple(node_numbers[1 + i] for i in part) for part in kind.parts]
     return _make_mesh(nodes, corners, name)
 
@@ -111,7 +113,7 @@ def _iter_records(text: str, name: str) -> Iterator[tuple[str, SolidKind | None,
             words = [word.strip().upper() for word in line.split(",")]
             keyword, kind, collected = words[0], None, []
             if keyword == "*INCLUDE":
-                raise Finding("bad-mesh", f"{name}:{number}: another file is included", "name that file")
+                raise Finding("bad-mesh", f"{name}:{number}: *INCLUDE is not followed", "give the included file")
             if keyword == "*ELEMENT":
                 kind = _parse_kind(words, f"{name}:{number}")
             continue
@@ -129,22 +131,22 @@ def _parse_kind(words: Sequence[str], where: str) -> SolidKind:
     type_name = next((word.partition("=")[2].strip() for word in words if word.partition("=")[0].strip() == "TYPE"), "")
     kind = KINDS.get(type_name.rstrip(INTEGRATION_SUFFIXES) if type_name not in KINDS else type_name)
     if kind is None:
-        raise Finding(
-            "bad-mesh", f"{where}: elements of type {type_name or 'none'} have a mass that is not known", SOLIDS_HINT
-        )
+        raise Finding("bad-mesh", f"{where}: elements of type {type_name or 'none'} have no known mass", SOLIDS_HINT)
     return kind
 
 
 def _make_mesh(nodes: dict[int, tuple[float, ...]], corners: Sequence[tuple[int, ...]], name: str) -> SolidMesh:
     if not corners:
-        raise Finding("bad-mesh", f"{name}: there are no elements", "*NODE and *ELEMENT, as in the mesh of the deck")
+        raise Finding(
+            "bad-mesh", f"{name}: there are no elements", "give *NODE and *ELEMENT, as in the mesh of the deck"
+        )
     used = sorted({number for one in corners for number in one})
     missing = next((number for number in used if number not in nodes), None)
     if missing is not None:
-        raise Finding("bad-mesh", f"{name}: node {missing} of an element is not there", "*NODE before or behind it")
+        raise Finding("bad-mesh", f"{name}: node {missing} of an element is missing", "give it under *NODE")
     row = {number: i for i, number in enumerate(used)}
     tetrahedra = np.array([[row[number] for number in one] for one in corners], dtype=np.intp)
     mesh = SolidMesh(np.array(used, dtype=np.intp), np.array([nodes[number] for number in used]), tetrahedra)
     if not (np.isfinite(mesh.places).all() and mesh.compute_volumes().sum() > 0.0):
-        raise Finding("bad-mesh", f"{name}: the elements have no volume", "are the numbers of the nodes right?")
+        raise Finding("bad-mesh", f"{name}: the elements have no volume", "check the node numbers")
     return mesh

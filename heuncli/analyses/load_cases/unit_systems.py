@@ -18,7 +18,7 @@ from heuncli.results.results import Array
 POUND_FORCE = units.UNITS["lbf"][0]
 # Masses that specs do not know, for there `t` is the time: what a force of 1 gives an acceleration of 1.
 MASSES = {"t": 1e3, "slinch": POUND_FORCE / 0.0254, "slug": POUND_FORCE / 0.3048, "Gg": 1e6}
-UNITS_HINT = "such as --units N,mm,t or N,m,kg or lbf,in,slinch; a fourth is the time, s or ms"
+UNITS_HINT = "such as --units N,mm,t or N,m,kg or lbf,in,slinch; a fourth unit sets the time, s or ms"
 CONSISTENCY_TOLERANCE = 1e-9  # relative: definitions agree to the last digit, inconsistent units differ by a factor
 
 
@@ -47,7 +47,7 @@ def parse_units(text: str) -> UnitSystem:
     for word in (part.strip() for part in text.split(",")):
         size, kind = (MASSES[word], units.MASS) if word in MASSES else units.parse_unit(word)
         if kind not in KINDS:
-            raise Finding("bad-option", f"{word} is {units.describe(kind)}: what follows from the others", UNITS_HINT)
+            raise Finding("bad-option", f"{word} is {units.describe(kind)}, which follows from the others", UNITS_HINT)
         if kind in units_by_kind:
             raise Finding("bad-option", f"{units_by_kind[kind][0]} and {word} are of the same kind", UNITS_HINT)
         units_by_kind[kind] = word, size
@@ -56,7 +56,7 @@ def parse_units(text: str) -> UnitSystem:
     if missing:
         raise Finding(
             "bad-option",
-            f"without {' and '.join(units.describe(kind) for kind in missing)}",
+            f"no unit for {' and '.join(units.describe(kind) for kind in missing)}",
             _suggest_units(units_by_kind),
         )
     force, length, mass, time = (units_by_kind[kind] for kind in KINDS)
@@ -64,7 +64,7 @@ def parse_units(text: str) -> UnitSystem:
     unit_force = system.mass * system.acceleration / system.force
     if abs(unit_force - 1.0) > CONSISTENCY_TOLERANCE:
         message = (
-            f"1 {mass[0]} at 1 {length[0]}/{time[0]}² takes {unit_force:.6g} {force[0]}, not 1: no system of units"
+            f"1 {mass[0]} at 1 {length[0]}/{time[0]}² takes {unit_force:.6g} {force[0]}, not 1: units not consistent"
         )
         raise Finding("bad-option", message, _suggest_units(units_by_kind))
     return system

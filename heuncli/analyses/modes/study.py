@@ -38,9 +38,9 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.setup import Setup, set_up
 
-REST_HINT = "analysis: {type: rest} looks for the pose that rests"
-CLOSER_START_HINT = "look for it from nearer by: draw the scene closer to where it rests"
-MOVING_HINT = "leave out the velocities, or run a motion: modes are those about a pose, or a steady motion"
+REST_HINT = "analysis: {type: rest} finds the rest position"
+CLOSER_START_HINT = "start the model closer to its rest position"
+MOVING_HINT = "leave out the velocities, or run a motion: modes are about a rest position or a steady motion"
 
 
 def compute_spec_modes(spec: Spec, excluded: Sequence[str] = ()) -> SceneModes:
@@ -126,12 +126,12 @@ def require_time_independent(setup: Setup) -> None:
     """Raise SolveError [no-modes] for loads that depend on time."""
     time_loads = [load for load in setup.scene.mechanism.loads if any(value.time_dependent for value in load.values)]
     names = list(dict.fromkeys(load.name for load in time_loads if not isinstance(load, RopeLoad)))
-    left_out = f"--without {','.join(names)} leaves out what excites; or " if names else ""
-    hint = f"{left_out}give it the value that it has there, by --set"
+    left_out = f"--without {','.join(names)} leaves out the excitation; or " if names else ""
+    hint = f"{left_out}give it a constant value with --set"
     problems = [
         Problem(
             "no-modes",
-            f"{name} depends on t: small oscillations are those about a state at which nothing changes",
+            f"{name} depends on t: small oscillations need a state that does not change",
             hint=hint,
         )
         for name in dict.fromkeys(load_path(load) for load in time_loads)
@@ -151,7 +151,7 @@ def find_state(setup: Setup) -> tuple[LinearisedState, Literal["rest", "state"],
         neighbour_states = () if setup.rest is None else setup.rest.nearby_states
         return linearised_state, "rest" if kind == "rest" else "state", neighbour_states
     if kind in ("state", "rest"):
-        subject = "state is not at rest" if kind == "state" else "pose found is not quite at rest"
+        subject = "state is not at rest" if kind == "state" else "position found is not quite at rest"
         hint = (MOVING_HINT if is_moving(linearised_state) else REST_HINT) + "".join(
             f"; {x}" for x in make_hold_hints(setup.spec)
         )
@@ -166,9 +166,7 @@ def make_hold_hints(spec: Spec) -> list[str]:
     """Return hints on how to hold the moving drives at their start."""
     moving = ",".join(name for name, drive in spec.drives.items() if drive.by_rate or drive.value.time_dependent)
     return (
-        [f"--without {moving} holds {'them where they start' if ',' in moving else 'it where it starts'}"]
-        if moving
-        else []
+        [f"--without {moving} fixes {'them at their start' if ',' in moving else 'it at its start'}"] if moving else []
     )
 
 
@@ -177,10 +175,10 @@ def require_steady_drives(setup: Setup) -> None:
     laws = [law for law in setup.scene.mechanism.laws if not has_constant_rate(law.value)]
     if laws:
         drives = [law.name for law in laws if not law.is_rope]
-        hint = f"--without {','.join(drives)}: modes with it held where it starts"
-        hint = hint if drives else "a length that stays, or grows at a constant rate"
+        hint = f"--without {','.join(drives)}: modes with it fixed at its start"
+        hint = hint if drives else "give a length that is constant or grows at a constant rate"
         raise SolveError(*(
-            Problem("no-modes", f"{law.path} does not go on at a constant rate", hint=hint) for law in laws
+            Problem("no-modes", f"{law.path} does not have a constant rate", hint=hint) for law in laws
         ))  # fmt: skip
 
 
@@ -189,7 +187,7 @@ def linearise_start(setup: Setup) -> LinearisedState:
     runner, layout = setup.runner, setup.scene.layout
     t = float(setup.spec.analysis.times[0]) if setup.spec.analysis.type == "state" else 0.0
     recovered = runner.evaluate(np.array([t]), layout.y0[None, :])
-    require_solvable(setup.scene, recovered, ErrorWording("accelerations of the start"))
+    require_solvable(setup.scene, recovered, ErrorWording("accelerations at the start"))
     return linearise_scene(setup.scene, runner, t, layout.y0, runner.start_holding)
 
 
@@ -215,11 +213,11 @@ def find_unsteadiness(linearised_state: LinearisedState, is_equilibrium: bool) -
     if not imbalance <= max(
         tolerances.OFF_BALANCE, tolerances.HELD * linearised_state.reach if is_equilibrium else 0.0
     ):
-        return f"{find_most_accelerated(linearised_state)} is pushed" + (
-            f", some {imbalance:.2g} from where it would rest" if imbalance < 1.0 else ""
+        return f"{find_most_accelerated(linearised_state)} accelerates" + (
+            f", about {imbalance:.2g} from its rest position" if imbalance < 1.0 else ""
         )
     if is_moving(linearised_state) and not continues_unchanged(linearised_state):
-        return "its motion is not steady: loads change as it goes on, also in the frame that turns along"
+        return "its motion is not steady: loads change with time, also in the co-rotating frame"
     return None
 
 
@@ -252,8 +250,8 @@ def require_differentiable(linearised_state: LinearisedState) -> None:
     """Raise SolveError [no-modes] if a law has no slope, or if closed chains can move to first order only."""
     sentences = list(dict.fromkeys(iter_without_slope(linearised_state)))
     if is_singular(linearised_state):
-        sentences.append("closed chains are stretched, folded or flat there, and give way to the first order only")
+        sentences.append("closed loops are stretched, folded or flat there, and can move to first order only")
     if sentences:
         consequence = "oscillations about it are not linear, however small"
-        hint = "take modes a little beside it, by type: state; or run a motion, which shows how it moves there"
+        hint = "use a nearby position with type: state, or run a motion"
         raise SolveError(*(Problem("no-modes", f"{sentence}: {consequence}", hint=hint) for sentence in sentences))

@@ -21,7 +21,7 @@ def find_largest_conditions(motion: MotionSearch) -> tuple[LargestCondition | No
     if not layout_coordinates.count:
         return None, None, "nothing is free to move"
     if n > MAX_FREEDOMS:
-        return None, None, f"{n} freedoms, more than {MAX_FREEDOMS}: whole matrices are not formed"
+        return None, None, f"{n} degrees of freedom, more than {MAX_FREEDOMS}: full matrices are not formed"
     instant_limit = max(1, MAX_NUMBERS // (6 * n * len(layout.place) + n * n + n * len(layout.rows)))
     times = motion.times[:: -(-len(motion.times) // min(MAX_INSTANTS, max(instant_limit, 4)))]
     recovered = motion.recover(times)
@@ -43,15 +43,15 @@ def find_singular_events(motion: MotionSearch) -> list[Event]:
     """Return singular poses that the motion passes or begins in, and bodies without inertia about an axis."""
     study = motion.study
     loops = study.setup.scene.mechanism.owner_path(motion.layout.rows[0]) if motion.layout.rows else ""
-    singular_text = "closed chains are stretched, folded or flat: they lose rank, and may go on in more than one way"
+    singular_text = "closed loops are stretched, folded or flat: they lose rank, and several motions are possible"
     events = [Event(t, SINGULAR, loops, singular_text) for t in study.history.singular]
     events += [
         Event(float(motion.times[0]), SINGULAR, loops, note)
         for note in study.setup.model["notes"]
-        if note.startswith("the start is a singular pose")
+        if note.startswith("the start is a singular position")
     ]
     for spin in study.setup.scene.idle_spins:
         name = study.setup.scene.mechanism.bodies[spin.body].name
-        message = f"{name} has no inertia about its own axis: a mass matrix of the whole is singular"
+        message = f"{name} has no inertia about its own axis: the full mass matrix is singular"
         events.append(Event(float(motion.times[0]), NO_MASS, f"bodies.{name}", message))
     return events

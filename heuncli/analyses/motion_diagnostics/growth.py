@@ -19,14 +19,10 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 
 SLOPE_SAMPLES = 200  # instants for the fit of the slope
-CONTACTS_REASON = (
-    "stops or ropes open and close, and each run meets them at instants of its own: the run's own horizon counts"
-)
-TRIGGERS_REASON = (
-    "blows strike at a condition, and each run meets it at instants of its own: the run's own horizon counts"
-)
-ONE_INSTANT_REASON = "one instant: nothing goes on; heun modes tells what grows about a pose that rests"
-FOLLOWED_REASON = "nothing is integrated: drives and joints leave no freedom"
+CONTACTS_REASON = "stops or ropes open and close at different times in each run: use the horizon of the run itself"
+TRIGGERS_REASON = "conditional impulses act at different times in each run: use the horizon of the run itself"
+ONE_INSTANT_REASON = "one instant, no motion; heun modes shows what grows about a rest position"
+FOLLOWED_REASON = "motion fully prescribed: nothing is integrated"
 
 
 def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
@@ -66,7 +62,7 @@ def find_out_of_plane_growth(motion: MotionSearch) -> tuple[GrowthResults | None
     if checked_run is None or study.setup.model.get("plane") is None:
         return None, ""
     if study.setup.model["plane"] == "declared":
-        return None, "the scene is declared planar: nothing leaves the plane"
+        return None, "the model is declared planar: nothing leaves the plane"
     if checked_run.run.method.is_determined:
         return None, FOLLOWED_REASON
     if layout.contacts:

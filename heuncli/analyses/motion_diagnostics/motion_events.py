@@ -116,7 +116,7 @@ def make_attitude_track(place: int) -> Track:
 
 def make_half_turn_event(name: str, interval: ZeroInterval, motion: MotionSearch) -> Event:
     """Return the event of a half turn at an instant, or of an attitude that stays at one."""
-    message = "is turned by 180 deg against the drawing: its global Rodrigues parameters are without bound"
+    message = "is rotated by 180 deg from the world axes: its global Rodrigues parameters are unbounded"
     return Event(interval.begin, HALF_TURN, f"bodies.{name}", f"{name} {message}{format_duration(interval, motion)}")
 
 
@@ -124,7 +124,7 @@ def format_duration(interval: ZeroInterval, motion: MotionSearch) -> str:
     """Return the words that say how long a zero lasts; empty if it is passed through."""
     if interval.end - interval.begin <= tolerances.SAME_INSTANT * motion.span:
         return ""
-    return ", all the time" if interval.end - interval.begin >= motion.span else f", until t = {interval.end:.6g} s"
+    return ", at all times" if interval.end - interval.begin >= motion.span else f", until t = {interval.end:.6g} s"
 
 
 class LockApproach(NamedTuple):
@@ -194,7 +194,7 @@ def make_lock_event(name: str, sequence: str, lock: LockApproach, motion: Motion
     """Return the event of a gimbal lock, or of a pose so near to it that digits are lost."""
     k = float(compute_condition(lock.sine))
     condition_text = (
-        f"condition {k:.2g} of its angle matrix" if np.isfinite(k) and k < 1.0 / tolerances.EPS else "locked"
+        f"condition number {k:.2g} of its angle matrix" if np.isfinite(k) and k < 1.0 / tolerances.EPS else "locked"
     )
     message = f"{sequence} Euler angles of {name}: {condition_text}{format_duration(lock.interval, motion)}"
     return Event(lock.interval.begin, GIMBAL, f"bodies.{name}", message)
@@ -228,7 +228,7 @@ def explain_skipped(motion: MotionSearch, loop: Loop, count: int) -> str:
     names = format_joints(motion, loop)
     if count == 0:
         return f"the coordinates of {names} do not move"
-    return f"the coordinates of {names} take part in {count} motions at once: no single one is driven through another"
+    return f"the coordinates of {names} share {count} degrees of freedom: none drives another alone"
 
 
 def format_joints(motion: MotionSearch, loop: Loop) -> str:
@@ -260,7 +260,7 @@ def find_loop_dead_centres(motion: MotionSearch, loop: Loop, shares: Array, move
             others = [f"{joints[j].name}.{what}" for j, what in loop.coordinates if (j, what) != (k, name)]
             coordinate = f"{joints[k].name}.{name}"
             motion_text = f"{' and '.join(others[:2])} {'moves' if len(others) == 1 else 'move'}"
-            message = f"{coordinate} stands while {motion_text}: nothing there drives the mechanism"
+            message = f"{coordinate} stops while {motion_text}: it cannot drive the mechanism there"
             events.append(
                 Event(
                     interval.begin, DEAD_CENTRE, f"joints.{joints[k].name}", message + format_duration(interval, motion)

@@ -135,7 +135,9 @@ class Probe:
     def verdict(self) -> str:
         """One sentence for the top of the page."""
         if not self.trouble:
-            return f"nothing {'in this motion' if self.duration else 'at this instant'} troubles heun's default method"
+            return (
+                f"no difficulties for heun's default method {'in this motion' if self.duration else 'at this instant'}"
+            )
         return self.trouble[0]
 
     def to_block(self) -> dict[str, Any]:

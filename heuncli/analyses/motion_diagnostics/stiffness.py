@@ -33,7 +33,7 @@ EXPLICIT = ("RK4", "DOPRI5", "DOP853")
 MAX_INSTANTS = 60  # instants at which eigenvalues are computed
 MAX_STATE_SIZE = 600  # largest size of the state for which the matrix is formed
 WINDOW_COUNT = 100  # of the run, over which the speeds change
-NO_SLOPE_REASON = "a law has no slope, as the root of 0: the tangent does not exist there"
+NO_SLOPE_REASON = "a force law has no derivative there (such as sqrt at 0): no tangent matrix exists"
 
 
 def find_stiffness(motion: MotionSearch) -> tuple[StiffnessResults | None, str]:
@@ -42,9 +42,9 @@ def find_stiffness(motion: MotionSearch) -> tuple[StiffnessResults | None, str]:
     runner, checked_run = study.setup.runner, motion.checked
     n = runner.integrated_scene.layout.n_state
     if checked_run is not None and checked_run.run.method.is_determined:
-        return None, "nothing is integrated: drives and joints leave no freedom"
+        return None, "motion fully prescribed: nothing is integrated"
     if n > MAX_STATE_SIZE:
-        return None, f"{n} numbers of state, more than {MAX_STATE_SIZE}: the tangent is not formed as a whole"
+        return None, f"{n} state variables, more than {MAX_STATE_SIZE}: the full tangent matrix is not formed"
     if not DisturbanceScale(runner.integrated_scene.layout, 1.0).n:
         return None, "nothing is free to move"
     if checked_run is None:
@@ -63,7 +63,7 @@ def find_stiffness(motion: MotionSearch) -> tuple[StiffnessResults | None, str]:
     growth_rate = max(float(values.real.max(initial=0.0)) for values in values_at)  # growth is part of the motion, too
     rate = max(find_motion_rate(motion, run, times, stable), growth_rate)
     if rate == 0.0:
-        return None, "nothing moves: accuracy asks for no step"
+        return None, "nothing moves: accuracy sets no step size"
     return make_results(times, values_at, rate, get_tolerance(motion, run)), ""
 
 

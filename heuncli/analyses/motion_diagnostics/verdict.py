@@ -22,21 +22,21 @@ def iter_troubles(result: Probe) -> Iterator[str]:
     singular_events = [event for event in result.events if event.kind == SINGULAR]
     if singular_events:
         yield (
-            f"singular poses: closed chains lose rank at t = {format_instants(singular_events)} s; how "
-            "they go on there is a choice"
+            f"singular positions: closed loops lose rank at t = {format_instants(singular_events)} s; "
+            "several motions are possible there"
         )
     closure = result.closure
     if closure is not None and closure.value * tolerances.NEARLY_SINGULAR > 1.0 and not singular_events:
         yield (
-            f"nearly singular closed chains at t = {closure.time:.4g} s, condition {closure.value:.1g}: reactions "
-            "there lose as many digits"
+            f"nearly singular closed loops at t = {closure.time:.4g} s, condition number {closure.value:.1g}: "
+            "reactions there lose accuracy by this factor"
         )
     out_of_plane = result.out_of_plane
     if out_of_plane is not None and out_of_plane.exponential and out_of_plane.rate > 0.0:
         yield (
-            "unstable against leaving the plane: a disturbance out of it grows e times every "
-            f"{1.0 / out_of_plane.rate:.3g} s; what is solved is the motion in the plane, which no "
-            "machine keeps to for long"
+            "unstable out of plane: an out-of-plane disturbance grows by a factor e every "
+            f"{1.0 / out_of_plane.rate:.3g} s; heun solves the planar motion, which no "
+            "real machine keeps for long"
         )
 
 
@@ -45,15 +45,13 @@ def iter_stiffness(result: Probe) -> Iterator[str]:
     stiffness = result.stiffness
     if stiffness is not None and stiffness.ratio > 1.0:
         alternative = (
-            f"{result.implicit_method}, by which this run goes, has"
-            if result.implicit_method
-            else "an implicit method has"
+            f"{result.implicit_method}, used in this run, has" if result.implicit_method else "an implicit method has"
         )
         yield (
             f"stiff: rates up to {max(stiffness.decay, stiffness.oscillation):.3g} 1/s allow DOP853 steps of "
             f"{get_stable_step(result, 'DOP853'):.2g} s only, {stiffness.ratio:.2g} times shorter "
-            "than accuracy asks for, "
-            f"shortest at t = {stiffness.time:.4g} s; {alternative} no such bound"
+            "than accuracy requires, "
+            f"shortest at t = {stiffness.time:.4g} s; {alternative} no such limit"
         )
 
 
@@ -62,11 +60,11 @@ def iter_horizons(result: Probe) -> Iterator[str]:
     growth = result.growth
     rate = ""
     if growth is not None and growth.rate > 0.0:
-        rate = f": disturbances grow e times every {1.0 / growth.rate:.3g} s"
+        rate = f": disturbances grow by a factor e every {1.0 / growth.rate:.3g} s"
     if growth is not None and growth.horizon is not None:
-        yield f"chaos: no run in double precision can be relied on beyond t = {growth.horizon:.4g} s{rate}"
+        yield f"chaos: no run in double precision is reliable past t = {growth.horizon:.4g} s{rate}"
     if result.run_horizon is not None:
-        yield f"beyond t = {result.run_horizon:.4g} s this run claims nothing"
+        yield f"this run is not reliable past t = {result.run_horizon:.4g} s"
 
 
 def iter_other_troubles(result: Probe) -> Iterator[str]:
@@ -91,7 +89,7 @@ def iter_other_troubles(result: Probe) -> Iterator[str]:
             f"{format_instants(centres)} s"
         )
     if by_kind[NO_MASS] or (result.mass is not None and math.isinf(result.mass.value)):
-        yield "a mass matrix of the whole is singular: what factors it fails; heun's sweep turns about what moves mass"
+        yield "the full mass matrix is singular: methods that factorise it fail; heun's recursion does not"
     if result.stiffness is not None and result.stiffness.ratio <= 1.0:
         yield from iter_limited_methods(result)
 
@@ -101,7 +99,7 @@ def iter_limited_methods(result: Probe) -> Iterator[str]:
     assert result.stiffness is not None
     names = [s.method for s in result.stiffness.steps if s.accuracy > s.stability]
     if names:
-        yield f"stability, not accuracy, bounds the steps of {list_some(names)}"
+        yield f"stability, not accuracy, limits the steps of {list_some(names)}"
 
 
 def get_stable_step(result: Probe, name: str) -> float:

@@ -29,7 +29,7 @@ def parse_decimal(text: str) -> PrintedNumber:
     """Parse a decimal number: 0.3284 means 0.32835 to 0.32845. Raises ValueError."""
     decimal = DECIMAL.match(text)
     if decimal is None:
-        raise ValueError(f"{text} is no decimal number")
+        raise ValueError(f"{text} is not a decimal number")
     return PrintedNumber(text, float(text), 10.0 ** (int(decimal[3] or 0) - len(decimal[2] or "")))
 
 

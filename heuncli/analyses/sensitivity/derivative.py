@@ -253,14 +253,14 @@ def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size:
     distance = 0.5 * step
     (full_step, _), (half_step, _) = differences.measure_kink(step), differences.measure_kink(distance)
     if kinked and half_step > JUMP_RATIO * full_step:
-        return make_refusal(f"it jumps within {distance:.2g} of the value, by {half_step * distance:.3g}", step)
+        return make_refusal(f"jump of {half_step * distance:.3g} within {distance:.2g} of the value", step)
     sides = [compute_outside(differences, sign, distance, pairs[0].step, size) for sign in (-1, 1)]
     largest = max((abs(each.value) for each in sides if each), default=0.0)
     side_derivatives = [(each.value, each.error) for each in sides if each and is_determined(each, largest)]
     if not kinked or len(side_derivatives) < 2:
-        difference_text = f"two steps differ by {pairs[0].difference:.2g} of {pairs[0].value:.3g}"
-        return make_refusal(f"{difference_text}: it jumps, bends or swings within {step:.2g} of the value", step)
-    reason = f"it bends within {distance:.2g} of the value: left and right of that the derivatives differ"
+        difference_text = f"two step sizes differ by {pairs[0].difference:.2g} of {pairs[0].value:.3g}"
+        return make_refusal(f"{difference_text}: jump, kink or oscillation within {step:.2g} of the value", step)
+    reason = f"kink within {distance:.2g} of the value: the derivatives on its two sides differ"
     return NoisyDerivative(
         None, kind="kink", why=("kink", reason), left=side_derivatives[0], right=side_derivatives[1], step=distance
     )

@@ -8,7 +8,7 @@ from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumb
 from heuncli.base.errors import Finding
 from heuncli.base.units import describe, parse_unit
 
-FORM = "expected NAME=VALUE,..., how far each may lie from its value"
+FORM = "expected NAME=VALUE,..., the tolerance of each parameter"
 HINT = "such as --spread L=0.1mm,e=0.02mm"
 
 
@@ -31,7 +31,7 @@ def _parse_size(word: str, value: str, number: WrittenNumber) -> float:
         raise AxisError(word, "a spread is a positive number, with its unit", HINT)
     if not quantity.unit:
         if number.size != 1.0:
-            raise AxisError(word, f"{number.name} is given in {number.unit}: a spread needs its unit", HINT)
+            raise AxisError(word, f"{number.name} is given in {number.unit}: its spread needs a unit", HINT)
         return quantity.value
     try:
         size, dimension = parse_unit(quantity.unit)

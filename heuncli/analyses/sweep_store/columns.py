@@ -17,9 +17,9 @@ from heuncli.study.quantities.digits import OPEN, UNKNOWN
 NUMBER = "number"
 CODE, REASON = "code", "reason"
 WORDS = {  # the word of a measure without value -> what tables show, and why
-    "open": (OPEN, "open: redundant supports share it in a way that rigid bodies leave undetermined"),
-    "unknown": (UNKNOWN, "not known beside a singular pose"),
-    "beyond": (UNKNOWN, "beyond the horizon nothing is claimed"),
+    "open": (OPEN, "open: statically indeterminate, depends on stiffness"),
+    "unknown": (UNKNOWN, "not known near a singular position"),
+    "beyond": (UNKNOWN, "not reliable past the horizon"),
     "absent": ("-", "does not happen in this run"),
 }
 Cell = int | float | str | None

@@ -11,14 +11,14 @@ from contextlib import contextmanager
 from heuncli.base.errors import OutputError, Problem, UsageError
 
 NOT_A_STORE = "not-a-store"
-OTHER_FILE_HINT = "name another file: it is made where there is none"
-DISK_HINT = "make room, or name a place on another disk; what was done before is kept"
+OTHER_FILE_HINT = "give another file; a new one is created"
+DISK_HINT = "free some space, or use another disk; earlier results are kept"
 # by the beginning of SQLite's name of the error: message, and hint
 REASONS = {
     "SQLITE_FULL": ("the disk is full", DISK_HINT),
     "SQLITE_IOERR": ("it cannot be read or written", DISK_HINT),
-    "SQLITE_READONLY": ("it may not be written", "look at the permissions, or name another place"),
-    "SQLITE_CANTOPEN": ("it cannot be opened", "look at the name and the permissions, or name another place"),
+    "SQLITE_READONLY": ("no permission to write", "check the permissions, or use another location"),
+    "SQLITE_CANTOPEN": ("it cannot be opened", "check the name and the permissions, or use another location"),
     "SQLITE_BUSY": ("another process has been writing for minutes", "wait for it, or end it"),
     "SQLITE_LOCKED": ("another process has been writing for minutes", "wait for it, or end it"),
 }
@@ -36,7 +36,7 @@ def convert_errors(name: str) -> Iterator[None]:
 def _make_error(name: str, error: sqlite3.Error) -> OutputError | UsageError:
     kind = getattr(error, "sqlite_errorname", "")
     if kind.startswith("SQLITE_NOTADB"):
-        return UsageError(Problem(NOT_A_STORE, f"{name}: this is no store of sweeps", hint=OTHER_FILE_HINT))
+        return UsageError(Problem(NOT_A_STORE, f"{name}: not a store of sweeps", hint=OTHER_FILE_HINT))
     if kind.startswith("SQLITE_CORRUPT"):
         message = f"{name}: this store is damaged: {error}"
         return UsageError(

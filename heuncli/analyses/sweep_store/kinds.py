@@ -58,8 +58,8 @@ def initialize_store(connection: sqlite3.Connection, name: str, is_persistent: b
     require_store(connection, name)
     version = connection.execute("SELECT version FROM heun").fetchone()[0]
     if version != VERSION:
-        message = f"{name}: this store is of heun {version}, this is heun {VERSION}: its numbers may be others"
-        hint = f"name another file; heun sweep --show {name} prints what is in it"
+        message = f"{name}: written by heun {version}, this is heun {VERSION}: its numbers may differ"
+        hint = f"give another file; heun sweep --show {name} prints its contents"
         raise UsageError(Problem(NOT_A_STORE, message, hint=hint))
 
 
@@ -76,12 +76,14 @@ def require_store(connection: sqlite3.Connection, name: str, may_be_empty: bool 
             connection.execute("COMMIT")
     if application == APPLICATION_ID:
         if form != FORMAT_VERSION:
-            message = f"{name}: a store in form {form}, of another version of heun; this one has form {FORMAT_VERSION}"
+            message = (
+                f"{name}: store format {form}, of another version of heun; this version uses format {FORMAT_VERSION}"
+            )
             raise UsageError(Problem(NOT_A_STORE, message, hint=OTHER_FILE_HINT))
         return
     if not may_be_empty or not is_empty:
         what = "it is empty" if is_empty else "it is a database of another program"
-        raise UsageError(Problem(NOT_A_STORE, f"{name}: this is no store of sweeps: {what}", hint=OTHER_FILE_HINT))
+        raise UsageError(Problem(NOT_A_STORE, f"{name}: not a store of sweeps: {what}", hint=OTHER_FILE_HINT))
 
 
 def _is_empty(connection: sqlite3.Connection) -> bool:

@@ -60,7 +60,7 @@ class Store:
 
         Raises OutputError, UsageError if the file belongs to another program, or to another version.
         """
-        self.name = name if name is not None else "the folder of temporary files"
+        self.name = name if name is not None else "the temporary folder"
         if name is not None:
             find_target(name)
         with convert_errors(self.name):

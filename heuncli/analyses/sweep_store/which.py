@@ -22,7 +22,7 @@ def split_store_argument(word: str, option: str) -> tuple[str, int | None]:
         sweep_number = None
     if not Path(word).is_file():
         message = f"{option} {word}: there is no such file"
-        raise UsageError(Problem("unreadable", message, hint="heun sweep ... --store FILE makes one"))
+        raise UsageError(Problem("unreadable", message, hint="create one with heun sweep ... --store FILE"))
     return word, sweep_number
 
 
@@ -32,7 +32,7 @@ def choose_sweep(name: str, number: int | None, sweeps: list[StoredSweep], optio
     if not found:
         numbers = ", ".join(str(one.number) for one in sweeps)
         message = f"{option} {name}: there is no sweep {number if number is not None else 'in it'}"
-        raise UsageError(Problem("bad-option", message, hint=f"there are: {numbers}" if numbers else "it holds none"))
+        raise UsageError(Problem("bad-option", message, hint=f"known: {numbers}" if numbers else "it is empty"))
     return found[0]
 
 

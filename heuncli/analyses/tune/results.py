@@ -153,10 +153,10 @@ class Trial(NamedTuple):
 
 
 UNKNOWN = {
-    "absent": "what is measured does not happen",
-    "open": "a measure is open: redundant supports leave it so",
-    "beyond": "a measure lies beyond the horizon",
-    "unknown": "a measure is not known: the pose is singular",
+    "absent": "the measured event does not happen",
+    "open": "a measure is open: statically indeterminate",
+    "beyond": "a measure is past the horizon",
+    "unknown": "a measure is not known: singular position",
 }
 
 

@@ -104,7 +104,7 @@ def parse_axis_values(word: str) -> ParameterAxis | RandomVariable:
             ),
         )
     if ":" in values and not values.lstrip().startswith(("{", "[")):
-        raise AxisError(word, "an interval needs a count of its values", f"such as {name}={values.strip()}/11")
+        raise AxisError(word, "an interval needs its number of values", f"such as {name}={values.strip()}/11")
     return ParameterAxis(name, _parse_list(word, values))
 
 
@@ -170,7 +170,7 @@ def _make_even_values(word: str, ends: str, count: int, by_ratio: bool, last_uni
     if count == 1 and low != high:
         raise AxisError(word, "1 value cannot be at both ends", "give it alone, or 2 values or more")
     if by_ratio and low * high <= 0.0:
-        raise AxisError(word, "log: both ends need the same sign, and neither is 0")
+        raise AxisError(word, "log: both ends must have the same sign and not be 0")
     values = np.geomspace(low, high, count) if by_ratio else np.linspace(low, high, count)
     return tuple(format_quantity(value, unit) for value in values.tolist())
 
@@ -183,9 +183,9 @@ def _parse_random_variable(word: str, name: str, law: str, inner: str, last_unit
     a, b, unit = _parse_two_numbers(word, (parts[0], f"{parts[1]} {last_unit}"), "", HINT)
     if law == "normal":
         if b <= 0.0:
-            raise AxisError(word, "the deviation of normal(mean,deviation) is positive")
+            raise AxisError(word, "the deviation of normal(mean,deviation) must be positive")
     elif a >= b:
-        raise AxisError(word, f"{law}(a,b) runs from the lesser to the greater")
+        raise AxisError(word, f"{law}(a,b) needs a < b")
     return RandomVariable(name, law, a, b, unit)  # type: ignore[arg-type]
 
 
@@ -207,7 +207,7 @@ def _parse_two_numbers(word: str, texts: tuple[str, str], message: str, hint: st
         _require_unit(word, second.unit),
     )
     if not second.unit or dimension != second_dimension:
-        raise AxisError(word, f"'{first.unit}' and '{second.unit or 'no unit'}' are not of one kind", hint)
+        raise AxisError(word, f"'{first.unit}' and '{second.unit or 'no unit'}' are different quantities", hint)
     return first.value * size / second_size, second.value, second.unit
 
 

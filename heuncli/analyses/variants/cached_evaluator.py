@@ -15,10 +15,10 @@ NUMBER_LISTS = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
 # the reason why a measure has no value, by its word
 REASONS: Mapping[str, str] = MappingProxyType(
     {
-        "open": "open: the laws of rigid bodies do not give it (redundant supports)",
-        "unknown": "not known: beside a singular pose",
-        "beyond": "beyond the run's horizon nothing is claimed",
-        "absent": "what is measured does not happen there, as an event or a blow",
+        "open": "open: statically indeterminate, depends on stiffness",
+        "unknown": "not known: near a singular position",
+        "beyond": "not reliable past the run's horizon",
+        "absent": "the measured event or impulse does not happen there",
     }
 )
 

@@ -52,10 +52,10 @@ def parse_condition(text: str, form: str, hint: str) -> MeasureCondition:
     if found is None or relation is None:
         raise AxisError(text, form, hint)
     if not found[1].strip() or not found[3].strip():
-        what = "a measure before" if not found[1].strip() else "a value behind"
-        raise AxisError(text, f"{form}; there is not {what} the '{found[2]}'", hint)
+        what = "no measure before" if not found[1].strip() else "no value after"
+        raise AxisError(text, f"{form}; there is {what} the '{found[2]}'", hint)
     if parse_number_with_unit(found[1]) is not None:
-        raise AxisError(text, "the measure stands first", hint)
+        raise AxisError(text, "put the measure first", hint)
     return MeasureCondition(found[1].strip(), relation, found[3].strip())
 
 
@@ -72,7 +72,9 @@ def find_si_value(condition: MeasureCondition, unit: str, specs: Sequence[Spec],
         except Finding as finding:
             raise AxisError(condition.text, finding.message, finding.hint or hint, finding.code) from None
     if len(values) > 1:
-        raise AxisError(condition.text, f"the value '{condition.value}' hangs on what is varied", "give it as a number")
+        raise AxisError(
+            condition.text, f"the value '{condition.value}' depends on what is varied", "give it as a number"
+        )
     return values.pop()
 
 

@@ -36,7 +36,7 @@ LARGEST_LOG = 690.0  # of a magnitude that does not overflow
 MAX_ISOLATED_WIDTH = (
     1e-3  # of the spacing: singular poses over a shorter range are isolated places, not a part of the course
 )
-SINGULAR_REASON = "the run passes a singular pose there and not beside it: its number is no neighbour of the others"
+SINGULAR_REASON = "the run passes a singular position only there: its value does not follow its neighbours"
 POLE_MARGIN = 0.5  # of an interval: distance outside of it that a predicted pole may have
 
 

@@ -41,7 +41,7 @@ def make_draws(laws: Sequence[RandomVariable], samples: int, seed: int = 0, *, i
     """
     _require_few(laws, samples, len(laws) + 2 if indices else 1)
     if seed < 0:
-        raise AxisError("--seed", f"{seed}: expected a number from 0 on", "such as --seed 7")
+        raise AxisError("--seed", f"{seed}: expected 0 or more", "such as --seed 7")
     copies = 2 if indices else 1
     repetitions = REPETITIONS if indices and find_joint_law(laws) else 1
     points = _draw_points(laws, samples, seed, copies, repetitions).reshape(samples, copies, len(laws))
@@ -69,7 +69,7 @@ def find_joint_law(laws: Sequence[RandomVariable]) -> str:
     joint_laws = {law.law for law in laws} & {*JOINT_LAWS}
     if len(joint_laws) > 1:
         names = " ".join(law.name for law in laws if law.law in JOINT_LAWS)
-        raise AxisError(names, "lhs and sobol in one sweep", "one of both: their parameters are drawn together")
+        raise AxisError(names, "lhs and sobol in one sweep", "use one of them: its parameters are drawn together")
     return joint_laws.pop() if joint_laws else ""
 
 
@@ -88,7 +88,9 @@ def _require_few(laws: Sequence[RandomVariable], samples: int, rows_per_sample: 
         raise AxisError("--samples", f"{samples}: expected 2 or more", SAMPLES_HINT)
     if samples * rows_per_sample > MAX_VARIANTS:
         names = " ".join(law.name for law in laws)
-        raise AxisError(names, f"{samples * rows_per_sample:,} variants; at most {MAX_VARIANTS:,}", "fewer --samples")
+        raise AxisError(
+            names, f"{samples * rows_per_sample:,} variants; at most {MAX_VARIANTS:,}", "use fewer --samples"
+        )
 
 
 def _draw_points(laws: Sequence[RandomVariable], samples: int, seed: int, copies: int, repetitions: int) -> Array:

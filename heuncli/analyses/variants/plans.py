@@ -107,11 +107,11 @@ def make_axes_plan(
     names = [axis.name for axis in (*columns, *axes)] + [law.name for law in (draws.laws if draws else ())]
     for name in names:
         if names.count(name) > 1:
-            raise AxisError(name, "is varied twice", "one axis a parameter")
+            raise AxisError(name, "is varied twice", "give one axis per parameter")
     if together and len({len(axis.texts) for axis in axes}) > 1:
         counts = ", ".join(f"{axis.name} {len(axis.texts)}" for axis in axes)
         raise AxisError(
-            "--zip", f"the axes have not the same count of values: {counts}", "leave --zip out for all combinations"
+            "--zip", f"the axes have different numbers of values: {counts}", "leave --zip out for all combinations"
         )
     plan = Plan(tuple(axes), together, draws, tuple(columns))
     if plan.size > MAX_VARIANTS:

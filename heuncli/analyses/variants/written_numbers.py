@@ -56,7 +56,7 @@ class WrittenNumbers:
         try:
             return self._parse(name, entry)
         except Finding as finding:
-            raise AxisError(name, f"this is no number: {finding.message}", EXAMPLES) from None
+            raise AxisError(name, f"not a number: {finding.message}", EXAMPLES) from None
 
     def iter_parameters(self) -> Iterator[WrittenNumber]:
         """Yield the parameters that are given as numbers, without those that are expressions of others."""

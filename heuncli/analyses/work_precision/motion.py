@@ -26,7 +26,7 @@ from heuncli.study.solve.history import check_start
 # local tolerance, and time limit, of the run that detects stiffness
 STIFFNESS_TEST_TOLERANCE, STIFFNESS_TEST_SECONDS = (1e-8, 10.0)
 TIME_LIMIT_TEXT = "the time limit was reached before a reference was found"
-NO_MOTION_HINT = "a chart compares how a motion is integrated; ask for one: analysis: {duration: 2, samples: 201}"
+NO_MOTION_HINT = "a chart compares how a motion is integrated; request one: analysis: {duration: 2, samples: 201}"
 
 
 @record
@@ -87,8 +87,8 @@ def make_motion(spec: Spec, deadline: float | None) -> MotionProblem:
     move.
     """
     if spec.analysis.type != "motion":
-        reasons = {"rest": "a rest pose is looked for, not integrated", "impulse": "an impulse is one instant"}
-        message = f"{reasons.get(spec.analysis.type, 'a state is one instant')}: no method has anything to integrate"
+        reasons = {"rest": "a rest position has no motion", "impulse": "an impulse is one instant"}
+        message = f"{reasons.get(spec.analysis.type, 'a state is one instant')}: there is nothing to integrate"
         raise SpecError(Problem("nothing-to-chart", message, hint=NO_MOTION_HINT))
     spec, ends = resolve_end(spec, deadline)
     setup = set_up(spec, AUTO)

@@ -52,7 +52,9 @@ def plan_chart(motion: MotionProblem, options: ChartOptions) -> ChartPlan:
         others = [row.name for row in methods if row.attitude != QUATERNION]
         methods = [row for row in methods if row.attitude == QUATERNION]
         if others:
-            notes.append(f"{' and '.join(others)} left out: nothing here turns freely in space, they are {DEFAULT}")
+            notes.append(
+                f"{' and '.join(others)} left out: nothing here rotates freely in space, so they equal {DEFAULT}"
+            )
     require_usable_options(methods, options)
     steps = options.steps
     if steps is None and any(row.steps == "fixed" for row in methods):
@@ -69,13 +71,13 @@ def require_usable_options(methods: Sequence[MethodRow], options: ChartOptions) 
     """Raise SpecError [bad-option] if an option has no effect on any of the methods."""
     kinds = {row.steps for row in methods}
     for values, step_kind, option, phrase in (
-        (options.tolerances, "adaptive", "--tolerances", "choose their steps by a tolerance"),
-        (options.steps, "fixed", "--steps", "take fixed steps"),
+        (options.tolerances, "adaptive", "--tolerances", "uses a tolerance"),
+        (options.steps, "fixed", "--steps", "uses fixed steps"),
     ):
         if values is not None and step_kind not in kinds:
-            message = f"{option}: none of the methods would {phrase}"
+            message = f"{option}: none of the methods {phrase}"
             known = ", ".join(row.name for row in METHODS if row.steps == step_kind)
-            raise SpecError(Problem("bad-option", message, hint=f"those that do: {known or 'none'}"))
+            raise SpecError(Problem("bad-option", message, hint=f"methods that do: {known or 'none'}"))
 
 
 def has_attitudes(motion: MotionProblem) -> bool:

@@ -33,11 +33,11 @@ PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))
 FINEST_TOLERANCES = (tolerances.LEAST_TOLERANCE, 1e-12, 1e-10)
 MAX_SECONDS = 20.0  # time limit of one of these runs
 AGREEMENT = 1e-9  # relative: if two runs agree so well, no other pair is tried
-TOO_SHORT_TEXT = "the references agree up to t = {:.6g} s only, before the first asked instant: nothing can be judged"
+TOO_SHORT_TEXT = "the references agree only up to t = {:.6g} s, before the first output time: no errors can be found"
 TOO_SHORT_HINT = "more samples, or a shorter duration"
-SOLVED_TEXT = "every instant solved by itself"  # text for a motion that is solved instant by instant
+SOLVED_TEXT = "each instant solved separately"  # text for a motion that is solved instant by instant
 AGREEMENT_TEXTS = {
-    "motion": "motion to {} of the scene's size",
+    "motion": "motion to {} of the model size",
     "reactions": "reactions to {}",
     "sections": "sections to {}",
 }
@@ -101,7 +101,7 @@ def make_failure(failure: HeunError) -> HeunError:
     if not isinstance(failure, LimitError):
         return failure
     message = f"no reference: {failure.problems[0].message}"
-    return LimitError(Problem("no-reference", message, hint="a shorter duration; heun run says how long a run takes"))
+    return LimitError(Problem("no-reference", message, hint="a shorter duration; heun run shows how long a run takes"))
 
 
 def iter_method_pairs(motion: MotionProblem, stiff: bool) -> Iterator[tuple[str, str]]:
@@ -215,8 +215,8 @@ def describe_agreement(best: ReferencePair, errors_by_kind: Errors) -> str:
 def describe_divergence(horizon: float, last_time: float, error: float | None) -> str:
     """Describe the divergence of the two reference runs."""
     return (
-        f"the references differ by more than {tolerances.CLAIMED:.0e} at t = {horizon:.6g} s, from where on nobody can "
-        f"compare anything in double precision; run and judged up to t = {last_time:.6g} s, where "
+        f"the references differ by more than {tolerances.CLAIMED:.0e} at t = {horizon:.6g} s, from where on "
+        f"double precision allows no comparison; compared up to t = {last_time:.6g} s, where "
         f"they agree to {error:.0e}"
     )
 
@@ -225,7 +225,7 @@ def describe_early_end(a: Trajectory) -> list[str]:
     """Return a note on what ends the motion early, if anything does."""
     if a.pushing_rope:
         return [f"the motion ends at t = {a.times[-1]:.6g} s: the rope {a.pushing_rope} would have to push"]
-    return [f"the motion ends at t = {a.times[-1]:.6g} s, by its condition"] if a.ended_by_condition else []
+    return [f"the motion ends at t = {a.times[-1]:.6g} s, by its end condition"] if a.ended_by_condition else []
 
 
 def describe_indeterminate(comparison: ReferenceComparison) -> Sequence[str]:
@@ -235,8 +235,8 @@ def describe_indeterminate(comparison: ReferenceComparison) -> Sequence[str]:
     wholly = [name for name, (f, m) in determinate.items() if not (f.any() or m.any())]
     notes = []
     if wholly or partly:
-        names = ", ".join([*wholly, *(f"{name} in part" for name in partly)])
-        notes.append(f"open, and so not judged: reactions of {names}")
+        names = ", ".join([*wholly, *(f"{name} (partly)" for name in partly)])
+        notes.append(f"open, so not compared: reactions of {names}")
     if comparison.setup.cuts and not comparison.has_sections:
-        notes.append("open, and so not judged: sections")
+        notes.append("open, so not compared: sections")
     return notes

@@ -123,7 +123,7 @@ class ChartRunner:
         self.completed[row.method] = chart_run
         last = float(self.verified.comparison.times[-1])
         if float(run.times[-1]) < last:
-            reason = f"the rope {run.pushing_rope} would have to push; the reference goes on to t = {last:.6g} s"
+            reason = f"the rope {run.pushing_rope} would have to push; the reference continues to t = {last:.6g} s"
             return replace(chart_run, status=FAILED, failure_time=float(run.times[-1]), code="stopped", reason=reason)
         error, upper_bounds = self.verified.reference.to_errors(self.verified.comparison.compute_differences(run))
         return TimedRun(
@@ -162,7 +162,7 @@ class ChartRunner:
     def skip_if_too_long(self, row: ChartRow) -> ChartRun | None:
         """Return the row as not run if it would exceed its limit, else None."""
         if self.motion.late:
-            return ChartRun(row, NOT_RUN, code="time-limit", reason="the time limit was reached before")
+            return ChartRun(row, NOT_RUN, code="time-limit", reason="the time limit was already reached")
         last = float(self.verified.comparison.times[-1])
         if row.has_fixed_step and row.local > last:
             return ChartRun(row, NOT_RUN, code="step", reason=f"the step is longer than the run of {last:.6g} s")
@@ -170,7 +170,7 @@ class ChartRunner:
         if unfinished_row is not None and row.local <= unfinished_row.local:
             setting = "step" if row.has_fixed_step else "tolerance"
             return ChartRun(
-                row, NOT_RUN, code="too-long", reason=f"a {setting} of {unfinished_row.local:g} was not finished"
+                row, NOT_RUN, code="too-long", reason=f"the run with {setting} {unfinished_row.local:g} did not finish"
             )
         previous = self.completed.get(row.method)
         steps = self.predict_steps(row, previous)
@@ -184,7 +184,7 @@ class ChartRunner:
             return None
         step_text = f"about {steps:.0e} steps".replace("e+0", "e").replace("e+", "e")
         reason = (
-            f"{step_text}, {seconds:.2g} s" if steps <= tolerances.MOST_STEPS else f"{step_text}, more than are taken"
+            f"{step_text}, {seconds:.2g} s" if steps <= tolerances.MOST_STEPS else f"{step_text}, more than allowed"
         )
         return ChartRun(row, NOT_RUN, seconds, code="too-long", reason=reason)
 

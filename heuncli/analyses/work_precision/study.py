@@ -16,8 +16,8 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.error_places import attach_locations
 
 DRIVEN_NOTE = (
-    "the drives leave no freedom: heun run solves every instant by itself (followed) and integrates nothing; the other "
-    "rows are what integrating it would take"
+    "motion fully prescribed: heun run solves each instant (followed), nothing integrated; the other "
+    "rows show what integrating it would cost"
 )
 
 

@@ -16,7 +16,7 @@ from heuncli.study.compose.recovery import Recovery
 
 MAX_NAMED = 3  # bodies that are named
 UNITS = {"angle": "rad/s\u00b2", "travel": "m/s\u00b2"}
-HINT = "not at rest; analysis: {type: rest} looks for the pose at rest"
+HINT = "not at rest; analysis: {type: rest} finds the rest position"
 
 
 def describe_accelerations(recovery: Recovery) -> list[str]:

@@ -12,8 +12,8 @@ from heuncli.scene.file_format.resolve_couplings import SLACK_BELT_MESSAGE, form
 from heuncli.study.compose.impulses import Impulses
 
 PUSHED_AT_IMPULSE = (
-    "in the blow at t = {:.6g} s the belt {} would have to push: no pretension stands up to a blow, and what the belt "
-    "then pulls its pulleys together with is not told"
+    "in the impulse at t = {:.6g} s the belt {} would have to push: no pretension withstands an impulse, and the force "
+    "with which the belt then pulls its pulleys together is not computed"
 )
 
 

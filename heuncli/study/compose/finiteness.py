@@ -46,8 +46,8 @@ def require_finite_blocks(blocks: Mapping[str, Any], times: Array, is_known: Mas
     for keys, value, block in iter_numbers(blocks, (), {}):
         if is_wrong(keys, value, block, is_known):
             instant = describe_instant(keys, value, times, is_known)
-            message = f"{'.'.join(keys)} is not finite{instant}: there is no such number"
-            hint = "look at very large and very small values nearby, and at points that coincide"
+            message = f"{'.'.join(keys)} is not finite{instant}"
+            hint = "check for very large or very small values, and for points that coincide"
             raise SolveError(Problem("not-finite-result", message, hint=hint))
 
 

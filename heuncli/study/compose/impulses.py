@@ -195,7 +195,7 @@ def make_run_impulses(setup: Setup, jumps: tuple[ImpulseEvent, ...], least_norm:
     size = rest_setup.scene.layout.size
     sizes = [*(float(np.abs(a.force).max() * size + np.abs(a.moment).max()) for a in given_actions), 0.0]
     largest = max(sizes) + float(np.abs(solutions.rows["multiplier"]).max(initial=0.0)) * size
-    require_solvable(rest_setup.scene, solutions, ErrorWording("jumps of velocities", "couple", "N m s", largest))
+    require_solvable(rest_setup.scene, solutions, ErrorWording("velocity jumps", "couple", "N m s", largest))
     names, columns = make_cause_columns(jumps) if by_cause else (None, None)
     return Impulses(
         rest_setup,

@@ -77,13 +77,13 @@ def describe_partial_samples(mechanism: Mechanism, solutions: Evaluation) -> lis
     if not found:
         return []
     first = min(found)
-    which = f"{len(found)} of {len(solutions.times)} instants, the first t = {first:.6g} s"
-    return [f"loads and accelerations at {which}, are not those of full friction: {describe_partial(found[first])}"]
+    which = f"{len(found)} of {len(solutions.times)} samples, first at t = {first:.6g} s"
+    return [f"loads and accelerations at {which}, do not include full friction: {describe_partial(found[first])}"]
 
 
 def describe_partial(partial: Sequence[PartialFriction]) -> str:
     """Say which friction is below its full value, and by how much."""
-    texts = [f"{own.name} is at {100.0 * own.share:.3g} % of its value" for own in partial[:MAX_NAMED]]
+    texts = [f"{own.name} is at {100.0 * own.share:.3g} % of its full value" for own in partial[:MAX_NAMED]]
     more = f" and {len(partial) - MAX_NAMED} more" if len(partial) > MAX_NAMED else ""
     return f"smoothed friction {', '.join(texts)}{more}: the rate is below {full_friction_rate():.3g} times its `speed`"
 
@@ -93,5 +93,5 @@ def make_partial_note(partial_by_time: dict[float, list[PartialFriction]]) -> st
     names = dict.fromkeys(own.name for partial in partial_by_time.values() for own in partial)
     some = ", ".join(list(names)[:MAX_NAMED]) + (" ..." if len(names) > MAX_NAMED else "")
     return (
-        f"smoothed friction ({some}) is not at its value there: rate below {full_friction_rate():.3g} times its `speed`"
+        f"smoothed friction ({some}) is below full value there: rate below {full_friction_rate():.3g} times its `speed`"
     )

@@ -10,8 +10,8 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
 FRICTIONLESS_AT_IMPULSE = (
-    "the blow at t = {:.6g} s goes through the thread {} as if nothing rubbed in it: a self-locking one would hold it, "
-    "and any other takes a part of it"
+    "the impulse at t = {:.6g} s passes the thread {} without friction: a self-locking thread would hold it, "
+    "any other would take part of it"
 )
 
 

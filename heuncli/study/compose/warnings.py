@@ -58,7 +58,7 @@ def warn_near_singular(unknown: Array) -> list[str]:
     if not len(unknown):
         return []
     times = ", ".join(f"{t:.6g}" for t in unknown[:MAX_TIMES]) + (" ..." if len(unknown) > MAX_TIMES else "")
-    return [f"beside a singular pose at t = {times} s: rounding reaches some numbers there, which are not told"]
+    return [f"singular position at t = {times} s: numbers near it that are lost to rounding are not shown"]
 
 
 def warn_left_out(unknown: Sequence[float]) -> list[str]:
@@ -67,12 +67,14 @@ def warn_left_out(unknown: Sequence[float]) -> list[str]:
         return []
     low, high = min(unknown), max(unknown)
     end = f" to {high:.6g}" if f"{low:.6g}" != f"{high:.6g}" else ""
-    return [f"extremes are searched without what rounding reaches beside singular poses at t = {low:.6g}{end} s"]
+    return [
+        f"extremes leave out the numerically uncertain interval around the singular positions at t = {low:.6g}{end} s"
+    ]
 
 
 def warn_unbalanced(residual: float) -> list[str]:
     """Warn that the numbers do not fulfil d'Alembert's principle."""
-    wrong = f"the forces balance to {residual:.1g} of the largest only: the loads are not to be trusted"
+    wrong = f"force balance error {residual:.1g} of the largest force: the loads are not reliable"
     return [wrong] if residual > tolerances.UNBALANCED else []
 
 
@@ -86,16 +88,16 @@ def warn_of_motion(setup: Setup, history: History) -> list[str]:
     lines = []
     is_required = setup.step is None or setup.spec.analysis.tolerance_given
     if (worst := checked.motion) > tolerance and is_required:
-        missed = f"the tolerance {tolerance:.3g} was not reached"
-        lines.append(f"{missed}: the motion is estimated to {worst:.2g} of the scene's size")
+        missed = f"tolerance {tolerance:.3g} not reached"
+        lines.append(f"{missed}: estimated motion error {worst:.2g} of the model size")
     if history.singular:
         times = ", ".join(f"{t:.6g}" for t in history.singular[:MAX_TIMES])
         times += " ..." if len(history.singular) > MAX_TIMES else ""
-        goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
-        lines.append(f"passes through a singular pose at t = {times} s: another motion branches off there, {goes}")
+        goes = "heun follows the smooth one" if checked.horizon is None else "rounding decides which one is followed"
+        lines.append(f"singular position at t = {times} s (two motions are possible there); {goes}")
     if checked.run.uncertain_count:
         steps = "one step" if checked.run.uncertain_count == 1 else f"{checked.run.uncertain_count} steps"
-        lines.append(f"of {steps} it could not be decided what loads do between their stages")
+        lines.append(f"in {steps} the loads could not be checked between the stages")
     if checked.run.pushing_rope is not None:
         lines.append(f"stopped before the end: {make_status(history, setup.scene.mechanism)['message']}")
     return lines
@@ -105,9 +107,11 @@ def describe_loss(mechanism: Mechanism, name: str) -> str:
     """Say how a rope, or a cam, ends a run."""
     kinds = {coupling.name: coupling.entry.type for coupling in mechanism.couplings}
     if kinds.get(name) == "cam":
-        return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly, and strike again)"
+        return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly and land again)"
     if any(joint.name == name and joint.one_sided for joint in mechanism.joints):
-        return f"contact lost: the point of joint {name} lifts off its path (with restitution it would fly, and strike)"
+        return (
+            f"contact lost: the point of joint {name} lifts off its path (with restitution it would fly and land again)"
+        )
     return f"the {kinds.get(name, 'rod')} {name} would have to push (tension_only)"
 
 

@@ -12,8 +12,8 @@ from heuncli.scene.file_format.couplings import RollingWheel
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
-LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts"
-SLIPS = "the wheel {} would take more friction than there is: it slips"
+LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts off"
+SLIPS = "the wheel {} would need more friction than available: it slips"
 
 
 def warn_at_instant(spec: Spec, couplings: Mapping[str, Any]) -> Iterator[str]:
@@ -30,7 +30,7 @@ def warn_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
     for k, jump in enumerate(impulses.jumps):
         for name, wheel in wheels.items():
             for sentence in iter_problems(wheel, couplings[name], k):
-                yield f"in the blow at t = {jump.reported_time:.6g} s {sentence.format(name)}"
+                yield f"in the impulse at t = {jump.reported_time:.6g} s {sentence.format(name)}"
 
 
 def iter_problems(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:

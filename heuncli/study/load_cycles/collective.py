@@ -57,11 +57,11 @@ class UnfitCounting(NamedTuple):
 
 SLOPES = UnfitCounting("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
 CYCLES = UnfitCounting(
-    "cycles", f"of how many cycles equivalent ranges are, {LEAST_CYCLES:g} to {MOST_CYCLES:g}", "1e6"
+    "cycles", f"number of cycles of the equivalent ranges, {LEAST_CYCLES:g} to {MOST_CYCLES:g}", "1e6"
 )
-CLASSES = UnfitCounting("bins", f"how many classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
+CLASSES = UnfitCounting("bins", f"a number of classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
 REPEATS = UnfitCounting(
-    "repeat", "how often the motion is run through, a whole number, or closed", "1000; or closed: for ever"
+    "repeat", "a whole number of repetitions of the motion, or closed", "1000; or closed: endless repetition"
 )
 
 

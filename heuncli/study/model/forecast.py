@@ -32,19 +32,19 @@ MAX_STEPS = 2_000
 def describe_integration(setup: Setup) -> list[str]:
     """Describe in sentences what is integrated, and what the first part of the run costs."""
     if setup.spec.analysis.type == "rest":
-        return ["nothing: what is looked for is the pose at rest that a heavily damped motion from the start comes to"]
+        return ["nothing: search for the rest position that a heavily damped motion from the start reaches"]
     if setup.method is None:
         return ["nothing: one instant is solved"]
     if setup.method.is_determined:
-        return ["nothing: every instant is solved by itself, along its branch"]
+        return ["nothing: motion fully prescribed, solved at each instant along its branch"]
     layout, tolerance = setup.runner.integrated_scene.layout, setup.spec.analysis.tolerance
-    how = f"to {tolerance:.3g} of the scene's size; then once more at a thirtieth of that, to check"
+    how = f"to {tolerance:.3g} of the model size, then again to 1/30 of that as a check"
     if setup.step is not None:
-        how = f"in steps of {setup.step:.4g} s; then once more in quarters of them, to check"
+        how = f"in steps of {setup.step:.4g} s, then again in quarter steps as a check"
     row = find_method(setup.method.name)
     kind = f"{row.kind} " if row is not None and row.kind != "SciPy" else ""
     sentence = (
-        f"{format_count(layout.n_state, 'number')} of state, by {setup.method.name}, an {kind}method of order "
+        f"{format_count(layout.n_state, 'state variable')}, by {setup.method.name}, an {kind}method of order "
         f"{setup.method.order}, {how}"
     )
     return [sentence, *describe_cost(setup, tolerance if setup.step is None else setup.step)]
@@ -87,7 +87,7 @@ def describe_cost(setup: Setup, tolerance_or_step: float) -> list[str]:
         steps, evaluations = format_count(run.steps, "step"), format_count(run.evaluations, "evaluation")
         check = "1.3 to 1.5" if setup.step is None else "5"
         took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
-        return [f"{took}: {whole} times that if it goes on so, and {check} times as much for the check"]
+        return [f"{took}: {whole} times that in total at this pace, and {check} times as much for the check"]
     return []
 
 

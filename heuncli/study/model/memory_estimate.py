@@ -55,15 +55,15 @@ def require_memory(setup: Setup, budget: MemoryBudget, *, in_parts: bool = False
     fitting = int(truncate_to_two_digits(budget.memory / bytes_per_instant))
     largest = max(blocks, key=lambda block: blocks[block], default="")
     message = (
-        f"the results at {instants:,} instants would take about "
+        f"the results at {instants:,} output times need about "
         f"{format_bytes(instants * bytes_per_instant)} of memory; "
-        f"{format_bytes(budget.memory)} may be taken"
+        f"{format_bytes(budget.memory)} is allowed"
     )
-    hint = f"{fitting:,} instants would fit (analysis.samples)" if fitting >= 2 else "not even two instants would fit"
+    hint = f"{fitting:,} samples would fit (analysis.samples)" if fitting >= 2 else "not even two samples would fit"
     if largest and blocks[largest] > 0.1 * bytes_per_instant:
         share = 100.0 * blocks[largest] / bytes_per_instant
-        hint += f"; {share:.0f} % are {largest}: --only leaves out what is not needed"
-        hint += ", and runs of cuts may have a smaller count" if largest == "sections" else ""
+        hint += f"; {share:.0f} % are {largest}: use --only to leave out blocks"
+        hint += ", or fewer cuts" if largest == "sections" else ""
     raise LimitError(Problem("too-much-memory", message, hint=hint))
 
 
@@ -77,11 +77,11 @@ def require_memory_for_steps(setup: Setup, min_steps: int, budget: MemoryBudget)
     if takes <= budget.memory:
         return
     message = (
-        f"loads and drives jump or bend at {min_steps - 1:,} instants, each the end of a step; so "
-        "many steps would take "
-        f"about {format_bytes(takes)} of memory; {format_bytes(budget.memory)} may be taken"
+        f"loads and drives have {min_steps - 1:,} jumps or kinks, each of which ends a step; "
+        "that many steps need "
+        f"about {format_bytes(takes)} of memory; {format_bytes(budget.memory)} is allowed"
     )
-    raise LimitError(Problem("too-much-memory", message, hint="a shorter duration, or tables of fewer points"))
+    raise LimitError(Problem("too-much-memory", message, hint="a shorter duration, or tables with fewer points"))
 
 
 def format_bytes(size: float) -> str:

@@ -26,10 +26,10 @@ from heuncli.study.model.counts_and_lists import list_some
 FINE_METHOD = "Verner98"
 LONG_MOTION = 100.0  # turns or swings from which on a conservative motion is called long
 MAY_BE_STIFF = (
-    "watched on the way: should {} prove stiff and keep explicit steps short, the motion is begun anew by an implicit "
-    "method, if that takes less"
+    "monitored for stiffness: if {} should keep explicit steps short, the motion is restarted with an implicit "
+    "method, where that is faster"
 )
-NOTHING_STIFF = "not stiff, as far as can be seen beforehand: no spring, damper, friction or law in coordinates"
+NOTHING_STIFF = "no stiffness expected: no spring, damper, friction or force law in coordinates"
 
 
 def choose_first_method(layout: Layout, spec: Spec) -> Method:
@@ -52,17 +52,17 @@ def is_smooth(layout: Layout) -> bool:
 
 def explain_method(method: Method, layout: Layout, spec: Spec) -> list[str]:
     """Explain in sentences why a motion begins with that method."""
-    sentence = f"by {method.name}, explicit, of order {method.order}: "
+    sentence = f"{method.name}, explicit, order {method.order}: "
     if method.name == FINE_METHOD:
-        sentence += "to so small a tolerance the fewest evaluations for what is smooth"
+        sentence += "fewest evaluations for smooth motions at so small a tolerance"
     else:
-        sentence += "the fewest evaluations for what is smooth, to six digits and more"
+        sentence += "fewest evaluations for smooth motions, at six digits or more"
     return [*describe_length(layout, end_time(spec)), sentence, describe_stiffness(layout.mechanism)]
 
 
 def explain_restart(reason: str, method: Method) -> str:
     """Explain why a run was restarted, and by which method."""
-    return f"{reason}; begun anew by {method.name}"
+    return f"{reason}; restarted with {method.name}"
 
 
 def describe_stiffness(mechanism: Mechanism) -> str:
@@ -75,13 +75,13 @@ def describe_length(layout: Layout, last: float) -> list[str]:
     """Say in a sentence whether the motion is long and conservative, or short; empty if it is neither."""
     swings = last * typical_rate(layout) / (2.0 * math.pi)
     if swings < 1.0:
-        return ["short: less than a turn, or a swing, of the whole"]
+        return ["short: less than one revolution or oscillation"]
     if swings >= LONG_MOTION and is_conservative(layout):
         rounded = float(f"{swings:.2g}")
         return [
-            f"long and conservative, some {rounded:,.0f} turns or swings: what the check run tells of "
-            "the error holds to "
-            "their end; a symmetric method, Gauss6 with a given step, pays only beyond some 100,000"
+            f"long and conservative, about {rounded:,.0f} revolutions or oscillations: the error "
+            "estimate of the check run holds to "
+            "the end; a symmetric method (Gauss6 with a given step) pays only above about 100,000"
         ]
     return []
 

@@ -22,7 +22,7 @@ from heuncli.study.model.counts_and_lists import format_count, list_some
 if TYPE_CHECKING:  # loaded where a scene has closed chains
     from heuncli.loads.redundancy.self_stress import SelfStress
 
-COUNTED_FROM = {GLOBAL: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
+COUNTED_FROM = {GLOBAL: "relative to the world axes: none can pass 180 deg", RECENTRED: "restarted in each step"}
 
 
 def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundancy: RedundancyCount) -> Block:
@@ -57,15 +57,17 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
         block["impacts"] = mechanism.impacts
         block["reasons"].append(describe_contacts(layout, runner.start_holding[: len(layout.contacts)] > 0.0))
     if redundancy.at_start > redundancy.generic:
-        more = format_count(redundancy.at_start - redundancy.generic, "condition depends", "conditions depend")
-        block["notes"].append(f"the start is a singular pose: {more} on the others just there")
+        more = format_count(
+            redundancy.at_start - redundancy.generic, "constraint is redundant", "constraints are redundant"
+        )
+        block["notes"].append(f"the start is a singular position: {more} only there")
     if redundancy.generic and redundancy.stress is not None:
         block["notes"] += describe_self_stresses(layout, redundancy.stress)
     block["notes"] += redundancy.giving
     if scene.undetermined_count:
         block["undetermined"] = scene.undetermined_count
         spins = format_count(scene.undetermined_count, "undetermined spin")
-        block["notes"].append(f"{spins} left out of the freedoms: without inertia, and nothing else moves with them")
+        block["notes"].append(f"{spins} not counted as degrees of freedom: without inertia, moving nothing else")
     if redundancy.remaining < redundancy.generic:
         block["given_way"] = redundancy.generic - redundancy.remaining
     return block
@@ -78,8 +80,8 @@ def has_rolling_wheels(mechanism: Mechanism) -> bool:
 
 def describe_pose_freedoms(model: Block) -> str:
     """Say in a sentence how many freedoms the pose has, and how many the speeds."""
-    poses, speeds = format_count(model["pose_freedoms"], "freedom", "freedoms"), model["freedoms"]
-    return f"{poses} of pose, {speeds} of speed: what rolls without slip holds speeds, and no pose"
+    poses, speeds = format_count(model["pose_freedoms"], "degree of freedom", "degrees of freedom"), model["freedoms"]
+    return f"{poses} in position, {speeds} in velocity: rolling without slip constrains velocities, not positions"
 
 
 def describe_reductions(left_out: Sequence[str], scene: PreparedScene, reduction: ReducedScene | None) -> Block:
@@ -117,10 +119,10 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     mechanism, layout = scene.mechanism, scene.layout
     where = "in the plane" if mechanism.planar else "in space"
     bodies = format_count(len(layout.place), "body", "bodies")
-    sentences = [f"{bodies} {where}, {format_count(model['freedoms'], 'freedom', 'freedoms')}"]
+    sentences = [f"{bodies} {where}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
-        sentences.append(f"closed at {list_some(cut)}; the other joints make the tree that carries the motion")
+        sentences.append(f"loops closed at {list_some(cut)}; the other joints form the tree")
     coupled = [f"{own.name} ({own.entry.type})" for own in mechanism.couplings if own.stretched_row is None]
     if coupled:
         sentences.append(f"coupled: {list_some(coupled)}")
@@ -133,23 +135,23 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
         sentences.append(f"driven: {list_some(driven)}")
     bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]
     if bushings:
-        sentences.append(f"on bushings, which leave all freedoms: {list_some(bushings)}")
+        sentences.append(f"on bushings, which constrain nothing: {list_some(bushings)}")
     ropes = [own.name for own in mechanism.couplings if own.stretched_row is not None]
     if ropes:
-        sentences.append(f"on ropes that stretch, which leave all freedoms: {list_some(ropes)}")
+        sentences.append(f"on elastic ropes, which constrain nothing: {list_some(ropes)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.links if h.joint < 0]
     if floating:
-        sentences.append(f"carried by nothing, free: {list_some(floating)}")
+        sentences.append(f"free bodies: {list_some(floating)}")
     spins = f" and {format_count(scene.undetermined_count, 'undetermined spin')}" if scene.undetermined_count else ""
     if model["redundant"]:
         sentences.append(
-            f"Grübler counts {model['grubler']}, there are {model['freedoms']}{spins}: "
-            f"{format_count(model['redundant'], 'condition holds', 'conditions hold')} what others hold already"
+            f"Grübler count {model['grubler']}, actual {model['freedoms']}{spins}: "
+            f"{format_count(model['redundant'], 'redundant constraint')}"
         )
     for spin in scene.idle_spins:
         name = mechanism.bodies[spin.body].name
         which = "the spin about its own axis" if len(spin.axes) == 1 or mechanism.planar else "its spin"
-        sentences.append(f"{name}: {which} is undetermined and harmless; taken as zero")
+        sentences.append(f"{name}: {which} is undetermined but harmless; set to zero")
     return sentences
 
 
@@ -158,8 +160,8 @@ def describe_attitudes(method: Method, layout: Layout) -> list[str]:
     if method.attitude == QUATERNION:
         return []
     if not layout.bodies["ball"].any():
-        return [f"{method.name}: of what is integrated no body hangs on a ball or floats, so this is DOP853"]
-    return [f"{method.name}: attitudes by Rodrigues' numbers, {COUNTED_FROM[method.attitude]}"]
+        return [f"{method.name}: no integrated body is free or on a ball joint, so this equals DOP853"]
+    return [f"{method.name}: orientations by Rodrigues parameters, {COUNTED_FROM[method.attitude]}"]
 
 
 def describe_contacts(layout: Layout, is_closed: Mask) -> str:
@@ -184,11 +186,11 @@ def describe_self_stresses(layout: Layout, stress: SelfStress) -> list[str]:
         parts[3:] /= stress.length
         names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > tolerances.OPEN_SHARE]
         if names:
-            notes.append(f"held more than once: {joint.name} {', '.join(names)}")
+            notes.append(f"constrained more than once: {joint.name} {', '.join(names)}")
     for r, owner in enumerate(layout.rows):
         size = np.where(stress.largest > 0.0, stress.largest, 1.0)
         unit = stress.length if layout.tables["closures"]["measure"][r] != 1.0 else 1.0
         share = np.abs(stress.multipliers[:, r] / size).max(initial=0.0) / unit
         if owner >= len(layout.mechanism.joints) and share > tolerances.OPEN_SHARE:
-            notes.append(f"held more than once: {layout.mechanism.owner_path(owner)}")
+            notes.append(f"constrained more than once: {layout.mechanism.owner_path(owner)}")
     return notes

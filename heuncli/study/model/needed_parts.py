@@ -169,4 +169,4 @@ def describe_left_out(whole: Spec, part: Spec) -> tuple[str, ...]:
     names = [name for name in whole.bodies if name not in part.bodies]
     if not names:
         return ()
-    return (f"left out, because nothing that is asked for depends on it: {list_some(names)}",)
+    return (f"left out, because no requested result depends on it: {list_some(names)}",)

@@ -62,7 +62,7 @@ def start_at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, 
     start_time = time.perf_counter()
     require_constant(scene.mechanism)
     first = runner.evaluate(np.zeros(1), runner.layout.y0[None, :])
-    require_solvable(scene, first, ErrorWording("accelerations of the start"))
+    require_solvable(scene, first, ErrorWording("accelerations at the start"))
     search = RestSearch(scene, runner, 0.0, tolerances.REST_BENT)
     require_common_motion(runner, search.coordinates, search.start_pose())
     search_result = find_verified_pose(scene, runner, 0.0)
@@ -102,8 +102,8 @@ def require_no_rolling(layout: Layout, state: Array) -> None:
     travel = layout.weights[rate_places[rate_places >= 0]] * find_displacement(layout, layout.y0, state)
     if np.abs(travel).max(initial=0.0) <= tolerances.OFF_BALANCE:
         return
-    message = "no rest pose: the start does not rest, and where wheels roll to hangs on the way there"
-    hint = "a motion with dampers rolls there: analysis: {duration: ...}; or draw the scene where it rests"
+    message = "no rest position: the start is not at rest, and where wheels roll to depends on their path"
+    hint = "run a motion with dampers: analysis: {duration: ...}; or start at the rest position"
     raise SolveError(Problem("no-rest-pose", message, hint=hint))
 
 
@@ -114,29 +114,29 @@ def describe_rest(mechanism: Mechanism, stability: Stability, without_slope: lis
     without_slope: sentences on loads that have no slope in the pose; then no stiffness decides its stability
     """
     drives = list_some(list(find_moving_drives(mechanism)))
-    texts = [f"at rest in the frame that goes along with {drives}"] if drives else []
+    texts = [f"at rest in the frame that moves with {drives}"] if drives else []
     if without_slope:
-        return [*texts, f"whether the pose is stable is not decided: {'; '.join(without_slope)}"]
-    least = f"the least eigenvalue of stiffness over inertia is {stability.least:.4g} 1/s² ({stability.slowest})"
+        return [*texts, f"stability not decided: {'; '.join(without_slope)}"]
+    least = f"smallest eigenvalue of stiffness over inertia {stability.least:.4g} 1/s² ({stability.slowest})"
     indifferent_motions = stability.indifferent + stability.flat + stability.edge
     if stability.growth > 0.0:
-        texts.append(f"unstable: {stability.grows} leaves it by exp({stability.growth:.4g} t); {least}")
+        texts.append(f"unstable: {stability.grows} departs as exp({stability.growth:.4g} t); {least}")
     elif stability.slowest:
-        swings = f", the slowest small oscillation has {stability.frequency:.4g} Hz" if stability.frequency else ""
-        texts.append(f"stable{' but for what is indifferent' if indifferent_motions else ''}: {least}{swings}")
+        swings = f", slowest small oscillation {stability.frequency:.4g} Hz" if stability.frequency else ""
+        texts.append(f"stable{' except where indifferent' if indifferent_motions else ''}: {least}{swings}")
     elif not indifferent_motions:
         texts.append("nothing is free to move")
     if stability.indifferent:
-        what = f"{list_motions(stability.indifferent)}, which nothing holds or pushes{describe_lone_motion(stability)}"
-        texts.append(f"indifferent: {what}; where along it is by the way it came")
+        what = f"{list_motions(stability.indifferent)}, without restoring force{describe_lone_motion(stability)}"
+        texts.append(f"indifferent: {what}; the position along it depends on the path")
     if stability.edge:
         texts.append(
-            f"at the edge of stability: {list_motions(stability.edge)}, which moved aside sets going "
-            "what nothing brings back"
+            f"at the limit of stability: {list_motions(stability.edge)}, which if displaced starts "
+            "a motion without restoring force"
         )
     if stability.flat:
         texts.append(
-            f"indifferent to first order: {list_motions(stability.flat)}, which what bends alone holds or pushes off"
+            f"indifferent to first order: {list_motions(stability.flat)}, stability decided by higher-order terms"
         )
     return texts
 
@@ -164,24 +164,24 @@ def describe_lone_motion(stability: Stability) -> str:
     joint_names = {name for motion in stability.indifferent if len(motion.names) > 1 for name in motion.names}
     if stability.slowest not in joint_names:
         return ""
-    return f" ({stability.slowest} by itself is {'held' if stability.least > 0.0 else 'pushed off'})"
+    return f" ({stability.slowest} alone is {'restored' if stability.least > 0.0 else 'repelled'})"
 
 
 def warn_unstable(stability: Stability) -> tuple[str, ...]:
     """Warn that the smallest disturbance ends the pose."""
     if not stability.growth:
         return ()
-    return (
-        f"the rest pose is unstable: pushed a little, {stability.grows} leaves it, by exp({stability.growth:.4g} t)",
-    )
+    return (f"the rest position is unstable: if disturbed, {stability.grows} departs as exp({stability.growth:.4g} t)",)
 
 
 def warn_ridge(layout: Layout, search_result: VerifiedPose) -> tuple[str, ...]:
     """Warn that the relaxation path may also end in another pose, and describe that one."""
     if search_result.alternative is None:
         return ()
-    warning = "the damped motion to the rest pose passes so near a ridge that its last digits decide where it ends"
+    warning = (
+        "the damped motion to the rest position passes so close to a ridge that its last digits decide where it ends"
+    )
     return (
-        f"{warning}: perhaps with "
+        f"{warning}: possibly with "
         f"{describe_other_pose(layout, search_result.equilibrium.pose, search_result.alternative.pose)}",
     )

@@ -27,11 +27,11 @@ def describe_thread(lead: float, friction: ThreadFriction) -> str:
     a, b = (f"{math.degrees(math.atan(x)):.4g} deg" for x in (slope, mu))
     angles = f"(slope {a}, angle of friction {b})"
     if slope * mu >= 1.0:
-        return f"no torque turns it against a thrust {angles}"
-    efficiency = f"efficiency {slope * (1.0 - slope * mu) / (slope + mu):.3g} of turning into thrust"
+        return f"no torque rotates it against a thrust {angles}"
+    efficiency = f"efficiency {slope * (1.0 - slope * mu) / (slope + mu):.3g} from torque to thrust"
     if slope <= mu:
-        return f"{SELF_LOCKING} {angles}: no thrust turns it; {efficiency}"
+        return f"{SELF_LOCKING} {angles}: no thrust rotates it; {efficiency}"
     return (
-        f"not {SELF_LOCKING} {angles}: {efficiency}, {(slope - mu) / (1.0 + slope * mu) / slope:.3g} of "
-        "thrust into turning"
+        f"not {SELF_LOCKING} {angles}: {efficiency}, {(slope - mu) / (1.0 + slope * mu) / slope:.3g} "
+        "from thrust to torque"
     )

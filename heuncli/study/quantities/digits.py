@@ -28,10 +28,10 @@ from heuncli.study.quantities.table_units import Units
 DIGITS = 6
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
 OPEN = "open"
-OPEN_NOTE = "open: the laws of rigid bodies do not give this number (redundant supports)"
-ZERO_NOTE = "what is 0 throughout is left out"
+OPEN_NOTE = "open: statically indeterminate, depends on stiffness"
+ZERO_NOTE = "Rows that are zero at all times are not shown."
 UNKNOWN = "?"
-UNKNOWN_NOTE = "?: the estimated error is as large as the number, as beyond the horizon or beside a singular pose"
+UNKNOWN_NOTE = "?: the estimated error is as large as the number, as past the horizon or near a singular position"
 LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
     "reactions", "drives", "foundation", "sections",
 )  # fmt: skip

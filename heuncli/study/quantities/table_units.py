@@ -45,8 +45,8 @@ def parse_units(words: str) -> Units:
         if unit in chosen_units:
             raise Finding(
                 "bad-option",
-                f"{chosen_units[unit][0]} and {word} stand for the same: {describe_unit(unit)}",
-                "keep one",
+                f"{chosen_units[unit][0]} and {word} are units of the same quantity: {describe_unit(unit)}",
+                "give only one",
             )
         chosen_units[unit] = SPELLINGS.get(word, spell_unit(word)), size
     return Units(
@@ -80,7 +80,7 @@ def find_si_unit(word: str) -> tuple[str, float]:
         units.IMPULSE: "N·s", units.ANGULAR_IMPULSE: "N·m·s", units.PRESSURE: "Pa", units.POWER: "W",
     }  # fmt: skip
     if dimension == units.TIME:
-        raise Finding("bad-option", f"{word}: instants stay in s", "as those of --at")
+        raise Finding("bad-option", f"{word}: times stay in s", "as for --at")
     if dimension not in unit_by_dimension:
         raise Finding("bad-option", f"{word}: tables show no {units.describe(dimension).partition(' ')[2]}", HINT)
     return unit_by_dimension[dimension], 1.0 / size

@@ -20,8 +20,8 @@ EXTREMES: dict[str, Literal["abs", "max", "min"]] = {"peak": "abs", "max": "max"
 IMPULSE = "impulse"
 FORMS = "a number, first, last, peak:PATH, max:PATH, min:PATH, impulse:NAME or impulse:NUMBER"
 HINT = "such as --at peak:sections.middle.M1,0.31,last"
-BEYOND_HORIZON = "--at {}: beyond the horizon of the run, t = {:.6g} s, nothing is claimed"
-HORIZON_HINT = "heun probe tells why; let the run end before, or take an instant before"
+BEYOND_HORIZON = "--at {}: past the horizon of the run, t = {:.6g} s, results are not reliable"
+HORIZON_HINT = "heun probe shows why; use an earlier instant, or end the run earlier"
 
 
 class InstantRequest(NamedTuple):
@@ -133,7 +133,7 @@ def _find_extreme_time(request: InstantRequest, study: Study) -> float:
         raise NotOneNumber(f"--at {request.word}: {problem.message}", problem.hint) from None
     if found.time is None or math.isnan(found.value) or found.open_at is not None:
         at = "" if found.open_at is None else f" at t = {found.open_at:.6g} s"
-        hint = "draw what the machine leaves loose (heun explain open), or --least-norm"
+        hint = "release what the real machine leaves free (heun explain open), or use --least-norm"
         raise SolveError(
             Problem("open-load-case", f"--at {request.word}: it is open{at}, so it has no peak", hint=hint)
         )
@@ -148,7 +148,7 @@ def _iter_impulses(request: InstantRequest, study: Study) -> Iterator[LoadCaseIn
         named = [int(request.what)]
     if not named:
         raise NotOneNumber(
-            f"--at {request.word}: there is no such blow in this run", _impulse_hint(impulses, request.what)
+            f"--at {request.word}: there is no such impulse in this run", _impulse_hint(impulses, request.what)
         )
     for k in named:
         word = request.word if len(named) == 1 else f"{request.word}#{k}"
@@ -157,9 +157,9 @@ def _iter_impulses(request: InstantRequest, study: Study) -> Iterator[LoadCaseIn
 
 def _impulse_hint(impulses: Sequence[Block], word: str) -> str:
     if not impulses:
-        return "nothing is struck in it: times take cases, such as --at last"
+        return "this run has no impulses: use a time, such as --at last"
     names = dict.fromkeys(name for block in impulses for name in block["names"])
     listed = ", ".join(f"{k} ({' and '.join(block['names'])})" for k, block in enumerate(impulses[:5]))
     more = f" ... {len(impulses) - 1}" if len(impulses) > 5 else ""
-    near = suggest(word, names, "blows")
+    near = suggest(word, names, "impulses")
     return near if near.startswith("did you mean") else f"known: {listed}{more}"

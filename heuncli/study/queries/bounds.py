@@ -61,7 +61,7 @@ def find_missing_reason(study: Study, numbers: PathValues, extreme: Peak) -> str
     singular pose. None if there is one.
     """
     if not numbers.values.size:
-        return "there is none"
+        return "there is no value"
     time = extreme.time if math.isnan(extreme.value) else extreme.open_at
     if numbers.is_timed and time is None:
         gaps = np.flatnonzero(np.isnan(numbers.values.reshape(len(numbers.values), -1)).any(axis=1))
@@ -69,7 +69,7 @@ def find_missing_reason(study: Study, numbers: PathValues, extreme: Peak) -> str
     if time is None and not math.isnan(extreme.value):
         return None
     return (
-        f"not known{format_instant(time)}, beside a singular pose"
+        f"not known{format_instant(time)}, near a singular position"
         if time in study.unknown
         else f"open{format_instant(time)}"
     )
@@ -100,7 +100,7 @@ def describe_extreme(item: Expect, how: How) -> str:
     """Say which extreme is compared, in words."""
     if item.at is not None:
         return ""
-    return {"max": "the largest, ", "min": "the least, ", "abs": "the largest magnitude, "}[item.peak or how]
+    return {"max": "the largest, ", "min": "the smallest, ", "abs": "the largest magnitude, "}[item.peak or how]
 
 
 def format_instant(time: float | None) -> str:

@@ -51,7 +51,7 @@ class NotComparable(HeunError):
     exit_code = 1
 
     def __init__(self, message: str, expected_value: float | None) -> None:
-        super().__init__(Problem("curve-points", message, hint="leave that point out, or let the run go there"))
+        super().__init__(Problem("curve-points", message, hint="leave out that point, or extend the run"))
         self.expected_values = np.asarray([] if expected_value is None else expected_value)
 
 
@@ -101,7 +101,7 @@ def find_curve_instants(study: Study, curve: Curve, x: Array) -> Array:
     outside = (x < run[0] - slack) | (x > run[-1] + slack)
     if outside.any():
         i = int(outside.argmax())
-        refuse(f"t = {x[i]:.6g} s is out of the run, which goes from {run[0]:.6g} to {run[-1]:.6g} s", curve, i)
+        refuse(f"t = {x[i]:.6g} s is outside the run, which goes from {run[0]:.6g} to {run[-1]:.6g} s", curve, i)
     return np.clip(x, run[0], run[-1])
 
 
@@ -122,7 +122,7 @@ def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
     turned = highest - h > 2.0 * error
     if turned.any():
         refuse(
-            f"{path} turns back by t = {times[int(turned.argmax())]:.6g} s: a curve over it has no one instant",
+            f"{path} reverses by t = {times[int(turned.argmax())]:.6g} s: a curve over it is ambiguous in time",
             curve,
             None,
         )
@@ -131,7 +131,7 @@ def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
     if outside.any():
         i = int(outside.argmax())
         what = NOT_CLAIMED.format(horizon) + ", and before " if horizon is not None else ""
-        refuse(f"{what}{path} goes from {q[0]:.6g} to {q[-1]:.6g}, and is never {x[i]:.6g}", curve, i)
+        refuse(f"{what}{path} goes from {q[0]:.6g} to {q[-1]:.6g}, and never reaches {x[i]:.6g}", curve, i)
     require_one_instant(curve, path, times, highest, targets, error)
     k = np.searchsorted(highest, targets, side="right")
     at = np.where(k == 0, times[0], times[-1])
@@ -164,7 +164,7 @@ def require_one_instant(curve: Curve, path: str, times: Array, highest: Array, t
     is_long = duration > tolerances.CLAIMED * float(np.ptp(times))
     if is_long.any():
         i = int(is_long.argmax())
-        refuse(f"{path} stands still at {curve.x[i]:.6g} from t = {times[first[i]]:.6g} s on", curve, i)
+        refuse(f"{path} stays at {curve.x[i]:.6g} from t = {times[first[i]]:.6g} s on", curve, i)
 
 
 def require_claimed(study: Study, curve: Curve, times: Array) -> None:
@@ -181,7 +181,7 @@ def require_known(study: Study, curve: Curve, path: str, times: Array, values: A
         i = int(gaps.argmax())
         why = f"{path} is open at t = {times[i]:.6g} s"
         if np.isin(times[i], study.resample(times[i : i + 1]).accuracy.get("unknown", [])):
-            why = f"{path} is not known at t = {times[i]:.6g} s, beside a singular pose"
+            why = f"{path} is not known at t = {times[i]:.6g} s, near a singular position"
         refuse(why, curve, i if len(times) == len(curve.x) and path != curve.x_of else None)
 
 

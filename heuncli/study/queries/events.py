@@ -45,8 +45,8 @@ from heuncli.study.solve.history import History, resample
 Solve = Callable[[Spec], Study]  # solves a spec that differs only in its instants or conditions
 
 MAX_DIGITS = 6  # of an instant in sentences
-MAY_BE_MISSING = "of the event {} instants may be missing: {} is open, or not known, at some of those looked at"
-SEARCH_CUT_SHORT = "of the event {} instants may be missing: the search was ended before all was looked at"
+MAY_BE_MISSING = "event {}: times may be missing, because {} is open or not known at some of the samples"
+SEARCH_CUT_SHORT = "event {}: times may be missing, because the search was stopped early"
 
 
 def add_events(study: Study, setup: Setup, solve: Solve) -> Study:
@@ -341,7 +341,7 @@ def make_event_block(condition: str, changes: ConditionChanges) -> Block:
 
 def add_ending(results: Results, condition: WatchedCondition, changes: ConditionChanges) -> Results:
     """Return the results with a sentence on the condition that was to end the motion."""
-    began = "; it is true at the start, which ends nothing" if changes.begins else ""
+    began = "; it is true at the start, which does not count" if changes.begins else ""
     became = np.flatnonzero(changes.values)
     if len(became):
         k = int(became[0])
@@ -349,7 +349,7 @@ def add_ending(results: Results, condition: WatchedCondition, changes: Condition
         message = f"ended at t = {at} s: until {condition.text}{began}"
         status: Status = {"code": results.status["code"], "message": message}
     else:
-        message = f"the condition to end, {condition.text}, did not become true{began}"
+        message = f"the end condition, {condition.text}, did not become true{began}"
         status = {"code": results.status["code"], "message": f"{results.status['message']}; {message}"}
     return changed(results, status=status, model=results.model | {"until": [message]})
 

@@ -125,8 +125,10 @@ def find_instant_index(times: Array, time: float) -> int:
     """Return the index of an instant of the output. Raises HeunError [no-such-instant]."""
     location = int(np.argmin(np.abs(times - time)))
     if abs(times[location] - time) > tolerances.SAME_INSTANT * max(float(np.ptp(times)), abs(time)):
-        message = f"t = {time:.6g} s is not an instant of the output; the nearest is {times[location]:.6g} s"
-        raise HeunError(Problem("no-such-instant", message, hint="the run ended before it, or others are asked for"))
+        message = f"t = {time:.6g} s is not an output time; the nearest is {times[location]:.6g} s"
+        raise HeunError(
+            Problem("no-such-instant", message, hint="the run ended before it, or other times are requested")
+        )
     return location
 
 
@@ -134,7 +136,7 @@ def _describe_failure(expected_values: Array, found_values: Array, tolerance: fl
     if found_values.shape != expected_values.shape:
         if expected_values.ndim == 0 and np.isnan(expected_values):
             if not found_values.size:
-                return "expected open, there is none"
+                return "expected open, there is no value"
             expected_values = np.full(found_values.shape, np.nan)
         else:
             return (
@@ -144,7 +146,7 @@ def _describe_failure(expected_values: Array, found_values: Array, tolerance: fl
     open_expected, open_found = np.isnan(expected_values), np.isnan(found_values)
     if (open_expected & ~open_found).any():
         known = int((open_expected & ~open_found).sum())
-        hint = "is: null is all of it; in a list null is one place"
+        hint = "is: null means all of them; in a list null means one"
         return (
             "expected open, found a number"
             if found_values.size == 1

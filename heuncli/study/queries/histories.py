@@ -53,8 +53,8 @@ def make_histories(study: Study, errors: Mapping[str, float], units: Mapping[str
     times, rows, complete = add_turning_points(study_columns.sample, grid, rows, error, is_square)
     require_known(times, rows, paths, frozenset(study_columns.unknown))
     if not (is_close_enough and complete):
-        message = f"{', '.join(paths)}: the motion turns too often: more than {MAX_INSTANTS} instants to look at"
-        raise LimitError(Problem("too-many-turns", message, hint="a shorter motion; or one period, and --repeat"))
+        message = f"{', '.join(paths)}: too many reversals: more than {MAX_INSTANTS} samples needed"
+        raise LimitError(Problem("too-many-turns", message, hint="a shorter motion, or one period with --repeat"))
     values = np.where(is_square, np.sqrt(np.abs(rows)), rows)
     total_error = (1.0 + GOOD_ENOUGH) * error  # a turning point is found to within a part of the error
     return [
@@ -81,14 +81,14 @@ def require_history(study: Study, path: str) -> None:
     """Raise NotOneNumber for a path that is no single number or vector over a motion."""
     numbers = study.find_numbers(path)
     if study.has_one_instant:
-        message = f"{path}: a collective is counted over a motion, and this analysis is none"
+        message = f"{path}: a collective needs a motion, and this analysis has none"
         raise NotOneNumber(message, "give analysis.duration: --set analysis.duration=2")
     if numbers.keys[:1] == (IMPULSES,):
         raise NotOneNumber(
-            f"{path} is of one blow: an impulse has no course in time", "a path of the motion: joints.NAME.force"
+            f"{path} belongs to one impulse: it has no time history", "use a path of the motion: joints.NAME.force"
         )
     if not numbers.is_timed:
-        raise NotOneNumber(f"{path} has no instants to be counted over", f"such as heun run SPEC --measure {path}")
+        raise NotOneNumber(f"{path} has no time history to be counted", f"such as heun run SPEC --measure {path}")
     if numbers.axes and not (numbers.is_vector and len(numbers.axes) == 1):
         raise make_several_error(path, numbers)
 
@@ -99,7 +99,7 @@ def require_claimed(study: Study, paths: Sequence[str]) -> None:
     if horizon is not None and study.results.time[-1] >= horizon:
         end = f"the motion goes to t = {study.results.time[-1]:.6g} s"
         message = f"{', '.join(paths)}: {NOT_CLAIMED.format(horizon)}, and {end}"
-        hint = f"a motion that ends before it: --set analysis.duration={0.99 * horizon:.3g}; or a smaller --tolerance"
+        hint = f"end the motion before it: --set analysis.duration={0.99 * horizon:.3g}; or a smaller --tolerance"
         raise SolveError(Problem(CODE, message, hint=hint, entry_path="analysis"))
 
 
@@ -112,13 +112,13 @@ def require_known(times: Array, rows: Array, paths: Sequence[str], unknown: froz
             time = float(times[int(gaps.argmax())])
             if time in unknown:
                 why, hint = (
-                    f"is not known at t = {time:.6g} s, beside a singular pose",
-                    "heun probe tells where such poses are",
+                    f"is not known at t = {time:.6g} s, near a singular position",
+                    "heun probe shows where such positions are",
                 )
             else:
                 why, hint = (
-                    f"is open at t = {time:.6g} s: redundant supports leave it open",
-                    "--least-norm, or stiffness, chooses a split",
+                    f"is open at t = {time:.6g} s: statically indeterminate",
+                    "choose a split with --least-norm or stiffness",
                 )
             problems.append(Problem(CODE, f"{path} {why}", hint=hint, entry_path=path))
     if problems:

@@ -30,7 +30,7 @@ from heuncli.results.results_schema import (
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import BOTH_SIDES, ColumnSearch, make_no_columns
 
-NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
+NOT_CLAIMED = "not reliable from t = {:.4g} s on"
 
 
 class NotOneNumber(HeunError):
@@ -75,7 +75,7 @@ def measure_value(request: MeasureRequest, study: Study) -> Peak:
         return measure_event(request, numbers)
     if not numbers.is_timed:
         if request.how:
-            raise NotOneNumber(f"{path} has no instants", f"give the path alone: {path}")
+            raise NotOneNumber(f"{path} has no time history", f"give the path alone: {path}")
         if numbers.values.size != 1:
             raise make_several_error(path, numbers)
         return Peak(float(numbers.values.reshape(())), None)
@@ -88,7 +88,7 @@ def measure_value(request: MeasureRequest, study: Study) -> Peak:
     if request.how or len(results.time) == 1:
         k = -1 if request.how == "final" else 0
         return Peak(read_one_number(path, numbers, k), float(results.time[k]))
-    message = f"{path} runs over {len(results.time)} instants: say max, min, max abs, first, final or at T"
+    message = f"{path} has values at {len(results.time)} instants: use max, min, max abs, first, final or at T"
     raise NotOneNumber(message, f"such as 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
 
 
@@ -114,10 +114,10 @@ def find_exceeded_horizon(request: MeasureRequest, study: Study) -> float | None
 def measure_event(request: MeasureRequest, numbers: PathValues) -> Peak:
     """Return the first or last value of an event."""
     if not numbers.axes:
-        raise NotOneNumber(f"{request.path} has no instants", f"give the path alone: {request.path}")
+        raise NotOneNumber(f"{request.path} has no time history", f"give the path alone: {request.path}")
     if request.how not in ("first", "final"):
-        hint = f"'first {request.path}', 'final {request.path}', or its place: {request.path}.0"
-        raise NotOneNumber(f"{request.path} is told of an event, once for each change", hint)
+        hint = f"'first {request.path}', 'final {request.path}', or its index: {request.path}.0"
+        raise NotOneNumber(f"{request.path} has one value for each change of the event", hint)
     if not numbers.values.size:
         raise NotInThisRun(f"{request.path}: the event does not happen in this run", "run longer, or set another limit")
     return Peak(float(numbers.values[0 if request.how == "first" else -1]), None)
@@ -129,7 +129,7 @@ def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) 
     """
     path, time = request.path, find_impulse_time(study.results, numbers)
     if request.how in ("first", "final", "at"):
-        raise NotOneNumber(f"{path} has one instant, that of the blow", f"give the path alone, or 'max abs {path}'")
+        raise NotOneNumber(f"{path} has one instant, that of the impulse", f"give the path alone, or 'max abs {path}'")
     require_extreme(path, numbers)
     if CUT in numbers.axes and request.how:
         return measure_impulse_along_cuts(request, numbers, study)
@@ -188,7 +188,7 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     """
     asked = study.find_numbers(path)
     if not asked.is_timed:
-        raise NotOneNumber(f"{path} has no instants, of which one could be the largest", f"give the path alone: {path}")
+        raise NotOneNumber(f"{path} has no time history, so no largest value", f"give the path alone: {path}")
     require_extreme(path, asked)
     even = is_magnitude(asked)
     open_at: list[float] = []
@@ -301,7 +301,7 @@ def make_several_error(path: str, numbers: PathValues) -> NotOneNumber:
     """Return the error of a path that leads to several numbers."""
     count = int(np.prod(numbers.values.shape[1 if numbers.is_timed else 0 :]))
     hint = f"name one of them: {path}{first_element_suffix(numbers.axes)}" if count else "there is none in this run"
-    return NotOneNumber(f"{path} is {count} numbers: say which", hint)
+    return NotOneNumber(f"{path} is {count} numbers: choose one", hint)
 
 
 def require_instant(request: MeasureRequest, times: Array) -> float:

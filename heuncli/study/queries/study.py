@@ -35,8 +35,8 @@ if TYPE_CHECKING:  # loaded only if there are conditions or impulses
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
-TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
-CUT_SHORT = "the search for extremes was ended before all was looked at that may lie higher"
+TOO_FEW = "extremes are searched from {} samples: too few to find every peak and jump of this motion"
+CUT_SHORT = "the search for extremes was stopped early: higher values may exist"
 
 
 @record

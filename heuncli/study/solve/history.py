@@ -159,10 +159,10 @@ def require_steps(segments: int, method: Method | None) -> None:
     if segments <= max_steps:
         return
     message = (
-        f"loads and drives jump or bend at {segments - 1:,} instants, each the end of a step: "
-        f"the run takes at least {segments:,} steps, and {max_steps:,} is the most"
+        f"loads and drives have {segments - 1:,} jumps or kinks, each of which ends a step: "
+        f"the run takes at least {segments:,} steps, at most {max_steps:,} are allowed"
     )
-    hint = "a shorter duration, or tables of fewer points" + ("; or method: auto" if is_foreign else "")
+    hint = "a shorter duration, or tables with fewer points" + ("; or method: auto" if is_foreign else "")
     raise LimitError(Problem("step-limit", message, hint=hint))
 
 
@@ -253,7 +253,7 @@ def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = Fa
     solutions = runner.evaluate(*interleaved_states, causes=by_cause, holding=contact_states)
     own_solution = solutions.select(slice(0, 1))
     require_start(
-        setup.scene, own_solution, ErrorWording("accelerations behind the blow") if impulses[0] else ErrorWording()
+        setup.scene, own_solution, ErrorWording("accelerations after the impulse") if impulses[0] else ErrorWording()
     )
     require_motion(layout, own_solution)
     errors = LoadErrors(setup, by_cause, keep_instants=True)

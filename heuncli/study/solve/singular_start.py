@@ -123,8 +123,8 @@ def make_problem(layout: Layout, t: float, island: Island) -> Problem:
     names = dict.fromkeys(layout.mechanism.owner_path(layout.rows[r]) for r in island.rows.tolist())
     through = " and ".join(names)
     message = (
-        f"at t = {t:.9g} s the loads push the closed chain through {through} in a singular pose (stretched, folded or "
-        "flat) along a motion that closes to the first order only: no acceleration exists, and no finite force holds it"
+        f"at t = {t:.9g} s the loads push the closed loop through {through} in a singular position (stretched, folded "
+        "or flat) along a motion possible to first order only: no acceleration exists, and no finite force resists it"
     )
-    hint = "draw it off that pose (with some sag, say: forces grow as its inverse), or give the rate of one more joint"
+    hint = "start off that position (with some sag: forces grow as its inverse), or give the rate of one more joint"
     return Problem("singular-pose", message, hint=hint)

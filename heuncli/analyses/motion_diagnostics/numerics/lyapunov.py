@@ -223,7 +223,7 @@ class DisturbedRuns:
             piece, base = remaining.pop()
             propagated = self.propagate_disturbances(piece, base, Q)
             if propagated is None:
-                return make_growth(rows, f"a run beside it does not come to t = {piece.end:.6g} s")
+                return make_growth(rows, f"a neighbouring run does not reach t = {piece.end:.6g} s")
             D, piece_steps = propagated
             if np.abs(D).max() > MAX_GROWTH and piece.before_end - piece.begin > DISTURBANCE * piece.end:
                 first, second = piece.split()
@@ -233,7 +233,7 @@ class DisturbedRuns:
             C, steps = R @ C, steps + piece_steps
             size = float(np.abs(C).max())
             if size == 0.0:
-                return make_growth(rows, f"a disturbance dies out to nothing by t = {piece.end:.6g} s")
+                return make_growth(rows, f"a disturbance dies out by t = {piece.end:.6g} s")
             C, log = C / size, log + math.log(size)
             G = factor * float(np.linalg.norm(Q[:n] @ C, 2))
             rows.append((piece.end, log + math.log(max(G, tolerances.EPS)), float(steps)))
