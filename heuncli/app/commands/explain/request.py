@@ -7,11 +7,11 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ExplainRequest(NamedTuple):
-    """Tell of a code, a path of the results, a topic of the manual; or list them."""
+    """Explain an error code, a result path or a topic of the manual, or list the topics."""
 
     topic: Annotated[
         str | None,
-        Option((), "A page, a command, a code, a path of results, an equation's number; without it, a list.", "TOPIC"),
+        Option((), "Page, command, error code, result path or equation number. Default: list the pages.", "TOPIC"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
-    no_pager: Annotated[bool, Option(("--no-pager",), "All at once on a terminal, too.")] = False
+    no_pager: Annotated[bool, Option(("--no-pager",), "Do not use a pager on a terminal.")] = False
