@@ -43,7 +43,9 @@ STEP = Option(("--step",), "Step size of a fixed-step method.", "SECONDS")
 TOLERANCE = Option(("--tolerance",), "Allowed error of the motion, relative to the model size.", "NUMBER")
 LEAST_NORM = Option(("--least-norm",), "Split indeterminate reactions by the least norm.")
 WITHOUT = Option(
-    ("--without",), "Leave out these forces, and lock these drives at their start position. May be repeated.", "NAME,..."
+    ("--without",),
+    "Leave out these forces, and lock these drives at their start position. May be repeated.",
+    "NAME,...",
 )
 NO_REDUCE = Option(("--no-reduce",), "Solve the full model without reduction.")
 FORMATS = ("table", "json", "csv")  # of most commands

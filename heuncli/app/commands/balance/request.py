@@ -7,13 +7,14 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class BalanceRequest(NamedTuple):
-    """Find the inertia forces (mass effects) over a cycle: foundation force and moment by order, counterweights, flywheel."""
+    """Find inertia forces (mass effects) over a cycle: foundation loads by order, counterweights, flywheel."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
-        str | None, Option(("--save",), "Also draw the orders in this file: chart.svg; .png and .pdf with matplotlib.", "FILE")
+        str | None,
+        Option(("--save",), "Also draw the orders in this file: chart.svg; .png and .pdf with matplotlib.", "FILE"),
     ] = None
     cycle: Annotated[
         str | None, Option(("--cycle",), "Angle that defines the cycle. Default: the driven one.", "J.angle")
@@ -29,7 +30,9 @@ class BalanceRequest(NamedTuple):
         str | None,
         Option(("--period",), "Count orders in time instead, for a motion with this period.", "SECONDS"),
     ] = None
-    orders: Annotated[str | None, Option(("--orders",), "Show only these orders, counted per revolution.", "NUMBER,...")] = None
+    orders: Annotated[
+        str | None, Option(("--orders",), "Show only these orders, counted per revolution.", "NUMBER,...")
+    ] = None
     about: Annotated[
         str | None, Option(("--about",), "Reference point of moments. Default: foundation.about.", "POINT|X,Y,Z")
     ] = None

@@ -13,9 +13,12 @@ class ChartRequest(NamedTuple):
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
-        str | None, Option(("--save",), "Also draw the chart in this file: chart.svg; .png and .pdf with matplotlib.", "FILE")
+        str | None,
+        Option(("--save",), "Also draw the chart in this file: chart.svg; .png and .pdf with matplotlib.", "FILE"),
     ] = None
-    methods: Annotated[str | None, Option(("--methods",), "Run only these methods; heun methods lists them.", "NAME,...")] = None
+    methods: Annotated[
+        str | None, Option(("--methods",), "Run only these methods; heun methods lists them.", "NAME,...")
+    ] = None
     tolerances: Annotated[
         str | None, Option(("--tolerances",), "Local tolerances of adaptive methods.", "NUMBER,...")
     ] = None

@@ -28,19 +28,30 @@ class CheckRequest(NamedTuple):
     ] = False
     format: Annotated[str | None, Option(("--format",), "Output format. Default: table.", "|".join(FORMATS))] = None
     output: Annotated[str | None, OUTPUT] = None
-    golden: Annotated[str | None, Option(("--golden",), "Compare the results with the golden files in this folder.", "DIR")] = None
+    golden: Annotated[
+        str | None, Option(("--golden",), "Compare the results with the golden files in this folder.", "DIR")
+    ] = None
     golden_tolerance: Annotated[
         float | None,
-        Option(("--golden-tolerance",), "Allowed difference relative to the largest value of its kind, in place of the stated errors.", "SHARE"),
+        Option(
+            ("--golden-tolerance",),
+            "Allowed difference relative to the largest value of its kind, in place of the stated errors.",
+            "SHARE",
+        ),
     ] = None
     update: Annotated[bool, Option(("--update",), "Rewrite golden files whose results changed.")] = False
     force: Annotated[bool, Option(("--force",), "Allow --update where CI is set.")] = False
-    strict: Annotated[bool, Option(("--strict",), "Fail if a spec has no golden file, or a golden file no spec.")] = False
+    strict: Annotated[bool, Option(("--strict",), "Fail if a spec has no golden file, or a golden file no spec.")] = (
+        False
+    )
     junit: Annotated[str | None, Option(("--junit",), "Also write a JUnit report.", "FILE")] = None
     jobs: Annotated[
-        int | None, Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight specs on.", "N")
+        int | None,
+        Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight specs on.", "N"),
     ] = None
-    select: Annotated[str | None, Option(("-k",), "Check only specs with this text in their path or title.", "TEXT")] = None
+    select: Annotated[
+        str | None, Option(("-k",), "Check only specs with this text in their path or title.", "TEXT")
+    ] = None
     first: Annotated[bool, Option(("-x",), "Stop at the first spec that fails.")] = False
     durations: Annotated[int | None, Option(("--durations",), "List the N slowest specs.", "N")] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False

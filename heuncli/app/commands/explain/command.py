@@ -23,8 +23,8 @@ PAGES = tuple(dict.fromkeys((
 )))  # fmt: skip
 
 OTHERS = (
-    ("CODE", "An error or a warning, such as unknown-key: what it says, why, an example, the cure."),
-    ("PATH", "A number of the results, such as joints.main.tilting: meaning, unit, sign, frame, error."),
+    ("CODE", "An error or a warning, such as unknown-key: meaning, cause, example, remedy."),
+    ("PATH", "A result, such as joints.main.tilting: meaning, unit, sign, axes, error."),
     ("NUMBER", "An equation of the paper, such as 31."),
 )
 
@@ -48,11 +48,13 @@ def explain_topic(topic: str) -> str:
         if (text := explain_path(topic)) is not None:
             return text
         if (block := topic.split(".", 1)[0]) in TREE:
-            hint = f"heun explain {block}.NAME lists what there is"
-            raise UsageError(Problem("unknown-path", f"explain {topic}: this leads to no result", hint=hint))
+            hint = f"heun explain {block}.NAME lists the results"
+            raise UsageError(Problem("unknown-path", f"explain {topic}: there is no such result", hint=hint))
     if topic not in PAGES and "-" in topic:
         near = suggest(topic, codes, "codes")
-        raise UsageError(Problem("bad-option", f"explain {topic}: there is no such code", hint=f"{near}; or a page"))
+        raise UsageError(
+            Problem("bad-option", f"explain {topic}: there is no such code", hint=f"{near}; or give a page")
+        )
     return read_page(topic)
 
 
@@ -65,7 +67,7 @@ def read_page(topic: str) -> str:
         return format_equation(number[1])
     if topic not in PAGES:
         hint = f"{find_in_index(topic) or suggest(topic, PAGES, 'topics')}; heun explain lists the pages"
-        raise UsageError(Problem("bad-option", f"explain {topic}: no page of the manual is called that", hint=hint))
+        raise UsageError(Problem("bad-option", f"explain {topic}: there is no such manual page", hint=hint))
     return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
 
 
@@ -76,7 +78,7 @@ def format_equation(number: str) -> str:
     row_found = next((row for row in equations if f"({number})" in row[0]), None)
     if row_found is None:
         message = f"explain {number}: no equation of the paper has this number"
-        raise UsageError(Problem("bad-option", message, hint="they are (16) to (61): heun explain equations"))
+        raise UsageError(Problem("bad-option", message, hint="the equations are (16) to (61): heun explain equations"))
     width = max(map(len, heads))
     return "".join(f"{head:<{width}}  {cell}\n" for head, cell in zip(heads, row_found, strict=True))
 

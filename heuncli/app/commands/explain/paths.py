@@ -21,12 +21,12 @@ LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 WORLD = "components in world axes"
 # by block: on which body it acts, about which point, in which axes; details on the manual page "signs"
 SIGNS = {
-    "joints": f"of `from` ON `to`, moments about the `to` point; {WORLD}, or --axes from, to",
-    "foundation": f"of the machine ON the ground, moments about foundation.about; {WORLD}",
-    "sections": "of the piece that the normal points into ON the remainder; N along the normal, > 0 where it pulls",
-    "stops": "of the stop ON `to`, along the coordinate that it limits",
-    "forces": "as in the spec: > 0 along its vector, or where it pushes its two points apart",
-    "coordinates": "of `to` against `from`, about or along the joint's axis, right-handed",
+    "joints": f"reaction of `from` ON `to`, moments about the `to` point; {WORLD}, or --axes from, to",
+    "foundation": f"force of the machine ON the ground, moments about foundation.about; {WORLD}",
+    "sections": "force of the far side (normal points into it) ON the near side of the cut; N > 0 tension",
+    "stops": "force of the stop ON `to`, along the coordinate that it limits",
+    "forces": "as in the spec: > 0 along its vector, or pushing its two points apart",
+    "coordinates": "motion of `to` relative to `from`, about or along the joint's axis, right-handed",
     "bodies": WORLD,
     "points": WORLD,
     "momentum": f"{WORLD}; moments about foundation.about",
@@ -60,7 +60,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     yield path, ""
     yield "meaning", meaning
     if row.units:
-        twofold = ", of what slides or of what turns" if len(row.units) > 1 else ""
+        twofold = " (translation or rotation)" if len(row.units) > 1 else ""
         yield "unit", " or ".join(row.units).replace("1", "none") + twofold
     if row.is_words:
         yield "form", "words"
@@ -77,7 +77,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     )
     report = REPORT_OF.get(keys[0], keys[0])
     component = f"{path}.x" if row.shape and row.shape[-1].letters == XYZ and path.split(".")[-1] not in XYZ else path
-    yield "told by", f'heun run SPEC --only {report}; heun run SPEC --measure "max {component}"'
+    yield "shown by", f'heun run SPEC --only {report}; heun run SPEC --measure "max {component}"'
 
 
 def _describe_members(node: Node) -> Iterator[str]:

@@ -26,15 +26,15 @@ class ExportRequest(NamedTuple):
 
     what: Annotated[str, Option((), "What to export: loads.", "loads")]
     spec: Annotated[str, SPEC]
-    body: Annotated[str | None, Option(("--body",), "Body to export. Default: the only one.", "NAME", completes="body")] = (
-        None
-    )
+    body: Annotated[
+        str | None, Option(("--body",), "Body to export. Default: the only one.", "NAME", completes="body")
+    ] = None
     at: Annotated[
         str | None,
         Option(
             ("--at",),
             "Instants, one load case each: a time, first, last, peak:PATH (largest magnitude), max:PATH, min:PATH, "
-            "impulse:NAME or impulse:NUMBER. Default: the only instant, if there is one.",
+            "impulse:NAME or impulse:NUMBER. Default: the instant of a state, rest or impulse analysis.",
             "WHEN,...",
         ),
     ] = None
@@ -48,7 +48,9 @@ class ExportRequest(NamedTuple):
     ] = None
     units: Annotated[
         str | None,
-        Option(("--units",), "Consistent units of force, length and mass, such as N,mm,t. Default: N,m,kg.", "UNIT,..."),
+        Option(
+            ("--units",), "Consistent units of force, length and mass, such as N,mm,t. Default: N,m,kg.", "UNIT,..."
+        ),
     ] = None
     first_node: Annotated[
         int | None, Option(("--first-node",), "Number of the first node of a deck. Default: 1001.", "NUMBER")

@@ -25,15 +25,16 @@ class FindRequest(NamedTuple):
         int | None,
         Option(("--scan",), "Number of values solved first. Default: 7; more find closer pairs of crossings.", "N"),
     ] = None
-    evaluations: Annotated[
-        int | None, Option(("--evaluations",), "Maximum number of variants. Default: 300.", "N")
-    ] = None
+    evaluations: Annotated[int | None, Option(("--evaluations",), "Maximum number of variants. Default: 300.", "N")] = (
+        None
+    )
     tolerance: Annotated[float | None, TOLERANCE] = None
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
     strict: Annotated[
-        bool, Option(("--strict",), "Exit with 1 if the condition is met nowhere, or part of the interval is not solved.")
+        bool,
+        Option(("--strict",), "Exit with 1 if the condition is met nowhere, or part of the interval is not solved."),
     ] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -20,9 +20,9 @@ class ImportRequest(NamedTuple):
         str | None,
         Option(("--density",), "Density of the shapes of bodies without inertia, such as '2700 kg/m^3'.", "NUMBER"),
     ] = None
-    repair: Annotated[
-        str | None, Option(("--repair",), "Faults to repair, each noted in a comment.", "FAULT,...")
-    ] = None
+    repair: Annotated[str | None, Option(("--repair",), "Faults to repair, each noted in a comment.", "FAULT,...")] = (
+        None
+    )
     keyframe: Annotated[str | None, Option(("--keyframe",), "MJCF: keyframe of the start position.", "NAME")] = None
     strict: Annotated[bool, Option(("--strict",), "Fail if something has no counterpart.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None

@@ -49,9 +49,7 @@ class LagrangeRequest(NamedTuple):
     ] = None
     format: Annotated[
         str | None,
-        Option(
-            ("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json|csv|m"
-        ),
+        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json|csv|m"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None

@@ -15,9 +15,7 @@ class ModelRequest(NamedTuple):
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
-    sketch: Annotated[bool, Option(("--sketch",), "Add a text drawing of the assembled machine.")] = (
-        False
-    )
+    sketch: Annotated[bool, Option(("--sketch",), "Add a text drawing of the assembled machine.")] = False
     view: Annotated[str | None, VIEW] = None
     width: Annotated[int | None, WIDTH] = None
     time_limit: Annotated[float | None, TIME_LIMIT] = None

@@ -40,7 +40,8 @@ class PlotRequest(NamedTuple):
         ),
     ] = None
     x: Annotated[
-        str | None, Option(("--x",), "Quantity on the x axis in place of time, such as coordinates.shaft.angle.", "PATH")
+        str | None,
+        Option(("--x",), "Quantity on the x axis in place of time, such as coordinates.shaft.angle.", "PATH"),
     ] = None
     measured: Annotated[
         tuple[str, ...],
@@ -50,21 +51,20 @@ class PlotRequest(NamedTuple):
             "FILE:X:Y",
         ),
     ] = ()
-    at: Annotated[str | None, Option(("--at",), "Instants of diagrams and of scene, as in heun export.", "WHEN,...")] = None
+    at: Annotated[
+        str | None, Option(("--at",), "Instants of diagrams and of scene, as in heun export.", "WHEN,...")
+    ] = None
     axes: Annotated[
-        str | None, Option(("--axes",), "Axes of joint loads: world, or those of one of the two bodies.", "world|from|to")
+        str | None,
+        Option(("--axes",), "Axes of joint loads: world, or those of one of the two bodies.", "world|from|to"),
     ] = None
     view: Annotated[str | None, VIEW] = None
-    tension_side: Annotated[bool, Option(("--tension-side",), "Draw bending moments on the tension side.")] = (
-        False
-    )
+    tension_side: Annotated[bool, Option(("--tension-side",), "Draw bending moments on the tension side.")] = False
     without: Annotated[tuple[str, ...], WITHOUT] = ()
     width: Annotated[int | None, WIDTH] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    case: Annotated[
-        str | None, Option(("--case",), "Overlay these load cases, or all.", "NAME,...|all")
-    ] = None
+    case: Annotated[str | None, Option(("--case",), "Overlay these load cases, or all.", "NAME,...|all")] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
     tolerance: Annotated[float | None, TOLERANCE] = None

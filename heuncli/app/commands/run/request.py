@@ -38,8 +38,8 @@ class RunRequest(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Report only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or "
-            "entries: joints.NAME, foundation.axis, ...",
+            "Report only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; "
+            "or entries: joints.NAME, foundation.axis, ...",
             "REPORT,...",
             completes="only",
         ),
@@ -57,7 +57,7 @@ class RunRequest(NamedTuple):
     at: Annotated[
         str | None, Option(("--at",), "Show these instants instead of the extremes: times, first, last.", "WHEN,...")
     ] = None
-    all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a row of cuts.")] = False
+    all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
     measure: Annotated[
         tuple[str, ...],
         Option(
@@ -77,7 +77,8 @@ class RunRequest(NamedTuple):
         ),
     ] = None
     slope: Annotated[
-        str | None, Option(("--slope",), "Give damage-equivalent ranges for these slopes of the S-N (Wöhler) curve.", "M,...")
+        str | None,
+        Option(("--slope",), "Give damage-equivalent ranges for these slopes of the S-N (Wöhler) curve.", "M,..."),
     ] = None
     cycles: Annotated[
         float | None,
@@ -98,13 +99,18 @@ class RunRequest(NamedTuple):
     ] = False
     axes: Annotated[
         str | None,
-        Option(("--axes",), "Axes of joint loads: world, or those of one of the two (rotating) bodies.", "world|from|to"),
+        Option(
+            ("--axes",), "Axes of joint loads: world, or those of one of the two (rotating) bodies.", "world|from|to"
+        ),
     ] = None
     units: Annotated[str | None, UNITS] = None
     watch: Annotated[bool, Option(("--watch",), "Solve again at each save of the spec, until Ctrl-C.")] = False
-    strict: Annotated[bool, Option(("--strict",), "Exit with 1 if there are warnings or indeterminate reactions.")] = False
+    strict: Annotated[bool, Option(("--strict",), "Exit with 1 if there are warnings or indeterminate reactions.")] = (
+        False
+    )
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
     verbose: Annotated[
-        bool, Option(("--verbose", "-v"), "Also show how the model was reduced; print the solving times on standard error.")
+        bool,
+        Option(("--verbose", "-v"), "Also show how the model was reduced; print the solving times on standard error."),
     ] = False

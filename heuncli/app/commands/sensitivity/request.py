@@ -29,7 +29,9 @@ class SensitivityRequest(NamedTuple):
     ] = ()
     spread: Annotated[
         str | None,
-        Option(("--spread",), "Tolerances (±) of parameters; show their combined effect on the results.", "NAME=VALUE,..."),
+        Option(
+            ("--spread",), "Tolerances (±) of parameters; show their combined effect on the results.", "NAME=VALUE,..."
+        ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None

@@ -26,9 +26,9 @@ class ShowRequest(NamedTuple):
         str | None,
         Option(("--output", "-o"), "Output page, written atomically: x.html; - is standard output.", "FILE"),
     ] = None
-    glb: Annotated[
-        str | None, Option(("--glb",), "Also write the moving bodies as animated glTF: x.glb.", "FILE")
-    ] = None
+    glb: Annotated[str | None, Option(("--glb",), "Also write the moving bodies as animated glTF: x.glb.", "FILE")] = (
+        None
+    )
     frames: Annotated[
         int | None, Option(("--frames",), "Maximum number of instants on the page. Default: 600.", "NUMBER")
     ] = None

@@ -15,8 +15,8 @@ class SweepRequest(NamedTuple):
         tuple[str, ...],
         Option(
             (),
-            "YAML file of the spec, and the varied parameters: n=1000:6000/51rpm, L=0.1,0.12,0.15, c=1:1000/31log, case=all, "
-            "d=normal(100,0.1)mm, r=uniform(a,b), lhs(a,b), sobol(a,b).",
+            "YAML file of the spec, and the varied parameters: n=1000:6000/51rpm, L=0.1,0.12,0.15, c=1:1000/31log, "
+            "case=all, d=normal(100,0.1)mm, r=uniform(a,b), lhs(a,b), sobol(a,b).",
             "SPEC NAME=VALUES...",
             completes="spec",
         ),
@@ -30,7 +30,9 @@ class SweepRequest(NamedTuple):
             completes="measure",
         ),
     ] = ()
-    zip: Annotated[bool, Option(("--zip",), "Vary the parameters together, value by value, not in all combinations.")] = False
+    zip: Annotated[
+        bool, Option(("--zip",), "Vary the parameters together, value by value, not in all combinations.")
+    ] = False
     variants: Annotated[
         str | None,
         Option(("--variants",), "CSV table of variants: one column per parameter, one row per variant.", "FILE"),
@@ -48,7 +50,8 @@ class SweepRequest(NamedTuple):
         Option(("--shard",), "Solve part K of N, such as 2/8: every eighth variant, starting with the second.", "K/N"),
     ] = None
     jobs: Annotated[
-        int | None, Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight variants on.", "N")
+        int | None,
+        Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight variants on.", "N"),
     ] = None
     time_limit_each: Annotated[
         float | None, Option(("--time-limit",), "Stop each variant after this time; the others continue.", "SECONDS")
@@ -56,7 +59,8 @@ class SweepRequest(NamedTuple):
     samples: Annotated[int | None, Option(("--samples",), "Number of random samples.", "N")] = None
     seed: Annotated[int | None, Option(("--seed",), "Seed of the random samples. Default: 0.", "S")] = None
     indices: Annotated[
-        bool, Option(("--indices",), "Compute Sobol indices of the random parameters: N (d + 2) variants for d parameters.")
+        bool,
+        Option(("--indices",), "Compute Sobol indices of the random parameters: N (d + 2) variants for d parameters."),
     ] = False
     format: Annotated[
         str | None,

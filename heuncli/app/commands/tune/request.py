@@ -43,7 +43,11 @@ class TuneRequest(NamedTuple):
     ] = None
     precision: Annotated[
         float | None,
-        Option(("--precision",), "Smallest gain to search for, relative to the range of the result. Default: 1e-6.", "SHARE"),
+        Option(
+            ("--precision",),
+            "Smallest gain to search for, relative to the range of the result. Default: 1e-6.",
+            "SHARE",
+        ),
     ] = None
     seed: Annotated[
         int | None, Option(("--seed",), "Random seed; the same seed gives the same variants. Default: 0.", "N")
@@ -57,9 +61,9 @@ class TuneRequest(NamedTuple):
         ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
-    history: Annotated[
-        str | None, Option(("--history",), "Also write all variants in order: history.csv.", "FILE")
-    ] = None
+    history: Annotated[str | None, Option(("--history",), "Also write all variants in order: history.csv.", "FILE")] = (
+        None
+    )
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     tolerance: Annotated[float | None, TOLERANCE] = None
@@ -72,6 +76,7 @@ class TuneRequest(NamedTuple):
         bool, Option(("--strict",), "Exit with 1 if the search did not converge, or nothing meets all limits.")
     ] = False
     time_limit: Annotated[
-        float | None, Option(("--time-limit",), "Stop the search after this time and report the best result so far.", "SECONDS")
+        float | None,
+        Option(("--time-limit",), "Stop the search after this time and report the best result so far.", "SECONDS"),
     ] = None
     quiet: Annotated[bool, QUIET] = False
