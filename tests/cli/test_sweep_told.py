@@ -151,7 +151,7 @@ def test_indices_leave_out_whole_samples(heun: Heun) -> None:
     assert index["parameter"] == "m" and abs(index["first"]["value"] - 1.0) < 1.0 and index["first"]["low"] is None
     text = heun("sweep", "hanging.yaml", *words, "--measure", "joints.pivot.force.z").stdout
     assert "SOBOL INDICES" in text and f"{40 - len(broken)} samples" in text
-    assert f"no intervals of {40 - len(broken)} samples: they take 64 or more (--samples 64)" in text
+    assert f"no intervals for {40 - len(broken)} samples: they require 64 or more (--samples 64)" in text
 
 
 def test_of_what_does_not_vary_there_are_no_indices(heun: Heun) -> None:
@@ -207,7 +207,7 @@ def test_what_cannot_be_told_apart_is_marked_alike() -> None:
     assert [line.split()[3:] for line in lines[2:6]] == [["least"], ["least"], ["greatest"], []]
     assert "1.0    n = 1 or 1 more  2.0       n = 3" in "\n".join(lines)
     flat = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 1.0, 1.0]))
-    assert "m0: the same in all variants, as far as their errors tell" in flat and "▁▁▁▁" in flat
+    assert "m0: the same in all variants within their errors" in flat and "▁▁▁▁" in flat
     assert not any(word in line for line in flat.splitlines()[2:6] for word in ("least", "greatest"))
 
 
@@ -242,7 +242,7 @@ def test_several_axes_have_a_line_of_letters_each() -> None:
     assert "▁▂▃▄  L = 1 mm" in text and "▅▆·█  L = 2 mm" in text
     many = make_axes_plan([axis("L=1:50/50"), axis("n=1:2/2")])
     text = text_of(head_of(many, "N"), rows_of(many, [float(k) for k in range(100)]))
-    assert "m0: 38 lines of letters more: --all" in text
+    assert "m0: 38 more lines: --all" in text
 
 
 def test_words_stand_for_what_is_not_known() -> None:
@@ -325,7 +325,7 @@ def test_parquet_goes_to_a_file_and_needs_its_extra(heun: Heun, folder: Path, mo
     words = ("sweep", "lever.yaml", "L=1,1.1", "--measure", MEASURES[0])
     for more in (("--format", "parquet"), ("--format", "parquet", "-o", "-")):
         done = heun(*words, *more)
-        assert done.returncode == 2 and "parquet goes to a file only" in done.stderr and not done.stdout
+        assert done.returncode == 2 and "parquet requires a file" in done.stderr and not done.stdout
     (folder / "out.parquet").write_text("old")
     monkeypatch.setattr(as_parquet.importlib.util, "find_spec", lambda name: None)
     done = heun(*words, "-o", "out.parquet")
@@ -370,10 +370,10 @@ def test_units_are_of_tables(heun: Heun, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told_"),
     [
-        (("L=uniform(1,2)",), "L: how many are drawn?"),
-        (("L=1,2", "--samples", "5"), "--samples: nothing is drawn at random"),
-        (("L=1,2", "--seed", "5"), "--seed: nothing is drawn at random"),
-        (("L=1,2", "--indices"), "--indices: nothing is drawn at random"),
+        (("L=uniform(1,2)",), "L: the number of samples is missing"),
+        (("L=1,2", "--samples", "5"), "--samples: no parameter is random"),
+        (("L=1,2", "--seed", "5"), "--seed: no parameter is random"),
+        (("L=1,2", "--indices"), "--indices: no parameter is random"),
         (("L=lhs(1,2)", "m=sobol(1,2)kg", "--samples", "4"), "lhs and sobol in one sweep"),
         (("L=lhs(1,2)", "--samples", "4", "--seed", "-1"), "expected a number from 0 on"),
     ],

@@ -188,7 +188,7 @@ def test_files_are_named_from_the_models_folder(heun, folder):
     done = heun("import", "m.xml", "-q")
     assert done.returncode == 0 and "mass: 7" in done.stdout
     done = heun("import", "m.xml", "-o", "parts/a.xml")
-    assert done.returncode == 2 and "that is a part of the model" in done.stderr
+    assert done.returncode == 2 and "would overwrite a part of the model" in done.stderr
     (folder / "parts" / "a.xml").write_text('<!DOCTYPE a [<!ENTITY b "c">]><mujocoinclude/>')
     done = heun("import", "m.xml", "-q")
     assert done.returncode == 2 and "a.xml:1" in done.stderr and "xml-entities" in done.stderr

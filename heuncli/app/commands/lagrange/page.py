@@ -28,7 +28,7 @@ from heuncli.version import VERSION
 HEADING = "LAGRANGE  {at}: coordinates q and rates q'; ε q'' + C = k + drive"
 MASS = "MASS  ε = ∂²E/∂q'∂q', and the effective inertia with the other coordinates fixed, and with them free"
 RECIPROCAL = "RECIPROCAL  η = 1/ε: E = p η p / 2"
-FORCES = "FORCES  k along each coordinate, by cause; C: inertia terms at q'' = 0"
+FORCES = "FORCES  k along each coordinate, by cause; C: centrifugal and Coriolis terms"
 CHRISTOFFEL = "CHRISTOFFEL  γ(i; l, k) = (∂ε_il/∂q_k + ∂ε_ik/∂q_l − ∂ε_lk/∂q_i) / 2 and α(i; l, k) = −Σ η_ij γ(j; l, k)"
 BLOWS = "IMPULSES  ε [q'] = h + drives; r': impulse of the far side on the near side of the cut"
 SECTIONS = "SECTIONS  s' along each coordinate: force of the far side on the near side of the cut"

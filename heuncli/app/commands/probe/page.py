@@ -119,7 +119,7 @@ def list_growths(results: Probe) -> tuple[tuple[str, GrowthResults | None], ...]
 
 def make_growth_row(name: str, growth: GrowthResults) -> tuple[str, ...]:
     """Make the cells of a growth."""
-    rate_text = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "no faster than linear"
+    rate_text = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "not exponential"
     if growth.rate < 0.0 and growth.logarithm < 0.0:
         rate_text = "decays"
     horizon_bound = "after the run" if growth.stop_reason is None else f"after {growth.end_time:.4g}"
