@@ -188,7 +188,7 @@ def of_another_spec(text: str) -> str:
 @pytest.mark.parametrize(
     ("spoilt", "told"),
     [
-        (lambda text: "hello", "this is not JSON"), (cut_off, "it is incomplete"),
+        (lambda text: "hello", "this is not JSON"), (cut_off, "ends before it is complete"),
         (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1 and 2"),
         (of_another_spec, "golden file of another spec: other.yaml"),
         (lambda text: text.replace('"status"', '"stat"'), "base.sta"),

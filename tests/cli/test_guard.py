@@ -85,7 +85,7 @@ def test_standard_output_at_the_end_of_the_spec(
         with (scene / read).open("a") as end:
             monkeypatch.setattr(sys, "stdout", end)
             assert enter([command, "scene.yaml"]) == 2
-        assert f"standard output: that is {words}" in capsys.readouterr().err
+        assert f"standard output: would overwrite {words}" in capsys.readouterr().err
         assert (scene / read).read_bytes() == before
 
 

@@ -36,8 +36,8 @@ def bars(folder: Path) -> Path:
 
 REFUSED = {
     ("conrod.yaml", "sections.shnk"): ("unknown-path", "sections.shnk", "did you mean sections.shank?"),
-    ("conrod.yaml", "sections.middle"): ("bad-option", "sections.middle is one cut", "sections.middle.M1"),
-    ("conrod.yaml", "sections.shank", "sections.middle"): ("bad-option", "sections.middle is one cut", ""),
+    ("conrod.yaml", "sections.middle"): ("bad-option", "sections.middle is a single cut", "sections.middle.M1"),
+    ("conrod.yaml", "sections.shank", "sections.middle"): ("bad-option", "sections.middle is a single cut", ""),
     ("conrod.yaml", "sections.shank", "--at", "7"): ("bad-option", "--at 7", "the run goes from 0 to 0.0209"),
     ("conrod.yaml", "sections.shank", "--at", "now"): ("bad-option", "--at now", "expected a number, first, last"),
     ("conrod.yaml", "sections.shank", "--units", "kg"): ("bad-option", "kg", ""),

@@ -125,7 +125,7 @@ def test_what_does_not_happen_in_a_variant_is_no_error_of_it(heun: Heun, scene: 
     first, second = rows(heun(*words))
     assert first["first events.low.time [s]"] == "" and first["code"] == ""
     assert first["max joints.pivot.force [N]"] != ""
-    assert "does not occur in this run" in first["reason"]
+    assert "does not happen in this run" in first["reason"]
     assert float(second["first events.low.time [s]"]) >= 0.0
     done = heun("sweep", "scene.yaml", "n=0,1rpm", "--measure", "first events.low.time")
     assert done.stderr == "warning: heun: first events.low.time: no variant has it\n"
@@ -251,7 +251,7 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
             shown += os.read(control, 4096)
         process.kill()
     os.close(control)
-    assert re.search(rb"\d+ of 4000 variants, \S+ a second, .*\d+ (s|min) to go", shown), shown
+    assert re.search(rb"\d+ of 4000 variants, \S+ per second, .*\d+ (s|min) left", shown), shown
 
 
 def test_a_variant_that_would_not_fit_into_memory_is_refused_alone(

@@ -151,7 +151,7 @@ def test_indices_leave_out_whole_samples(heun: Heun) -> None:
     assert index["parameter"] == "m" and abs(index["first"]["value"] - 1.0) < 1.0 and index["first"]["low"] is None
     text = heun("sweep", "hanging.yaml", *words, "--measure", "joints.pivot.force.z").stdout
     assert "SOBOL INDICES" in text and f"{40 - len(broken)} samples" in text
-    assert f"no intervals for {40 - len(broken)} samples: they require 64 or more (--samples 64)" in text
+    assert f"no intervals for {40 - len(broken)} samples: 64 or more needed (--samples 64)" in text
 
 
 def test_of_what_does_not_vary_there_are_no_indices(heun: Heun) -> None:
@@ -196,19 +196,19 @@ def test_the_table_marks_least_and_greatest_and_draws_the_course() -> None:
     lines = text.splitlines()
     assert lines[0] == "SWEEP  A title: 8 variants"
     assert lines[1].split() == ["n", "[rpm]", "m0", "[N]", "at", "[s]"]
-    assert lines[2].split() == ["1", "1.0", "0", "least"] and lines[9].split() == ["8", "8.0", "0.7", "greatest"]
-    assert sum("least" in line for line in lines[2:10]) == sum("greatest" in line for line in lines[2:10]) == 1
+    assert lines[2].split() == ["1", "1.0", "0", "min"] and lines[9].split() == ["8", "8.0", "0.7", "max"]
+    assert sum("min" in line for line in lines[2:10]) == sum("max" in line for line in lines[2:10]) == 1
     assert "▁▂▃▄▅▆▇█" in text and "n = 1 rpm" in text and "over n" in text
 
 
 def test_what_cannot_be_told_apart_is_marked_alike() -> None:
     plan = make_axes_plan([axis("n=1,2,3,4")])
     lines = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 2.0, 1.5])).splitlines()
-    assert [line.split()[3:] for line in lines[2:6]] == [["least"], ["least"], ["greatest"], []]
-    assert "1.0    n = 1 or 1 more  2.0       n = 3" in "\n".join(lines)
+    assert [line.split()[3:] for line in lines[2:6]] == [["min"], ["min"], ["max"], []]
+    assert "1.0  n = 1 or 1 more  2.0  n = 3" in "\n".join(lines)
     flat = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 1.0, 1.0]))
     assert "m0: the same in all variants within their errors" in flat and "▁▁▁▁" in flat
-    assert not any(word in line for line in flat.splitlines()[2:6] for word in ("least", "greatest"))
+    assert not any(word in line for line in flat.splitlines()[2:6] for word in ("min", "max"))
 
 
 def test_no_more_digits_than_the_error_supports_and_in_the_units_asked_for() -> None:
@@ -231,7 +231,7 @@ def test_a_long_sweep_shows_its_ends_and_its_extremes() -> None:
     text = text_of(head, rows)
     shown = [line.split()[0] for line in text.partition("MEASURES")[0].splitlines()[2:] if line]
     assert shown == [*map(str, range(10)), "...", "500", "...", "700", "...", *map(str, range(990, 1000))]
-    assert "... 490 more: --all" in text and "least  " in text and "-1.0" in text
+    assert "... 490 more: --all" in text and "min" in text and "-1.0" in text
     every = text_of(head, rows, every=True)
     assert "more: --all" not in every.partition("MEASURES")[0] and every.count("\n") > 1000
 

@@ -73,14 +73,14 @@ def test_what_is_wrong_leaves_with_2_and_writes_nothing(heun, folder):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--base", "fix"), "known: fixed, free"),
+        (("--base", "fix"), "accepted: fixed, free"),
         (("--limits",), "cannot reach a stop"),
         (("--density", "heavy"), "--density"),
         (("--density", "7 kN"), "--density"),
         (("--density", "-1"), "more than 0"),
         (("--density", "0"), "more than 0"),
         (("--repair", "triangel"), "did you mean triangle?"),
-        (("--repair", ""), "known: massless, negative"),
+        (("--repair", ""), "accepted: massless, negative"),
     ],
 )
 def test_options_that_mean_nothing_are_refused(heun, words, told):

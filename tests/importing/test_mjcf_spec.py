@@ -202,7 +202,7 @@ def test_strict_writes_nothing_where_something_is_left_out(heun, folder):
     assert heun("run", "m.yaml").returncode == 0
     assert not (folder / "MUJOCO_LOG.TXT").exists()
     done = heun("import", "m.xml", "--density", "7850")
-    assert done.returncode == 2 and "--density: not for MJCF" in done.stderr
+    assert done.returncode == 2 and "--density: not available for MJCF" in done.stderr
 
 
 def test_without_mujoco_the_command_says_how_to_get_it(monkeypatch):

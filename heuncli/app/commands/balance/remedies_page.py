@@ -115,7 +115,7 @@ def make_wheel_table(wheel: Flywheel) -> TextTable:
             "added", f"{format_certain(wheel.added, errors['added'])} kg·m²", f"{errors['added']:.1g}",
             f"textbook ΔE/(δ ω²) minus the constant inertia: {format_certain(wheel.textbook, errors['textbook'])}",
         ),
-        ("own", f"{wheel.own:.6g} kg·m²", f"{errors['own']:.1g}", "mean reduced inertia of the machine"),
+        ("machine", f"{wheel.own:.6g} kg·m²", f"{errors['own']:.1g}", "mean reduced inertia of the machine"),
         ("ΔE", f"{wheel.energy:.6g} J", f"{errors['energy']:.1g}",
          "energy fluctuation of loads and inertia at constant speed"),
         ("fluctuation", f"{wheel.present:.6g}", f"{errors['present']:.1g}", "without the flywheel"),

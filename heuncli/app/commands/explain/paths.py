@@ -63,7 +63,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
         twofold = " (translation or rotation)" if len(row.units) > 1 else ""
         yield "unit", " or ".join(row.units).replace("1", "none") + twofold
     if row.is_words:
-        yield "form", "words"
+        yield "form", "text"
         return
     if (sign := SIGNS.get(keys[0])) is not None:
         yield "sign", f"{sign}: heun explain signs"
@@ -72,7 +72,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
     yield (
         "error",
-        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, of the largest of its kind: "
+        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, relative to the largest of its kind: "
         "heun explain accuracy",
     )
     report = REPORT_OF.get(keys[0], keys[0])

@@ -21,7 +21,7 @@ from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTabl
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
 
-HEADS = ("of", "unit", "least", "at [s]", "case", "greatest", "at [s]", "case")
+HEADS = ("of", "unit", "min", "at [s]", "case", "max", "at [s]", "case")
 DIGITS = 6
 ALL_ALIKE = "all equal"  # if cases differ by no more than their errors
 NO_IMPULSES = "without impulses, which are in the tables of each case"

@@ -26,7 +26,7 @@ SPOILT = "{}: errors of the runs, up to {}, are not small compared with these in
 ERROR_SHARE = 0.1  # share of an interval; larger errors of the runs get a note
 NO_INDICES = "{}: no Sobol indices: "
 FLAT = "it varies by no more than the errors of its runs"
-UNBOUNDED = "{}: no intervals for {} samples: they require " + f"{MIN_BOUNDED} or more (--samples {MIN_BOUNDED})"
+UNBOUNDED = "{}: no intervals for {} samples: " + f"{MIN_BOUNDED} or more needed (--samples {MIN_BOUNDED})"
 FEW = "all {} variants of a sample are known for {} samples only"
 
 
