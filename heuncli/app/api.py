@@ -249,12 +249,12 @@ def _suggest_options(parameters: Mapping[str, object]) -> Iterator[None]:
 
 def _check_time_limit(seconds: float | None) -> float | None:
     if seconds is not None and not 0.0 < seconds < math.inf:
-        hint = "such as 60, in s; without it there is none"
+        hint = "such as 60, in s; leave it out for no limit"
         raise UsageError(Problem("bad-option", f"time_limit {seconds:g}: expected a positive number", hint=hint))
     return seconds
 
 
 def _require_single_case(case: str | None) -> None:
     if case == ALL_CASES:
-        hint = "heuncli.solve_cases gives each of them"
-        raise UsageError(Problem("bad-option", "case all: one scene is solved", hint=hint))
+        hint = "use heuncli.solve_cases for all load cases"
+        raise UsageError(Problem("bad-option", "case all: solve() solves one load case", hint=hint))

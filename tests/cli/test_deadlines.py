@@ -78,10 +78,10 @@ def foreign(*_: Any, **__: Any) -> Any:
     [
         ("heuncli.scene.file_format.load.read_source", "run hanging.yaml", "while the spec was read"),
         ("heuncli.scene.file_format.load.read_source", "validate hanging.yaml", "while the spec was read"),
-        ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the scene was set up"),
-        ("heuncli.loads.equilibrium.search.make_rest_law", "run rest.yaml", "on the way to the rest pose"),
+        ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the model was set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the model was set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the model was set up"),
+        ("heuncli.loads.equilibrium.search.make_rest_law", "run rest.yaml", "while the rest position was searched"),
         (
             "heuncli.scene.expressions.discontinuities._find_switch_changes",
             "run driven.yaml",
@@ -103,11 +103,11 @@ def foreign(*_: Any, **__: Any) -> Any:
             "run swinging.yaml",
             "while extremes between the samples were searched",
         ),
-        ("heuncli.app.commands.run.scene._report", "run swinging.yaml", "before the work was done"),
+        ("heuncli.app.commands.run.scene._report", "run swinging.yaml", "before the work was finished"),
         (
             "heuncli.analyses.motion_diagnostics.study.growing",
             "probe swinging.yaml",
-            "while the neighbourhood of the motion was looked at",
+            "while disturbances of the motion were examined",
         ),
     ],
 )
@@ -248,7 +248,7 @@ def test_of_several_specs_only_the_one_that_does_not_stop_is_lost(
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "0.5")
     assert done.returncode == 4
     assert "1 passed, 0 failed, 1 spec not solved" in done.stdout
-    assert "rest.yaml: the time limit was reached, and the work did not stop [time-limit]" in done.stderr
+    assert "rest.yaml: the time limit was reached, but the work did not stop [time-limit]" in done.stderr
 
 
 @pytest.mark.heavy
@@ -287,7 +287,7 @@ def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pyte
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "60")
     assert done.returncode == 4
     assert "1 passed, 0 failed, 1 spec not solved" in done.stdout
-    assert "rest.yaml: the time limit of 60 s was reached on the way to the rest pose" in done.stderr
+    assert "rest.yaml: the time limit of 60 s was reached while the rest position was searched" in done.stderr
     done = heun("validate", "hanging.yaml", "expecting.yaml", "--time-limit", "10")
     assert done.returncode == 0
 
@@ -313,7 +313,7 @@ def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: p
     monkeypatch.setattr("heuncli.output.tables.export._format_json", rung)
     done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "60")
     assert (done.returncode, done.stdout) == (4, "")
-    assert "while the results were written down" in done.stderr
+    assert "while the results were written" in done.stderr
     assert (folder / "out.json").read_text() == "old"
     assert not [path for path in folder.iterdir() if path.name.startswith(".heun-")]
 

@@ -237,7 +237,7 @@ def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> N
     piped = subprocess.run(
         [sys.executable, "-m", "heuncli", "run", "wrong.yaml"], cwd=folder, capture_output=True, text=True
     )
-    assert "tells more" not in piped.stderr
+    assert "for details" not in piped.stderr
 
 
 def on_a_terminal(words: list[str], folder: Path, env: dict[str, str]) -> str:

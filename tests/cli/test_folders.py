@@ -43,7 +43,7 @@ def closed(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_closed_folder_is_told_and_the_rest_is_checked(heun: Heun) -> None:
     done = heun("check", "specs", "--format", "json")
     assert done.returncode == 2
-    assert "specs/a:1:1: the folder cannot be looked into: Permission denied [unreadable]" in done.stderr
+    assert "specs/a:1:1: the folder cannot be read: Permission denied [unreadable]" in done.stderr
     cases = json.loads(done.stdout)["cases"]
     assert [(case["file"], case["passed"]) for case in cases] == [
         ("specs/a", False), ("specs/b/spec.yaml", True), ("specs/spec.yaml", True),
@@ -65,7 +65,7 @@ def test_links_in_a_circle_end(heun: Heun, specs: Path) -> None:
     (specs / "itself.yaml").symlink_to("itself.yaml")
     done = heun("check", "specs")
     assert done.returncode == 2
-    assert "specs/a/up passed by: it is the folder specs once more" in done.stderr
+    assert "specs/a/up skipped: same folder as specs" in done.stderr
     assert "specs/itself.yaml:1:1: its links form a loop [unreadable]" in done.stderr
     assert "4 specs, 3 passed, 0 failed, 1 spec not solved" in done.stdout
 

@@ -132,7 +132,7 @@ def test_what_was_kept_passes_and_what_changed_fails_with_the_change_of_the_spec
     spec.write_text(spec.read_text().replace("m: 1.0", "m: 1.001"))
     done = heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g")
     assert done.returncode == 1
-    assert "the spec changed since it was kept" in done.stdout
+    assert "the spec changed since it was written" in done.stdout
     assert "+0.1 %" in done.stdout
     assert heun("check", "hanging.yaml", "--golden", "g", "--golden-tolerance", "0.01").returncode == 0
 
@@ -190,7 +190,7 @@ def of_another_spec(text: str) -> str:
     [
         (lambda text: "hello", "not valid JSON"), (cut_off, "the file is incomplete"),
         (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1 and 2"),
-        (of_another_spec, "kept of another spec: other.yaml"),
+        (of_another_spec, "golden file of another spec: other.yaml"),
         (lambda text: text.replace('"status"', '"stat"'), "base.sta"),
     ],
 )  # fmt: skip
@@ -218,7 +218,7 @@ def test_a_folder_or_a_way_out_in_the_place_of_a_file(heun: Heun, folder: Path, 
     done = heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force")
     assert done.returncode == 2
     assert "this is a folder" in done.stderr
-    assert "this leads out of g" in done.stderr
+    assert "this link leads out of g" in done.stderr
     assert outside.read_text() == "{}"
 
 
@@ -260,7 +260,7 @@ def test_a_file_of_format_1_is_read_passes_and_is_renewed(heun: Heun, folder: Pa
     file.write_text(without_courses(whole))
     done = heun("check", "swinging.yaml", "--golden", "g")
     assert done.returncode == 0
-    assert "kept by an earlier version without means" in done.stderr
+    assert "written by an earlier version without mean values" in done.stderr
     assert "--update renews it" in heun("diff", "swinging.yaml", "g/swinging.json").stdout
     assert heun("check", "swinging.yaml", "--golden", "g", "--update", "--force").returncode == 0
     assert file.read_text() == whole
@@ -272,11 +272,11 @@ def test_a_spec_that_changed_without_a_number_is_said_and_renewed(heun: Heun, fo
     numbers = json.loads(file.read_text())["base"]
     spec.write_text(spec.read_text() + "# another line\n")
     done = heun("check", "swinging.yaml", "--golden", "g")
-    assert (done.returncode, "the spec changed since it was kept, and no number left its bounds" in done.stderr) == (
+    assert (done.returncode, "the spec changed since it was written, but no number left its bounds" in done.stderr) == (
         0,
         True,
     )
-    assert "the specs are not the same text" in heun("diff", "swinging.yaml", "g/swinging.json").stdout
+    assert "the spec files differ" in heun("diff", "swinging.yaml", "g/swinging.json").stdout
     heun("check", "swinging.yaml", "--golden", "g", "--update", "--force")
     assert json.loads(file.read_text())["base"] == numbers
     assert heun("check", "swinging.yaml", "--golden", "g").stderr == ""

@@ -85,7 +85,7 @@ def test_standard_output_at_the_end_of_the_spec(
         with (scene / read).open("a") as end:
             monkeypatch.setattr(sys, "stdout", end)
             assert enter([command, "scene.yaml"]) == 2
-        assert f"standard output: that is {words}" in capsys.readouterr().err
+        assert f"standard output: would overwrite {words}" in capsys.readouterr().err
         assert (scene / read).read_bytes() == before
 
 
@@ -127,4 +127,4 @@ def test_a_picture_goes_elsewhere_than_the_table(scene: Path, heun: Heun) -> Non
     (scene / "a.svg").write_text("")
     os.link(scene / "a.svg", scene / "b.txt")
     done = heun("chart", "scene.yaml", "--save", "a.svg", "-o", "b.txt")
-    assert done.returncode == 2 and "that is where the table goes" in done.stderr
+    assert done.returncode == 2 and "the table is written to this file" in done.stderr

@@ -54,7 +54,7 @@ def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypa
     monkeypatch.setattr(command, "check_spec", dying)
     done = heun("check", "many", "--jobs", "3", "--format", "json")
     assert done.returncode == 70
-    assert "many/04.yaml: the process that checked it was killed by signal 9, twice [bug]" in done.stderr
+    assert "many/04.yaml: the process that checked it failed twice: killed by signal 9 [bug]" in done.stderr
     assert done.stdout.count('"file"') == 12
 
 
@@ -138,7 +138,7 @@ def test_what_a_process_was_at_that_dies_is_tried_once_more(tmp_path: Path, jobs
             work, range(9), jobs_, lambda number, died: f"{number} {died.description}", separate_process=True
         )
     )
-    assert found[5] == "5 killed by signal 9" and found[7] == f"7 ended with exit code {LimitError.exit_code}"
+    assert found[5] == "5 killed by signal 9" and found[7] == f"7 exit code {LimitError.exit_code}"
     assert [text for number, text in enumerate(found) if number not in (5, 7)] == [
         f"{number} answered" for number in (0, 1, 2, 3, 4, 6, 8)
     ]

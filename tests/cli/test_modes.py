@@ -173,7 +173,7 @@ def test_a_name_left_out_is_one_of_the_scene(heun: Heun, folder: Path) -> None:
     assert "did you mean forces.push?" in done.stderr
     assert "forces.push and drives.push have this name" in done.stderr
     (folder / "bare.yaml").write_text(SCENE + ASKED)
-    assert "has no forces and no drives" in heun("modes", "bare.yaml", "--without", "push").stderr
+    assert "has no forces or drives" in heun("modes", "bare.yaml", "--without", "push").stderr
 
 
 def test_a_motion_is_looked_at_about_the_pose_that_rests() -> None:

@@ -57,7 +57,7 @@ def test_nothing_is_written_over(heun: Heun, folder: Path) -> None:
     (folder / "below").mkdir()
     for name in ("pendulum.yaml", "link.yaml", "below"):
         done = heun("new", "pendulum", name)
-        assert (done.returncode, "something stands there" in done.stderr) == (2, True), name
+        assert (done.returncode, "this file exists" in done.stderr) == (2, True), name
     assert (folder / "pendulum.yaml").read_text() == "mine"
     assert not (folder / "nowhere.yaml").exists()
     assert heun("new", "pendulum", "nosuch/a.yaml").returncode == 5

@@ -94,8 +94,8 @@ def test_sizes_in_words(size: float, text: str) -> None:
 @pytest.mark.parametrize(
     ("limit", "words", "text"),
     [
-        (60_000, "run swinging.yaml", "heun takes 160 MB to begin with [out-of-memory]"),
-        (60_000, "validate swinging.yaml", "heun takes 160 MB to begin with [out-of-memory]"),
+        (60_000, "run swinging.yaml", "heun needs 160 MB to start [out-of-memory]"),
+        (60_000, "validate swinging.yaml", "heun needs 160 MB to start [out-of-memory]"),
         (400_000, "run swinging.yaml --set analysis.samples=2000001", "[too-much-memory]"),
     ],
 )

@@ -72,10 +72,10 @@ REFUSED = {
     "m=3 --shard 3/2": "--shard 3/2: expected K/N, the K-th part of N [bad-option]",
     "m=3 --jobs 0": "--jobs 0: expected 1 or more [bad-option]",
     "m=3 --variants no.csv": "no.csv:1:1: there is no such file [unreadable]",
-    "": "sweep: nothing is varied [bad-option]",
+    "": "sweep: no parameter is varied [bad-option]",
     "m=1:3": "m=1:3: an interval needs its number of values [bad-option]",
     "m=1,2 L=1,2,3 --zip": "--zip: the axes have different numbers of values: m 2, L 3 [bad-option]",
-    "m=3 --show scene.yaml": "--show with scene.yaml m=3 [bad-option]",
+    "m=3 --show scene.yaml": "--show and scene.yaml m=3 cannot be combined [bad-option]",
 }
 
 
@@ -138,7 +138,7 @@ def test_warnings_of_axes_and_of_variants(heun: Heun, scene: Path) -> None:
     assert done.stderr.splitlines() == [
         "warning: n=1:5/4: 1 is read in rad/s; the file gives it in rpm [set-in-si]",
         "  hint: with the unit: n=1:5/4rpm",
-        "warning: idle=1,2: nothing hangs on idle",
+        "warning: idle=1,2: idle has no effect",
     ]
     unsound = SCENE.replace("[0.08, 0.08, 0.001]", "[0.0801, 0.08, 0.00005]")
     (scene / "scene.yaml").write_text(unsound)
@@ -202,13 +202,13 @@ WRONG_TABLES = {
     "n,m,n\n1,2,3\n": "table.csv:1:5: there are two columns 'n' [variants-table]",
     "n [rmp]\n1\n": "table.csv:1:1: 'rmp' is not a unit [unknown-unit]",
     "n,q\n1,2\n": "table.csv:1:3: q: there is no parameter 'q' to set [no-such-key]",
-    "n,m\n1,2\n3\n": "table.csv:3:1: the row has 1 cells, the first one 2 [variants-table]",
+    "n,m\n1,2\n3\n": "table.csv:3:1: the row has 1 cells, the first row 2 [variants-table]",
     "n,m\n1,\n": "table.csv:2:3: an empty cell in the column 'm' [variants-table]",
-    'n,m\n1,"2\n': "table.csv:2:1: a quote that does not end with its cell [variants-table]",
+    'n,m\n1,"2\n': "table.csv:2:1: a quote that is not closed in its cell [variants-table]",
     "n,m\n1,2\n3,4 mm\n": "table.csv:3:3: m: at scene.yaml:7:15: bodies.bar.mass: m is a length (4 mm), a mass is",
     "n,case\n1,calm\n1,clam\n": "table.csv:3:3: case: there is no load case 'clam' [unknown-case]",
     "1,2\n3,4\n": "table.csv:1:1: '1' is not the name of a parameter [variants-table]",
-    "n,m\n": "table.csv:1:1: there is no variant below the names [variants-table]",
+    "n,m\n": "table.csv:1:1: there is no variant below the header [variants-table]",
     "# nothing\n": "table.csv:1:1: the table holds no rows [variants-table]",
 }
 
@@ -251,7 +251,7 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
             shown += os.read(control, 4096)
         process.kill()
     os.close(control)
-    assert re.search(rb"\d+ of 4000 variants, \S+ a second, .*\d+ (s|min) to go", shown), shown
+    assert re.search(rb"\d+ of 4000 variants, \S+ per second, .*\d+ (s|min) left", shown), shown
 
 
 def test_a_variant_that_would_not_fit_into_memory_is_refused_alone(

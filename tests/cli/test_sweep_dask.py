@@ -143,7 +143,7 @@ def test_what_is_done_stands_when_the_scheduler_goes(tmp_path: Path, recipe: Rec
     local = here(recipe, plan())
     assert answers == {number: local[number] for number in answers}
     assert gone.value.exit_code == 4
-    assert str(gone.value).splitlines()[0] == f"--dask {dask.address}: the scheduler went away [cluster-gone]"
+    assert str(gone.value).splitlines()[0] == f"--dask {dask.address}: the scheduler was lost [cluster-gone]"
 
 
 def test_workers_without_this_heun_are_named_and_not_used(dask: DaskCluster, recipe: Recipe) -> None:
@@ -160,9 +160,9 @@ def test_workers_without_this_heun_are_named_and_not_used(dask: DaskCluster, rec
         if told:
             break
     reasons = (
-        "there is no heun",
+        "heun is not installed",
         f"heun 0.0.1 there, {VERSION} here",
-        f"heun {VERSION} there, too, but with another text",
+        f"heun {VERSION} there too, but with different code",
     )
     assert sorted(line.partition(": is not used: ")[2] for line in told) == sorted(reasons)
     assert all(line.startswith("tcp://127.0.0.1:") and good not in line for line in told)
@@ -195,7 +195,7 @@ def test_a_variant_that_ends_its_workers_is_found_out(
     dask.there(1)
     found = gathered(there(recipe, plan("m=1,2,3,4,5,6,7,8"), dask.address))
     assert found[4].code == WORKER_DIED
-    assert "went away" in found[4].reason
+    assert "was lost" in found[4].reason
     local = here(recipe, plan("m=1,2,3,4,5,6,7,8"))
     assert {**found, 4: local[4]} == local
     dask.workers[-1].kill()
@@ -217,7 +217,7 @@ def test_an_interrupt_leaves_the_cluster_as_it_was(dask: DaskCluster, folder: Pa
     _, complaints = process.communicate(timeout=60)
     assert process.returncode == 130
     assert complaints.splitlines()[-1].startswith("heun: interrupted: ")
-    assert complaints.splitlines()[-1].endswith(" of 2000 variants are done; the same command goes on with the rest")
+    assert complaints.splitlines()[-1].endswith(" of 2000 variants are done; the same command continues with the rest")
     assert "Traceback" not in complaints
     while any(dask.at_work()):
         assert time.monotonic() < begun + 60
@@ -233,7 +233,7 @@ def test_an_interrupt_leaves_the_cluster_as_it_was(dask: DaskCluster, folder: Pa
         ("tcp://127.0.0.1:port", "bad-option", "expected tcp://HOST:PORT"),
         ("tcp://127.0.0.1:8786/status", "bad-option", "expected tcp://HOST:PORT"),
         ("tcp://", "bad-option", "expected tcp://HOST:PORT"),
-        ("http://127.0.0.1:8787", "bad-option", "that is a dashboard"),
+        ("http://127.0.0.1:8787", "bad-option", "this is the dashboard"),
         ("ucx://127.0.0.1:8786", "bad-option", "accepted: tcp://, tls://"),
         ("tcp://127.0.0.1:9", "no-cluster", "nothing listens there"),
         ("tcp://[::1]:9", "no-cluster", ""),
@@ -253,7 +253,7 @@ def test_processes_here_and_a_cluster_do_not_go_together(heun: Heun) -> None:
     words = ("--measure", "energy.potential", "--jobs", "2", "--dask", "tcp://127.0.0.1:9")
     done = heun("sweep", "hanging.yaml", "m=1,2", *words)
     assert done.returncode == 2
-    assert done.stderr.startswith("heun: --jobs and --dask do not go together [bad-option]")
+    assert done.stderr.startswith("heun: --jobs and --dask cannot be combined [bad-option]")
 
 
 def test_tls_without_certificates(heun: Heun, dask: DaskCluster) -> None:
@@ -278,5 +278,5 @@ def test_who_cannot_be_reached_for_long_is_given_up(
 ) -> None:
     monkeypatch.setattr(cluster, "LONGEST_WAIT", 1.0)
     dask.with_workers(0)
-    with pytest.raises(ClusterGone, match="there was no worker for 1 s"):
+    with pytest.raises(ClusterGone, match="no worker was available for 1 s"):
         list(there(recipe, plan(), dask.address))

@@ -151,7 +151,7 @@ def test_indices_leave_out_whole_samples(heun: Heun) -> None:
     assert index["parameter"] == "m" and abs(index["first"]["value"] - 1.0) < 1.0 and index["first"]["low"] is None
     text = heun("sweep", "hanging.yaml", *words, "--measure", "joints.pivot.force.z").stdout
     assert "SOBOL INDICES" in text and f"{40 - len(broken)} samples" in text
-    assert f"no intervals of {40 - len(broken)} samples: they take 64 or more (--samples 64)" in text
+    assert f"no intervals for {40 - len(broken)} samples: 64 or more needed (--samples 64)" in text
 
 
 def test_of_what_does_not_vary_there_are_no_indices(heun: Heun) -> None:
@@ -196,19 +196,19 @@ def test_the_table_marks_least_and_greatest_and_draws_the_course() -> None:
     lines = text.splitlines()
     assert lines[0] == "SWEEP  A title: 8 variants"
     assert lines[1].split() == ["n", "[rpm]", "m0", "[N]", "at", "[s]"]
-    assert lines[2].split() == ["1", "1.0", "0", "least"] and lines[9].split() == ["8", "8.0", "0.7", "greatest"]
-    assert sum("least" in line for line in lines[2:10]) == sum("greatest" in line for line in lines[2:10]) == 1
+    assert lines[2].split() == ["1", "1.0", "0", "min"] and lines[9].split() == ["8", "8.0", "0.7", "max"]
+    assert sum("min" in line for line in lines[2:10]) == sum("max" in line for line in lines[2:10]) == 1
     assert "▁▂▃▄▅▆▇█" in text and "n = 1 rpm" in text and "over n" in text
 
 
 def test_what_cannot_be_told_apart_is_marked_alike() -> None:
     plan = make_axes_plan([axis("n=1,2,3,4")])
     lines = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 2.0, 1.5])).splitlines()
-    assert [line.split()[3:] for line in lines[2:6]] == [["least"], ["least"], ["greatest"], []]
-    assert "1.0    n = 1 or 1 more  2.0       n = 3" in "\n".join(lines)
+    assert [line.split()[3:] for line in lines[2:6]] == [["min"], ["min"], ["max"], []]
+    assert "1.0  n = 1 or 1 more  2.0  n = 3" in "\n".join(lines)
     flat = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 1.0, 1.0]))
-    assert "m0: the same in all variants, as far as their errors tell" in flat and "▁▁▁▁" in flat
-    assert not any(word in line for line in flat.splitlines()[2:6] for word in ("least", "greatest"))
+    assert "m0: the same in all variants within their errors" in flat and "▁▁▁▁" in flat
+    assert not any(word in line for line in flat.splitlines()[2:6] for word in ("min", "max"))
 
 
 def test_no_more_digits_than_the_error_supports_and_in_the_units_asked_for() -> None:
@@ -231,7 +231,7 @@ def test_a_long_sweep_shows_its_ends_and_its_extremes() -> None:
     text = text_of(head, rows)
     shown = [line.split()[0] for line in text.partition("MEASURES")[0].splitlines()[2:] if line]
     assert shown == [*map(str, range(10)), "...", "500", "...", "700", "...", *map(str, range(990, 1000))]
-    assert "... 490 more: --all" in text and "least  " in text and "-1.0" in text
+    assert "... 490 more: --all" in text and "min" in text and "-1.0" in text
     every = text_of(head, rows, every=True)
     assert "more: --all" not in every.partition("MEASURES")[0] and every.count("\n") > 1000
 
@@ -242,7 +242,7 @@ def test_several_axes_have_a_line_of_letters_each() -> None:
     assert "▁▂▃▄  L = 1 mm" in text and "▅▆·█  L = 2 mm" in text
     many = make_axes_plan([axis("L=1:50/50"), axis("n=1:2/2")])
     text = text_of(head_of(many, "N"), rows_of(many, [float(k) for k in range(100)]))
-    assert "m0: 38 lines of letters more: --all" in text
+    assert "m0: 38 more lines: --all" in text
 
 
 def test_words_stand_for_what_is_not_known() -> None:
@@ -325,7 +325,7 @@ def test_parquet_goes_to_a_file_and_needs_its_extra(heun: Heun, folder: Path, mo
     words = ("sweep", "lever.yaml", "L=1,1.1", "--measure", MEASURES[0])
     for more in (("--format", "parquet"), ("--format", "parquet", "-o", "-")):
         done = heun(*words, *more)
-        assert done.returncode == 2 and "parquet goes to a file only" in done.stderr and not done.stdout
+        assert done.returncode == 2 and "parquet requires a file" in done.stderr and not done.stdout
     (folder / "out.parquet").write_text("old")
     monkeypatch.setattr(as_parquet.importlib.util, "find_spec", lambda name: None)
     done = heun(*words, "-o", "out.parquet")
@@ -370,10 +370,10 @@ def test_units_are_of_tables(heun: Heun, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told_"),
     [
-        (("L=uniform(1,2)",), "L: how many are drawn?"),
-        (("L=1,2", "--samples", "5"), "--samples: nothing is drawn at random"),
-        (("L=1,2", "--seed", "5"), "--seed: nothing is drawn at random"),
-        (("L=1,2", "--indices"), "--indices: nothing is drawn at random"),
+        (("L=uniform(1,2)",), "L: the number of samples is missing"),
+        (("L=1,2", "--samples", "5"), "--samples: no parameter is random"),
+        (("L=1,2", "--seed", "5"), "--seed: no parameter is random"),
+        (("L=1,2", "--indices"), "--indices: no parameter is random"),
         (("L=lhs(1,2)", "m=sobol(1,2)kg", "--samples", "4"), "lhs and sobol in one sweep"),
         (("L=lhs(1,2)", "--samples", "4", "--seed", "-1"), "expected 0 or more"),
     ],

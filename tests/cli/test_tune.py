@@ -53,11 +53,11 @@ def test_the_table_and_the_line_that_can_be_pasted(heun: Heun) -> None:
     words = ["b=1.05:1.9m", "--minimise", "joints.k.force", "--subject-to", "joints.a.force > 0.02 kN"]
     done = heun("tune", "gable.yaml", *words)
     assert done.returncode == 0 and done.stderr == ""
-    assert "tune  least joints.k.force, by b\n      converged: two restarts gained no more than" in done.stdout
+    assert "tune  minimise joints.k.force, by b\n      converged: two restarts improved the goal by no more than" in done.stdout
     for said in ("\nVARIABLES ", "\nb [m] ", "\nMOVES ", "\nMEASURES ", "\njoints.k.force [N] ", "> 20"):
         assert said in done.stdout
     *_, title, line = done.stdout.splitlines()
-    assert title == "Its numbers, to the bit:" and line.startswith("heun run gable.yaml --set ")
+    assert title == "Command that reproduces these numbers exactly:" and line.startswith("heun run gable.yaml --set ")
     told = found_by(heun, "gable.yaml", *words)
     assert told["command"] == line
     _, *again = shlex.split(line)
@@ -115,7 +115,7 @@ def test_half_of_the_box_does_not_close(heun: Heun) -> None:
 def test_nothing_can_be_solved(heun: Heun) -> None:
     done = heun("tune", "gable.yaml", "b=0.2:0.9m", "--minimise", "joints.k.force", "--evaluations", "9")
     assert done.returncode == 3 and done.stdout == ""
-    assert "none of 8 variants could be solved; 8 of them as this one: joint k" in done.stderr
+    assert "none of 8 variants could be solved; 8 of them for this reason: joint k" in done.stderr
     assert "hint: " in done.stderr
 
 
@@ -139,8 +139,8 @@ def test_nothing_feasible_is_said(heun: Heun) -> None:
     words = ["tune", "hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z < 9 N"]
     words += ["--subject-to", "joints.pivot.force.z > 1 N"]
     done = heun(*words)
-    assert done.returncode == 0 and "nothing was found that keeps all limits" in done.stdout
-    assert "nearest to being met: joints.pivot.force.z < 9 N, passed by 0.81 N" in done.stdout
+    assert done.returncode == 0 and "no values meet all limits" in done.stdout
+    assert "closest limit: joints.pivot.force.z < 9 N, exceeded by 0.81 N" in done.stdout
     assert "not met" in done.stdout
     assert heun(*words, "--strict").returncode == 1
     told = found_by(heun, *words[1:])
@@ -209,11 +209,11 @@ def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["hanging.yaml", "m=1:2kg"], "what is to be tuned is not said"),
+        (["hanging.yaml", "m=1:2kg"], "no goal is given"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--maximise", "joints.pivot.force.z"], "both --minimise and --maximise"),
-        (["m=1:2kg", *WEIGHT], "no spec is named"),
+        (["m=1:2kg", *WEIGHT], "no spec is given"),
         (["hanging.yaml", "other.yaml", "m=1:2kg", *WEIGHT], "2 files"),
-        (["hanging.yaml", *WEIGHT], "nothing is varied"),
+        (["hanging.yaml", *WEIGHT], "no parameter is varied"),
         (["hanging.yaml", "m=1:2kg", "m=2:3kg", *WEIGHT], "is varied twice"),
         (["hanging.yaml", "m=1:1kg", *WEIGHT], "both ends are the same"),
         (["hanging.yaml", "m=1kg", *WEIGHT], "expected NAME=a:b"),
@@ -233,7 +233,7 @@ def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--format", "csv"], "known: table, json"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "hanging.yaml", "--format", "json"], "the spec itself"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--history", "hanging.yaml"], "the spec itself"),
-        (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "a.json", "--history", "a.json"], "where the result goes"),
+        (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "a.json", "--history", "a.json"], "the result is written to this file"),
         (["wrong.yaml", "m=1:2kg", *WEIGHT], "[unknown-joint-type]"),
     ],
 )  # fmt: skip

@@ -47,7 +47,7 @@ def test_standard_input_is_read(heun):
 @pytest.mark.usefixtures("arm")
 def test_the_model_is_not_written_over(heun, arm):
     done = heun("import", "arm.urdf", "-o", "arm.urdf")
-    assert done.returncode == 2 and "that is the model itself" in done.stderr
+    assert done.returncode == 2 and "would overwrite the model itself" in done.stderr
     assert arm.read_text() == ARM
 
 
@@ -73,14 +73,14 @@ def test_what_is_wrong_leaves_with_2_and_writes_nothing(heun, folder):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--base", "fix"), "known: fixed, free"),
-        (("--limits",), "runs against no stop"),
+        (("--base", "fix"), "accepted: fixed, free"),
+        (("--limits",), "cannot reach a stop"),
         (("--density", "heavy"), "--density"),
         (("--density", "7 kN"), "--density"),
         (("--density", "-1"), "more than 0"),
         (("--density", "0"), "more than 0"),
         (("--repair", "triangel"), "did you mean triangle?"),
-        (("--repair", ""), "known: massless, negative"),
+        (("--repair", ""), "accepted: massless, negative"),
     ],
 )
 def test_options_that_mean_nothing_are_refused(heun, words, told):

@@ -22,7 +22,7 @@ def row(name: str) -> tuple[str, ...]:
 
 def tables() -> tuple[Table, Table]:
     """What stands below the heading On your machine."""
-    head = ("case", "what", "numbers", "which are", "digits", "last digits", "of the largest")
+    head = ("case", "what", "numbers", "kind", "digits", "in last digits", "relative")
     sources = [(f"`{name}`", read_case(name).source) for name in list_names()]
     return (
         Table("references", "On your machine", head, [row(name) for name in list_names()]),

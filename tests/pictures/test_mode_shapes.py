@@ -94,7 +94,7 @@ def test_hostile_titles_and_what_has_no_modes(heun: Heun, folder: Path) -> None:
     assert "<script" not in text and "\u202e" not in text and "<script>alert(1)</script>" in "".join(texts_of(text))
     for words, code, why in [
         ((str(SPECS / "slider_crank.yaml"), "modes"), 2, "no degree of freedom can oscillate"),
-        (("two.yaml", "modes", "joints.hang"), 2, "of the whole scene"),
+        (("two.yaml", "modes", "joints.hang"), 2, "draws the whole model"),
         (("two.yaml", "modes", "--view", "north"), 2, "--view north"),
         ((str(SPECS / "laval.yaml"), "modes"), 3, "no-rest-pose"),
     ]:

@@ -77,7 +77,7 @@ def test_units_and_refusals(heun: Heun) -> None:
     heun("plot", CRANK, "balance", "--units", "kN,mm", "-o", "drawn.svg")
     words = texts_of(Path("drawn.svg").read_text())
     assert "[kN]" in words and "[kN·mm]" in words
-    for more, why in [(("joints.main",), "of the whole scene"), (("--view", "x"), "--view")]:
+    for more, why in [(("joints.main",), "draws the whole model"), (("--view", "x"), "--view")]:
         done = heun("plot", CRANK, "balance", *more, "-o", "other.svg")
         assert done.returncode == 2 and why in done.stderr and not Path("other.svg").exists()
     done = heun("plot", str(SPECS / "door.yaml"), "balance", "-o", "other.svg")

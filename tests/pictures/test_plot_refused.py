@@ -25,10 +25,10 @@ TWO = HANGING.replace("{type: ball,", "{type: pin, axis: [0, 1, 0],") + "analysi
 TURNED = TWO + "forces: {f: {type: torque, joint: pivot, value: t}}\n"
 PUSHED = TWO + "forces: {f: {type: actuator, from: {body: ground, at: [1, 0, 0]}, to: bar.top, value: t}}\n"
 REFUSED = [
-    ((PATH,), "no spec is named"),
-    (("hanging.yaml",), "what is to be drawn is not said"),
-    (("hanging.yaml", ""), "an empty word"),
-    (("", PATH), "no spec is named"),
+    ((PATH,), "no spec is given"),
+    (("hanging.yaml",), "nothing to draw is given"),
+    (("hanging.yaml", ""), "an empty argument"),
+    (("", PATH), "no spec is given"),
     ((".", PATH), "this is a folder"),
     (("missing.yaml", PATH), "no such file"),
     (("hanging.yaml", "joints.pivo.force"), "did you mean pivot?"),
@@ -36,17 +36,17 @@ REFUSED = [
     (("hanging.yaml", "model.freedoms"), "does not vary with time"),
     (("hanging.yaml", "bodies.bar.rotation"), "9 numbers"),
     (("hanging.yaml", "title"), "is text, not a number"),
-    (("hanging.yaml", PATH, "scene"), "one kind of picture at a time"),
-    (("hanging.yaml", "sweep.csv", PATH), "specs and sweeps in one picture"),
-    (("sectioned.yaml", "sections.along", PATH), "one kind of picture at a time"),
+    (("hanging.yaml", PATH, "scene"), "one kind of plot at a time"),
+    (("hanging.yaml", "sweep.csv", PATH), "specs and sweeps cannot share one plot"),
+    (("sectioned.yaml", "sections.along", PATH), "one kind of plot at a time"),
     (("sectioned.yaml", "sections.along.M1"), "5 numbers"),
-    (("hanging.yaml", "energy.kinetic", "--axes", "to"), "--axes to does nothing to energy.kinetic"),
-    (("swinging.yaml", "polar", "foundation", "--axes", "to"), "--axes to does nothing to foundation.force"),
-    (("hanging.yaml", "modes", "--units", "mm"), "--units does nothing to mode shapes"),
+    (("hanging.yaml", "energy.kinetic", "--axes", "to"), "--axes to has no effect on energy.kinetic"),
+    (("swinging.yaml", "polar", "foundation", "--axes", "to"), "--axes to has no effect on foundation.force"),
+    (("hanging.yaml", "modes", "--units", "mm"), "--units has no effect on mode shapes"),
     (("turned.yaml", "pushed.yaml", PATH, "--x", "forces.f.value"), "'moment' in turned, 'force' in pushed"),
-    (("hanging.yaml", PATH, "--at", "0"), "--at does nothing to numbers over time"),
-    (("sectioned.yaml", "sections.along", "--x", "time"), "--x does nothing to section diagrams"),
-    (("hanging.yaml", PATH, "--tension-side"), "--tension-side does nothing"),
+    (("hanging.yaml", PATH, "--at", "0"), "--at has no effect on numbers over time"),
+    (("sectioned.yaml", "sections.along", "--x", "time"), "--x has no effect on section diagrams"),
+    (("hanging.yaml", PATH, "--tension-side"), "--tension-side has no effect"),
     (("hanging.yaml", PATH, "--case", "all"), "the spec has no load cases"),
     (("hanging.yaml", PATH, "--case", "cold"), "no load case 'cold'"),
     (("hanging.yaml", PATH, "--units", "furlong"), "not a unit"),
@@ -98,7 +98,7 @@ def test_without_matplotlib_it_is_said_how_to_install_it(
 
 def test_a_width_is_of_letters(heun: Heun, files: Path) -> None:
     assert (
-        "--width is of pictures in letters" in heun("plot", "hanging.yaml", PATH, "--width", "90", "-o", "x.svg").stderr
+        "--width applies to text drawings" in heun("plot", "hanging.yaml", PATH, "--width", "90", "-o", "x.svg").stderr
     )
     assert "expected 40 to 400" in heun("plot", "hanging.yaml", PATH, "--width", "9").stderr
 

@@ -141,10 +141,10 @@ def test_a_curve_is_broken_where_a_blow_strikes(heun: Heun) -> None:
 
 
 REFUSED = [
-    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram"),
-    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram"),
-    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram"),
-    ((ROTOR, "polar"), "of what is not said"),
+    ((ROTOR, "polar", "joints.left.drive"), "not a vector over time"),
+    ((ROTOR, "polar", "coordinates.left.angle"), "not a vector over time"),
+    ((ROTOR, "polar", "joints.left.force.y"), "not a vector over time"),
+    ((ROTOR, "polar"), "no vector is given"),
     ((ROTOR, "polar", "joints.wrong"), "is not a result"),
     ((ROTOR, "polar", "joints.left", "--view", "20,30"), "--view 20,30"),
     ((ROTOR, "polar", "joints.left", "--axes", "body"), "--axes body"),

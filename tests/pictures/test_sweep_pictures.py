@@ -194,14 +194,14 @@ WRONG = {
     "other.csv": ("a,b\n1,2\n", "its columns are a, b"),
     "run.csv": ("time,kind,name,quantity,component,unit,value\n", "its columns are time, kind"),
     "short.csv": (CSV.format(e=0) + "3,4\n", "row 5 has 2 cells"),
-    "quote.csv": (CSV.format(e=0) + '3,"4', "this is no CSV of a sweep"),
+    "quote.csv": (CSV.format(e=0) + '3,"4', "not a CSV file of a sweep"),
     "heads.csv": (CSV.splitlines()[0] + "\n", "the sweep has no rows"),
     "one.csv": ("\n".join(CSV.format(e=0).splitlines()[:2]) + "\n", "a single variant gives no curve"),
     "bare.csv": ("number,m,code,reason\n0,1,,\n", "it has no measures"),
     "empty.sqlite": ("", "it is empty"),
     "text.sqlite": ("heun: 1\n" * 200, "not a store of sweeps"),
     "huge.csv": (CSV.format(e=0) + "3,4,1e308,0,0,,\n", "is 1e+308"),
-    "text.csv": ("\0\0\0", "this is no CSV of a sweep"),
+    "text.csv": ("\0\0\0", "not a CSV file of a sweep"),
 }
 
 

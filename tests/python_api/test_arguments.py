@@ -13,20 +13,20 @@ from heuncli.base.errors import HeunError, UsageError
 from tests.shared.command import HANGING
 
 WRONG: dict[str, list[Any]] = {
-    "a text": [3, 2.5, ["a"], b"x", {"a": 1}, True],
-    "a text or a list of texts": [3, [1, 2], b"x", {"a": "b"}, ["joints", 2], iter(["joints"])],
+    "a string": [3, 2.5, ["a"], b"x", {"a": 1}, True],
+    "a string or a list of strings": [3, [1, 2], b"x", {"a": "b"}, ["joints", 2], iter(["joints"])],
     "a number": ["1", [1.0], {"a": 1}, True, np.array([1.0]), 1j],
     "a number or an array of numbers": ["1", {"a": 1}, [[1, 2], [3]], ["x"], [None], True, 1j],
     "True or False": ["yes", 1, 0.0, None, [True]],
     "a mapping": ["a=1", 3, [("a", 1)]],
     "a whole number": [1.5, "3", True],
-    "the name of a file": [3, b"x.json", ["x.json"]],
-    "a number or a text": [[1.0], True, {"a": 1}],
+    "a file name": [3, b"x.json", ["x.json"]],
+    "a number or a string": [[1.0], True, {"a": 1}],
 }
 SOLVING = {
-    "text": "a text", "case": "a text", "set": "a mapping", "only": "a text or a list of texts",
-    "at": "a number or an array of numbers", "tolerance": "a number", "method": "a text", "step": "a number",
-    "least_norm": "True or False", "reduce": "True or False", "by_cause": "True or False", "axes": "a text",
+    "text": "a string", "case": "a string", "set": "a mapping", "only": "a string or a list of strings",
+    "at": "a number or an array of numbers", "tolerance": "a number", "method": "a string", "step": "a number",
+    "least_norm": "True or False", "reduce": "True or False", "by_cause": "True or False", "axes": "a string",
     "time_limit": "a number",
 }  # fmt: skip
 
@@ -66,25 +66,25 @@ def test_of_a_solved_scene() -> None:
     study = heuncli.solve(text=HANGING)
     path = next(iter(study))
     calls: list[tuple[Callable[[Any], object], str, str]] = [
-        (study.paths, "under", "a text"),
-        (study.measure, "words", "a text"),
+        (study.paths, "under", "a string"),
+        (study.measure, "words", "a string"),
         (study.at, "times", "a number or an array of numbers"),
         (study[path].at, "times", "a number or an array of numbers"),
-        (lambda value: study.collective(value), "path", "a text"),
+        (lambda value: study.collective(value), "path", "a string"),
         (lambda value: study.collective(path, slopes=value), "slopes", "a number or an array of numbers"),
         (lambda value: study.collective(path, bins=value), "bins", "a whole number"),
         (lambda value: study.collective(path, repeat=value), "repeat", "a whole number"),
         (lambda value: study.collective(path, cycles=value), "cycles", "a number"),
         (lambda value: study.collective(path, closed=value), "closed", "True or False"),
-        (lambda value: study.load_cases(value, 0), "body", "a text"),
-        (lambda value: study.load_cases("bar", value), "at", "a number or a text"),
-        (lambda value: study.tables(units=value), "units", "a text"),
-        (lambda value: study.tables(only=value), "only", "a text or a list of texts"),
+        (lambda value: study.load_cases(value, 0), "body", "a string"),
+        (lambda value: study.load_cases("bar", value), "at", "a number or a string"),
+        (lambda value: study.tables(units=value), "units", "a string"),
+        (lambda value: study.tables(only=value), "only", "a string or a list of strings"),
         (lambda value: study.frame(units=value), "units", "True or False"),
-        (lambda value: study.plot(path, over=value), "over", "a text"),
-        (lambda value: study.plot(path, units=value), "units", "a text"),
-        (lambda value: study.save(value), "file", "the name of a file"),
-        (lambda value: study.plot(path).save(value), "file", "the name of a file"),
+        (lambda value: study.plot(path, over=value), "over", "a string"),
+        (lambda value: study.plot(path, units=value), "units", "a string"),
+        (lambda value: study.save(value), "file", "a file name"),
+        (lambda value: study.plot(path).save(value), "file", "a file name"),
     ]
     for call, name, kind in calls:
         refusals(call, name, kind)

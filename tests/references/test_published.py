@@ -193,8 +193,8 @@ def test_one_that_cannot_be_solved(heun: Heun, monkeypatch: pytest.MonkeyPatch) 
     [
         (["andrew"], "did you mean andrews?"),
         (["andrews", "nosuch/folder"], "there is no such published case"),
-        (["--golden", "kept"], "--references with --golden"),
-        (["-k", "fast"], "--references with -k"),
+        (["--golden", "kept"], "--references and --golden"),
+        (["-k", "fast"], "--references and -k"),
     ],
 )
 def test_what_does_not_go_together(heun: Heun, words: list[str], said: str) -> None:

@@ -118,5 +118,5 @@ def test_data_stay_in_si(capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", str(SPECS / "door.yaml"), "--format", "csv", "--units", "kN"]) == 0
     told = capsys.readouterr()
     assert ",N," in told.out
-    assert told.err == "heun: --units is of tables: csv stays in SI\n"
+    assert told.err == "heun: --units applies to tables only; csv stays in SI\n"
     assert "kN·m" in report(capsys, "chimney", "--format", "markdown", "--units", "kN")

@@ -12,9 +12,9 @@ from tests.shared.command import HANGING, Heun
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ((), "where it is to be written is not said"),
-        (("-o", "x.bmp"), "no report is known by that ending"),
-        (("-o", "report"), "no report is known by that ending"),
+        ((), "no output file is given"),
+        (("-o", "x.bmp"), "unknown file extension"),
+        (("-o", "report"), "unknown file extension"),
         (("-o", "x.pdf"), "open it in a browser and print it"),
         (("-o", "x.html", "--format", "pdf"), "--format pdf: known: html, md"),
         (("-o", "x.html", "--case", "windy"), "no such load case"),

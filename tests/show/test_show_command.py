@@ -25,12 +25,12 @@ def test_the_page_goes_where_it_is_told(heun: Heun, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        (("swinging.yaml",), 2, "where the page goes is not said"),
-        (("swinging.yaml", "-o", "x.bmp"), 2, "no page is known by that ending"),
-        (("swinging.yaml", "-o", "x"), 2, "no page is known by that ending"),
+        (("swinging.yaml",), 2, "no output file is given"),
+        (("swinging.yaml", "-o", "x.bmp"), 2, "unknown file extension"),
+        (("swinging.yaml", "-o", "x"), 2, "unknown file extension"),
         (("swinging.yaml", "-o", "nowhere/x.html"), 5, "nowhere"),
-        (("swinging.yaml", "--glb", "x.glb", "--frames", "3"), 2, "--frames: of the page, and none is written"),
-        (("swinging.yaml", "--glb", "x.glb", "--units", "mm"), 2, "--units: of the page, and none is written"),
+        (("swinging.yaml", "--glb", "x.glb", "--frames", "3"), 2, "--frames: only for the page, and none is written"),
+        (("swinging.yaml", "--glb", "x.glb", "--units", "mm"), 2, "--units: only for the page, and none is written"),
         (("swinging.yaml", "-o", "x.html", "--frames", "1"), 2, "expected 2 to 5000"),
         (("swinging.yaml", "-o", "x.html", "--frames", "5001"), 2, "expected 2 to 5000"),
         (("swinging.yaml", "-o", "x.html", "--units", "kg"), 2, "--units kg"),

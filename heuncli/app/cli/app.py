@@ -14,7 +14,7 @@ from heuncli.app.cli.completion import BY_WORD
 from heuncli.app.cli.options import RequestField, list_fields
 from heuncli.app.cli.registry import Command, ParsedCommand
 
-EPILOG = "Exit codes: 0 fine, 1 a check failed, 2 bad usage or spec, 3 cannot be solved, 4 a limit, 5 output, 70 a bug."
+EPILOG = "Exit codes: 0 success, 1 check failed, 2 bad usage or spec, 3 not solvable, 4 limit, 5 output error, 70 bug."
 COMPLETION_VARIABLE = "_HEUN_COMPLETE"  # set by a shell that completes
 
 
@@ -25,7 +25,7 @@ def read(argv: list[str]) -> ParsedCommand | int:
     parsed: list[ParsedCommand] = []
     app = typer.Typer(
         name="heun",
-        help="Reactions, section forces and mass effects of rigid bodies and linked chains, after Heun (1901).",
+        help="Reactions, section forces and inertia forces of rigid bodies and mechanisms, after Heun (1901).",
         epilog=EPILOG,
         no_args_is_help=True,
         rich_markup_mode=None,
@@ -46,7 +46,7 @@ def read(argv: list[str]) -> ParsedCommand | int:
 
 
 def _callback(
-    version: Annotated[bool, typer.Option("--version", help="The version, and which kernel runs.")] = False,
+    version: Annotated[bool, typer.Option("--version", help="Show the version and the kernel, and exit.")] = False,
 ) -> None:
     """Add `--version` to the help; app/cli/entry.py answers it before typer is imported."""
 

@@ -26,7 +26,7 @@ INTERRUPTED = 130
 Given = TypeVar("Given")
 BUG = 70
 EXIT_CODE_PRIORITY = (BUG, 5, 2, 3, 4, 1)  # manual/commands.md, "Exit codes": which exit code stands for several files
-OUT_OF_MEMORY = Problem("out-of-memory", "the memory does not suffice", hint="fewer samples, or --only")
+OUT_OF_MEMORY = Problem("out-of-memory", "not enough memory", hint="use fewer samples, or --only")
 
 
 class Bug(HeunError):
@@ -81,8 +81,8 @@ def print_explain_hint(problems: Sequence[Problem]) -> None:
     """Print which `heun explain` describes these problems, on a terminal."""
     if sys.stderr is not None and sys.stderr.isatty() and problems:
         codes = list(dict.fromkeys(problem.code for problem in problems))
-        others = f" (and of {', '.join(codes[1:4])})" if codes[1:] else ""
-        print_stderr(f"heun explain {codes[0]} tells more{others}")
+        others = f" (also: {', '.join(codes[1:4])})" if codes[1:] else ""
+        print_stderr(f"for details: heun explain {codes[0]}{others}")
 
 
 def format_problems(problems: Sequence[Problem], label: str = "") -> list[str]:
@@ -114,7 +114,7 @@ def _run_command(argv: list[str]) -> int:
 def _require_limit(option: str, limit: float | None) -> None:
     """Raise UsageError if a time limit is not a positive, finite number."""
     if limit is not None and not 0.0 < limit < math.inf:
-        hint = f"such as {option} 60, in s; without it there is none"
+        hint = f"such as {option} 60, in s; leave it out for no limit"
         raise UsageError(Problem("bad-option", f"{option} {limit:g}: expected a positive number", hint=hint))
 
 

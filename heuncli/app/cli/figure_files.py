@@ -32,6 +32,6 @@ def require_save_form(name: str | None, output: str | None) -> str | None:
     form = require_figure_form(name, "--save")
     if is_same_file("/dev/stdout" if output in (None, STDOUT) else output, name):
         raise UsageError(
-            Problem("bad-option", f"--save {name}: that is where the table goes", hint="name another file")
+            Problem("bad-option", f"--save {name}: the table is written to this file", hint="name another file")
         )
     return form

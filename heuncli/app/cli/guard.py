@@ -29,7 +29,7 @@ def require_other_file(output: str | None, specs: Sequence[str], option: str = "
         member = "table" if kind == "spec" else "part"
         what = f"the {kind} itself" if is_spec else f"a {member} of the {kind}"
         where = "standard output" if to_stdout else f"{option} {output}"
-        raise UsageError(Problem("bad-option", f"{where}: that is {what}", hint="name another file"))
+        raise UsageError(Problem("bad-option", f"{where}: would overwrite {what}", hint="name another file"))
 
 
 def is_same_file(one: str | None, other: str | None) -> bool:

@@ -72,8 +72,8 @@ class ProcessDeath(NamedTuple):
         bug_hint: the hint if no limit ended it
         """
         if self.is_time_up:
-            return Problem("time-limit", "the time limit was reached, and the work did not stop", hint=timeout.HINT)
-        return Problem("bug", f"the process that {work} was {self.description}, twice", hint=bug_hint)
+            return Problem("time-limit", "the time limit was reached, but the work did not stop", hint=timeout.HINT)
+        return Problem("bug", f"the process that {work} failed twice: {self.description}", hint=bug_hint)
 
 
 class RetryQueue:
@@ -204,7 +204,7 @@ class _Worker(Generic[Item, Answer]):
         self.process.join()
         code = self.process.exitcode or 0
         self.pipe.close()
-        return ProcessDeath(f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}", code)
+        return ProcessDeath(f"killed by signal {-code}" if code < 0 else f"exit code {code}", code)
 
 
 def _serve(pipe: Connection, work: Callable[[Item], Answer], parent_ends: Sequence[Connection]) -> None:

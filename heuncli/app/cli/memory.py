@@ -16,10 +16,8 @@ def require_minimum() -> None:
     if available is None:
         return
     if available < MIN_MEMORY:
-        message = (
-            f"the limit on memory leaves {available / 1e6:.0f} MB; heun takes {MIN_MEMORY / 1e6:.0f} MB to begin with"
-        )
-        raise LimitError(Problem("out-of-memory", message, hint="a higher limit (ulimit -v)"))
+        message = f"the memory limit leaves {available / 1e6:.0f} MB; heun needs {MIN_MEMORY / 1e6:.0f} MB to start"
+        raise LimitError(Problem("out-of-memory", message, hint="raise the limit (ulimit -v)"))
     import numpy as np
 
     np.ones((64, 64)) @ np.ones((64, 64))  # BLAS allocates its memory now; it would end the process without any

@@ -28,29 +28,31 @@ class Option(NamedTuple):
 SET = Option(
     ("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE", completes="set"
 )
-CASE = Option(("--case",), "In a load case of the spec; what --set says goes on top.", "NAME", completes="case")
-OUTPUT = Option(("--output", "-o"), "Write there, whole or not at all.", "FILE")
-QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
-TIME_LIMIT = Option(("--time-limit",), "Give up after that long.", "SECONDS")
-TIME_LIMIT_EACH = Option(("--time-limit",), "Give up on a spec after that long; the others go on.", "SECONDS")
-UNITS = Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; all other forms stay SI.", "UNIT,...")
+CASE = Option(("--case",), "Solve this load case; --set is applied on top.", "NAME", completes="case")
+OUTPUT = Option(("--output", "-o"), "Output file, written atomically.", "FILE")
+QUIET = Option(("--quiet", "-q"), "Suppress warnings on standard error.")
+TIME_LIMIT = Option(("--time-limit",), "Stop after this time.", "SECONDS")
+TIME_LIMIT_EACH = Option(("--time-limit",), "Stop each spec after this time; the others continue.", "SECONDS")
+UNITS = Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; all other formats stay in SI.", "UNIT,...")
 VIEW = Option(
-    ("--view",), "From where a scene is seen: along x, y, z, or azimuth, elevation [deg].", "x|y|z|A,E"
+    ("--view",), "Viewing direction: along x, y or z, or azimuth, elevation [deg].", "x|y|z|A,E"
 )  # fmt: skip
-WIDTH = Option(("--width",), "Columns of a drawing in letters.", "COLUMNS")
-METHOD = Option(("--method",), "The method of integration; `heun methods` lists them.", "NAME")
-STEP = Option(("--step",), "The step of a method of fixed step.", "SECONDS")
-TOLERANCE = Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
-LEAST_NORM = Option(("--least-norm",), "Split what redundant supports leave open.")
+WIDTH = Option(("--width",), "Width of a text drawing in columns.", "COLUMNS")
+METHOD = Option(("--method",), "Integration method; `heun methods` lists them.", "NAME")
+STEP = Option(("--step",), "Step size of a fixed-step method.", "SECONDS")
+TOLERANCE = Option(("--tolerance",), "Allowed error of the motion, relative to the model size.", "NUMBER")
+LEAST_NORM = Option(("--least-norm",), "Split indeterminate reactions by the least norm.")
 WITHOUT = Option(
-    ("--without",), "Leave out these forces, and hold these drives where they start. May be repeated.", "NAME,..."
+    ("--without",),
+    "Leave out these forces, and lock these drives at their start position. May be repeated.",
+    "NAME,...",
 )
-NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
+NO_REDUCE = Option(("--no-reduce",), "Solve the full model without reduction.")
 FORMATS = ("table", "json", "csv")  # of most commands
 FORMAT = Option(
-    ("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "|".join(FORMATS)
+    ("--format",), "Output format. Default: from the extension of -o FILE, else table.", "|".join(FORMATS)
 )  # fmt: skip
-SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC", completes="spec")
+SPEC = Option((), "YAML file of the spec; - reads standard input.", "SPEC", completes="spec")
 
 
 class Request(Protocol):

@@ -71,7 +71,9 @@ def split_spec_and_assignments(words: Sequence[str], command: str, usage: str) -
     """
     files = [word for word in words if "=" not in word]
     if len(files) != 1:
-        problem_text = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
+        problem_text = (
+            f"expected one spec, found {len(files)} files: {', '.join(files)}" if files else "no spec is given"
+        )
         raise UsageError(Problem("bad-option", f"{command}: {problem_text}", hint=usage))
     return files[0], [word for word in words if "=" in word]
 
@@ -89,8 +91,8 @@ def parse_instants(words: str, study: Study) -> Array:
 
     requested = parse(words)
     if make_extreme_requests(requested):
-        message = f"--at {words}: tables show by themselves when each number is largest"
-        hint = "leave --at out; or name a time, first, last, impulse:NAME"
+        message = f"--at {words}: tables already show when each number is largest"
+        hint = "leave out --at, or give a time, first, last or impulse:NAME"
         raise UsageError(Problem("bad-option", message, hint=hint))
     return find_requested_times(requested, study)
 

@@ -32,8 +32,8 @@ def choose_format(requested: str | None, output: str | None, formats: Sequence[s
     ending = name[name.rfind(".") :].lower() if "." in name else ""
     if ending not in endings:
         known = ", ".join(f"{end} ({form})" for end, form in endings.items() if end)
-        hint = f"known endings: {known}; with --format {'|'.join(formats)} any name will do"
-        raise UsageError(Problem("bad-option", f"-o {output}: no format is known by the ending {ending}", hint=hint))
+        hint = f"accepted: {known}; with --format {'|'.join(formats)} any name is accepted"
+        raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension {ending}", hint=hint))
     return endings[ending]
 
 
@@ -41,5 +41,5 @@ def require_writable(output: str, option: str = "-o") -> None:
     """Raise an error before the work if a file could not be written after it: UsageError, OutputError."""
     if not output:
         hint = f"such as {option} {'results.json' if option == '-o' else 'chart.svg'}"
-        raise UsageError(Problem("bad-option", f"{option}: expected the name of a file", hint=hint))
+        raise UsageError(Problem("bad-option", f"{option}: expected a file name", hint=hint))
     find_target(output)

@@ -34,31 +34,31 @@ ALARM_INTERVAL = 0.01  # seconds from one alarm to the next
 EXCEPTION_INTERVAL = 0.1  # seconds between exceptions, for cleanup; a destructor may swallow one
 HARD_END = 5.0  # seconds from the first alarm until the process ends (manual/commands.md, "Time limit")
 MAX_TIMER = 1e8  # seconds, three years: the systems' clocks have a limit
-HINT = "a longer --time-limit, fewer samples, --only what is needed, or a shorter duration"
+HINT = "use a longer --time-limit, fewer samples, --only for the results needed, or a shorter duration"
 # Description of the work by the modules on the stack: the first row that matches, else the command's own phase.
 PHASES = (
     ("heuncli.scene.file_format", "while the spec was read"),
     ("heuncli.study.search.extremes", "while extremes between the samples were searched"),
     ("heuncli.study.search.passages", "while extremes between the samples were searched"),
-    ("heuncli.loads.equilibrium", "on the way to the rest pose"),
-    ("heuncli.loads.redundancy.advice", "while advice on what is redundant was sought"),
-    ("heuncli.motion.integration.check.singular_poses", "while singular poses were searched"),
+    ("heuncli.loads.equilibrium", "while the rest position was searched"),
+    ("heuncli.loads.redundancy.advice", "while redundant constraints were analysed"),
+    ("heuncli.motion.integration.check.singular_poses", "while singular positions were searched"),
     ("heuncli.scene.expressions.discontinuities", "while jumps in time were searched"),
     ("heuncli.motion.integration.conditions", "while events were searched"),
     ("heuncli.motion.integration.check.changes", "while events were searched"),
     ("heuncli.study.queries.events", "while events were searched"),
     ("heuncli.motion.integration.check.estimate", "while the motion was integrated and checked"),
     ("heuncli.motion.integration.check.runs", "while the motion was integrated and checked"),
-    ("heuncli.multibody.assembly", "while the scene was assembled"),
-    ("heuncli.loads.redundancy", "while it was judged which reactions are open"),
-    ("heuncli.study.model.setup", "while the scene was set up"),
+    ("heuncli.multibody.assembly", "while the model was assembled"),
+    ("heuncli.loads.redundancy", "while indeterminate reactions were identified"),
+    ("heuncli.study.model.setup", "while the model was set up"),
     ("heuncli.study.compose.recovery", "while loads were computed"),
     ("heuncli.study.compose.blocks", "while loads were computed"),
     ("heuncli.loads.kinetostatics", "while loads were computed"),
-    ("heuncli.output.tables", "while the results were written down"),
-    ("heuncli.base.files", "while the results were written down"),
+    ("heuncli.output.tables", "while the results were written"),
+    ("heuncli.base.files", "while the results were written"),
 )  # fmt: skip
-DEFAULT_PHASE = "before the work was done"  # of commands without a phase of their own
+DEFAULT_PHASE = "before the work was finished"  # of commands without a phase of their own
 Answer = TypeVar("Answer")
 PACKAGE_FOLDER = os.path.join(os.path.dirname(heuncli.__file__), "")  # noqa: PTH118, PTH120 - pathlib takes 3 ms
 PROTECTED_FILES = (__file__, signals.__file__)  # an alarm never interrupts code in these files
@@ -310,6 +310,6 @@ def _end_process(frames: Sequence[FrameType]) -> None:
         return
     label = f"{_Clock.subject}: " if _Clock.subject else "heun: "
     (problem,) = _make_limit_error(_describe_work(frames)).problems
-    late = f"{problem.message}, and the work did not stop; heun ended {HARD_END:g} s later"
+    late = f"{problem.message}, but the work did not stop; heun ended {HARD_END:g} s later"
     text = "" if _Clock.silent else f"{label}{problem._replace(message=late)}\n"
     signals.exit_after_cleanup(LimitError.exit_code, text.encode())

@@ -17,4 +17,4 @@ def parse_units(words: str | None) -> Units:
 def note_si_format(words: str | None, form: str, quiet: bool) -> None:
     """Print a note to standard error that a format other than a table stays in SI although units were given."""
     if words is not None and not quiet and form not in TABLES:
-        print_stderr(f"heun: --units is of tables: {form} stays in SI")
+        print_stderr(f"heun: --units applies to tables only; {form} stays in SI")

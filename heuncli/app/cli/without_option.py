@@ -39,10 +39,10 @@ def make_problem(spec: Spec, name: str, matches: Sequence[str]) -> Problem:
     if matches:
         message = f"--without {name}: {' and '.join(matches)} have this name"
         return Problem(
-            "bad-option", message, hint=f"say {' or '.join(matches)}; or both: --without {','.join(matches)}"
+            "bad-option", message, hint=f"give {' or '.join(matches)}; or both: --without {','.join(matches)}"
         )
     if not list_excludable(spec):
-        return Problem("bad-option", f"--without {name}: the scene has no forces and no drives", hint="leave it out")
+        return Problem("bad-option", f"--without {name}: the model has no forces or drives", hint="leave it out")
     plain = [entry.partition(".")[2] for entry in list_excludable(spec)]
     hint = suggest(name, list_excludable(spec) if "." in name else plain, "forces and drives")
     return Problem("bad-option", f"--without {name}: no force or drive has this name", hint=hint or "")

@@ -47,15 +47,15 @@ def _is_number_or_numbers(value: object) -> bool:
     return array.size == 0 or array.dtype.kind in "iuf"
 
 
-TEXT = ArgumentKind(lambda value: isinstance(value, str), "a text", "'...'")
-TEXTS = ArgumentKind(_is_text_or_texts, "a text or a list of texts", "['joints', 'energy']")
+TEXT = ArgumentKind(lambda value: isinstance(value, str), "a string", "'...'")
+TEXTS = ArgumentKind(_is_text_or_texts, "a string or a list of strings", "['joints', 'energy']")
 NUMBER = ArgumentKind(_is_number, "a number", "0.5")
 INTEGER = ArgumentKind(lambda value: isinstance(value, Integral) and _is_number(value), "a whole number", "10")
 NUMBERS = ArgumentKind(_is_number_or_numbers, "a number or an array of numbers", "[0.1, 0.2]")
-NUMBER_OR_TEXT = ArgumentKind(lambda value: isinstance(value, str) or _is_number(value), "a number or a text", "0.5")
+NUMBER_OR_TEXT = ArgumentKind(lambda value: isinstance(value, str) or _is_number(value), "a number or a string", "0.5")
 BOOLEAN = ArgumentKind(lambda value: isinstance(value, bool | np.bool_), "True or False", "True")
 MAPPING = ArgumentKind(lambda value: isinstance(value, Mapping), "a mapping", "{'bodies.rod.mass': 2}")
-FILE = ArgumentKind(lambda value: isinstance(value, str | os.PathLike), "the name of a file", "'results.json'")
+FILE = ArgumentKind(lambda value: isinstance(value, str | os.PathLike), "a file name", "'results.json'")
 
 
 def check_arguments(*arguments: tuple[str, object, ArgumentKind], optional: bool = True) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from heuncli.app.python.locked_run import LockedRun
     from heuncli.app.python.signals import Signal
 
-INSTALL = 'pip install "heuncli[pandas]"; study[PATH].values needs NumPy alone'
+INSTALL = 'pip install "heuncli[pandas]"; study[PATH].values needs only NumPy'
 
 
 def make_frame(run: LockedRun, signals: Sequence[Signal], units: bool, *, is_explicit: bool) -> pd.DataFrame:
@@ -23,12 +23,12 @@ def make_frame(run: LockedRun, signals: Sequence[Signal], units: bool, *, is_exp
     is_explicit: whether the caller named the signals; then one without instants is an error, else it is left out
     """
     if importlib.util.find_spec("pandas") is None:
-        message = "frame: pandas makes frames, and is not installed"
+        message = "frame: requires pandas, which is not installed"
         raise UsageError(Problem("missing-extra", message, hint=INSTALL))
     timeless = next((signal for signal in signals if signal.times is None), None)
     if is_explicit and timeless is not None:
-        hint = f'its numbers are study["{timeless.path}"].values'
-        raise UsageError(Problem("bad-option", f"frame: {timeless.path} has no instants", hint=hint))
+        hint = f'use study["{timeless.path}"].values'
+        raise UsageError(Problem("bad-option", f"frame: {timeless.path} does not depend on time", hint=hint))
     import pandas as pd
 
     columns, unit_names, errors = {}, {}, {}

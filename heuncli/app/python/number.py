@@ -36,7 +36,7 @@ class Number(float):
         words += f" at t = {self.at:.6g} s" if self.at is not None else ""
         words += f", s = {self.s:.6g} m" if self.s is not None else ""
         words += f" (error {self.error:.2g})" if math.isfinite(self.error) else ""
-        words += f" (not claimed from t = {self.horizon:.4g} s on)" if self.horizon is not None else ""
+        words += f" (not reliable from t = {self.horizon:.4g} s on)" if self.horizon is not None else ""
         return words + (" (open)" if self.is_open else "")
 
     def __str__(self) -> str:

@@ -123,6 +123,6 @@ def write_results(file: str | os.PathLike[str], forms: Mapping[str, Callable[[],
     path = Path(file)
     form = forms.get(path.suffix.lower())
     if form is None:
-        message = f"save {path.name}: results are written by the name's end: {', '.join(forms)}"
-        raise UsageError(Problem("bad-option", message, hint="diagrams are saved by study.plot(...).save(file)"))
+        message = f"save {path.name}: unknown file extension; accepted: {', '.join(forms)}"
+        raise UsageError(Problem("bad-option", message, hint="save diagrams with study.plot(...).save(file)"))
     path.write_text(form(), encoding="utf-8", newline="\n")

@@ -33,8 +33,8 @@ def make_signal(run: LockedRun, path: str) -> Signal:
     """Make the signal at a path of the results. Raises UnknownPath."""
     results = run.results
     if not isinstance(path, str):
-        message = f"{escape(repr(path))[:60]} is no path into the results"
-        raise UnknownPath(Problem("unknown-path", message, hint='paths are texts, such as "energy.kinetic"'))
+        message = f"{escape(repr(path))[:60]} is not a result path"
+        raise UnknownPath(Problem("unknown-path", message, hint='paths are strings, such as "energy.kinetic"'))
     try:
         return Signal(run, path, find_values(results, path))
     except SpecError as error:
@@ -49,7 +49,7 @@ def _explain_missing_block(results: Results, path: str) -> str:
     block = path.split(".")[0]
     if block not in REPORT_OF or getattr(results, block):
         return ""
-    return f"this run does not tell {block}: the scene has none, or `report` or only= leave them out"
+    return f"this run has no {block}: the model has none, or `report` or only= leaves them out"
 
 
 def list_paths(results: Results) -> list[str]:
@@ -191,8 +191,8 @@ class Signal(NDArrayOperatorsMixin):
         numbers without instants.
         """
         if not self._numbers.is_timed:
-            message = f"at: {self.path} has no instants"
-            raise UsageError(Problem("bad-option", message, hint=f'its numbers are study["{self.path}"].values'))
+            message = f"at: {self.path} does not depend on time"
+            raise UsageError(Problem("bad-option", message, hint=f'use study["{self.path}"].values'))
         check_arguments(("times", times, NUMBERS), optional=False)
         requested, distinct_times = find_distinct_instants(times)
         if not len(distinct_times):
@@ -228,7 +228,7 @@ class Signal(NDArrayOperatorsMixin):
         if dtype is None or np.dtype(dtype) == self.values.dtype:
             return self.values.copy() if copy else self.values
         if copy is False:
-            raise ValueError(f"{self.path}: numbers of another type are a copy")
+            raise ValueError(f"{self.path}: another dtype requires a copy")
         return self.values.astype(dtype)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
@@ -248,7 +248,7 @@ class Signal(NDArrayOperatorsMixin):
 
     def __float__(self) -> float:
         if self.values.size != 1:
-            raise TypeError(f"{self.path} is {self.values.size} numbers: say which")
+            raise TypeError(f"{self.path} has {self.values.size} numbers: select one")
         return float(self.values.reshape(()))
 
     def __repr__(self) -> str:
@@ -258,7 +258,7 @@ class Signal(NDArrayOperatorsMixin):
             range_text = f" over {times[0]:.6g} to {times[-1]:.6g} s" if len(times) > 1 else f" at t = {times[0]:.6g} s"
         parts = [f"<{self.label}: {self.values.shape}{range_text}"]
         parts += [f"error {self.error:.2g}"] if math.isfinite(self.error) else []
-        for word, mask in (("open", self.open), ("beyond the horizon", self.beyond)):
+        for word, mask in (("open", self.open), ("past the horizon", self.beyond)):
             parts += [f"{int(mask.sum())} {word}"] if mask.any() else []
         return ", ".join(parts) + ">"
 

@@ -307,7 +307,7 @@ class Solved(Mapping[str, "Signal"]):
         return self
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError("a solved scene is not pickled: send to_json(), or the spec, and solve it there")
+        raise TypeError("a solved model cannot be pickled: send to_json(), or send the spec and solve it there")
 
 
 def make_solved(study: Study, instants: float | Sequence[float] | None) -> Solved:

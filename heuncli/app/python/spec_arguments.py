@@ -23,8 +23,8 @@ MAPPING, TEXT = "<mapping>", "<text>"  # in place of a file name in locations
 NO_LINE: Mark = (-1, -1)
 MAX_LETTERS = 60  # letters of a value in a location
 MAX_INTEGER = 10**300  # of integers; larger ones become infinite
-KEYS = "keys of a mapping are texts"
-READ_OTHERWISE = "PyYAML takes the word on for true: give the file, or its text as text="
+KEYS = "keys of a mapping are strings"
+READ_OTHERWISE = "PyYAML reads the key `on` as True: give the file, or its text as text="
 SpecSource = str | os.PathLike[str] | Mapping[str, object]
 
 
@@ -37,19 +37,19 @@ def resolve_source(spec: SpecSource | None, text: str | None) -> tuple[str, str 
     """
     if isinstance(spec, Mapping):
         if text is not None:
-            raise _make_usage_error("a mapping and a text are given", "give one of them")
+            raise _make_usage_error("both a mapping and text= are given", "give one of them")
         return MAPPING, make_source(spec)
     if spec is None:
         if text is None:
-            raise _make_usage_error("no spec is given", "a path, a mapping, or text=YAML")
+            raise _make_usage_error("no spec is given", "give a path, a mapping, or text=YAML")
         return TEXT, text
     name = os.fspath(spec) if isinstance(spec, str | os.PathLike) else None
     if not isinstance(name, str):
-        raise _make_usage_error(f"{type(spec).__name__} is no path", "a path, a mapping, or text=YAML")
+        raise _make_usage_error(f"{type(spec).__name__} is not a path", "give a path, a mapping, or text=YAML")
     if "\n" in name and text is None:
-        raise _make_usage_error("this path has several lines", "a text of YAML is given as text=")
+        raise _make_usage_error("this path has several lines", "pass YAML text as text=")
     if name == STANDARD_INPUT and text is None:
-        raise _make_usage_error("- is no file", "read standard input yourself: text=sys.stdin.read()")
+        raise _make_usage_error("- is not a file", "pass standard input as text=sys.stdin.read()")
     return name, text
 
 
@@ -95,7 +95,7 @@ def _to_plain(value: object, path: Path_, places: dict[Path_, Mark], file: str) 
     if isinstance(value, Mapping):
         wrong = next((key for key in value if not isinstance(key, str)), None)
         if wrong is not None:
-            message = f"a key is a plain word, found {type(wrong).__name__}"
+            message = f"expected a string as key, found {type(wrong).__name__}"
             raise _make_spec_error("wrong-kind", message, path, file, READ_OTHERWISE if type(wrong) is bool else KEYS)
         return {str(key): _to_plain(member, (*path, str(key)), places, file) for key, member in value.items()}
     if isinstance(value, list | tuple):
@@ -110,8 +110,8 @@ def _to_plain(value: object, path: Path_, places: dict[Path_, Mark], file: str) 
         return float(value)
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    message = f"{type(value).__name__} is no value of a spec"
-    raise _make_spec_error("wrong-kind", message, path, file, "numbers, texts, lists and mappings are")
+    message = f"{type(value).__name__} is not allowed in a spec"
+    raise _make_spec_error("wrong-kind", message, path, file, "use numbers, strings, lists and mappings")
 
 
 def _make_spec_error(code: str, message: str, path: Path_, file: str, hint: str) -> SpecError:

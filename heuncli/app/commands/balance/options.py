@@ -27,7 +27,7 @@ def parse_options(request: BalanceRequest, spec: Spec) -> BalanceOptions:
     about, place = parse_about(request.about, spec)
     rate = None if request.rate is None else parse_quantity("--rate", request.rate, RATE, "1500rpm")
     if rate == 0.0:
-        raise UsageError(Problem("bad-option", "--rate 0: nothing turns", hint="such as --rate 1500rpm"))
+        raise UsageError(Problem("bad-option", "--rate 0: nothing rotates", hint="such as --rate 1500rpm"))
     lever = (
         None
         if request.lever is None
@@ -51,8 +51,12 @@ def require_cycle_options(request: BalanceRequest) -> None:
         "--counterweight": request.counterweight, "--minimise": request.minimise, "--lever": request.lever,
         "--flywheel": request.flywheel,
     }  # fmt: skip
-    hint = "leave out the one or the other: orders of time are of the motion as it is"
-    wrong = [Problem("bad-option", f"--period and {name}", hint=hint) for name, value in cycle_options.items() if value]
+    hint = "leave out one of them; --period uses the motion as specified"
+    wrong = [
+        Problem("bad-option", f"--period and {name} cannot be combined", hint=hint)
+        for name, value in cycle_options.items()
+        if value
+    ]
     if wrong:
         raise UsageError(*wrong)
 
@@ -95,7 +99,7 @@ def parse_wheel(words: str) -> FlywheelRequest:
     except ValueError:
         delta = 0.0
     if not 0.0 < delta < 1.0 or (equals and not joint.strip()):
-        message = f"--flywheel {words}: expected an unevenness between 0 and 1"
+        message = f"--flywheel {words}: expected a speed fluctuation between 0 and 1"
         raise UsageError(Problem("bad-option", message, hint="such as --flywheel main=1%, or --flywheel 0.01"))
     return FlywheelRequest(joint.strip().removesuffix(".angle"), delta)
 
@@ -118,8 +122,8 @@ def parse_orders(words: str | None) -> tuple[float, ...] | None:
     except ValueError:
         orders = []
     if not orders or any(not (order > 0.0 and (2.0 * order).is_integer()) for order in orders):
-        message = f"--orders {words}: expected orders, whole or half ones"
-        raise UsageError(Problem("bad-option", message, hint="such as --orders 1,2,4,6, or 0.5,1 of two turns"))
+        message = f"--orders {words}: expected whole or half orders"
+        raise UsageError(Problem("bad-option", message, hint="such as --orders 1,2,4,6, or 0.5,1 with --turns 2"))
     return tuple(orders)
 
 
@@ -134,5 +138,7 @@ def parse_about(words: str | None, spec: Spec) -> tuple[Array | None, str]:
     if len(parts) == 3:
         return np.array([parse_quantity("--about", part.strip(), LENGTH, "0,0,100mm") for part in parts]), ""
     known = [*spec.ground.points]
-    hint = f"{suggest(name, known, 'points')}; or three numbers" if known else "three numbers: --about 0,0,0.1"
+    hint = (
+        f"{suggest(name, known, 'points')}; or give three numbers" if known else "give three numbers: --about 0,0,0.1"
+    )
     raise UsageError(Problem("bad-option", f"--about {words}: no point of the ground has this name", hint=hint))

@@ -30,12 +30,12 @@ from heuncli.study.quantities.digits import choose_style, trim_zeros
 from heuncli.version import VERSION
 
 LETTERS = ("x", "y", "z")
-FORCE = "FORCE  ON the foundation, world axes; order k is amplitude · cos(kφ - phase)"
-MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: what the two make of it in its phase"
-TORQUE = "TORQUE  that inertia alone takes of the drive, ½ dε/dφ ω²"
-LOAD = "LOADS  the torque that loads and weight put on the shaft: their power by its rate"
+FORCE = "FORCE  ON the foundation, world axes; order k: amplitude · cos(kφ - phase)"
+MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: their contributions in phase with it"
+TORQUE = "TORQUE  drive torque due to inertia alone, ½ dε/dφ ω²"
+LOAD = "LOADS  torque of loads and weight on the shaft: their power divided by its speed"
 LEAST_SHOWN, MOST_LOADS = 1e-3, 12  # share of the largest order; number of rows
-RESIDUAL = "OVER THE CYCLE  root of the mean square, largest, what both are known within, and where the largest is"
+RESIDUAL = "OVER THE CYCLE  root mean square, largest value, error of both, and where the largest is"
 JOINTS = "joints."
 REMARK_SHARE = 0.5  # share of the bodies' own effect below which a balanced order gets a remark
 SIGNS = "minus the mass_effect of heun run, which is + sum m xdd"
@@ -44,11 +44,11 @@ CSV_COLUMNS = "kind,order,quantity,component,unit,value"
 
 def format_heading(results: BalanceResults) -> list[tuple[str, str]]:
     """Return label and text of the lines above the tables."""
-    many = "" if results.is_resolved else "; it varies too much to be followed to its digits: see the errors"
+    many = "" if results.is_resolved else "; it varies too fast to be resolved to all digits: see the errors"
     return [
         ("heun", f"{VERSION}  {results.title}"),
         ("balance", f"{format_cycle(results)}{many}"),
-        ("signs", f"force and moment of the masses ON the foundation: {SIGNS}"),
+        ("signs", f"inertia force and moment ON the foundation: {SIGNS}"),
         *((name, results.summaries[name]) for name in ("force", "moment")),
         *(("", note) for note in results.notes),
     ]
@@ -77,7 +77,7 @@ def make_order_table(results: BalanceResults, quantity: str, heading: str) -> Te
     """Make the table of the shown orders of a quantity; components that are zero in all of them are left out."""
     rows = [row for row in results.orders[quantity] if row.order in results.shown_orders]
     if not rows:
-        return TextTable(heading, notes=("of no order",))
+        return TextTable(heading, notes=("no orders",))
     unit = get_unit(results, quantity)
     columns, cells = [TextColumn("order")], [[f"{row.order:g}" for row in rows]]
     scale = max(max(row.size, *(float(part.max()) for part, _ in (row.parts or {}).values()), 0.0) for row in rows)
@@ -99,14 +99,14 @@ def make_order_table(results: BalanceResults, quantity: str, heading: str) -> Te
                 columns.append(TextColumn(part, vector=letter))
                 cells.append(format_numbers([project_on_phase(row, part, k) for row in rows], scale, relative_error))
     if any(row.with_turn or row.against_turn for row in rows):
-        columns += [TextColumn("with turn", vector="turn"), TextColumn("against", vector="turn")]
+        columns += [TextColumn("forward", vector="turn"), TextColumn("backward", vector="turn")]
         cells += [
             format_numbers([row.with_turn or 0.0 for row in rows], scale, relative_error),
             format_numbers([row.against_turn or 0.0 for row in rows], scale, relative_error),
         ]
     columns.append(TextColumn("", "left"))
     cells.append([make_remark(row, quantity) for row in rows])
-    notes = (f"each within {error:.1g} {unit}",) if any(row.size for row in rows) else ()
+    notes = (f"largest error {error:.1g} {unit}",) if any(row.size for row in rows) else ()
     return TextTable(heading, tuple(columns), tuple(zip(*cells, strict=True)), notes)
 
 
@@ -125,12 +125,10 @@ def make_load_table(results: BalanceResults) -> TextTable:
     table = make_order_table(replace(results, shown_orders=shown_orders), "load", LOAD)
     mean, error = results.mean["load"], results.mean_error["load"]
     number_style = choose_style(max(largest, abs(mean)), max(error, WRITTEN * largest))
-    notes = [f"mean: {number_style.write(mean)} N·m, within {error:.1g} N·m"]
+    notes = [f"mean: {number_style.write(mean)} N·m, error {error:.1g} N·m"]
     omitted = [row.order for row in counts if row.order not in shown_orders]
     if omitted and not results.are_orders_requested:
-        notes.append(
-            f"{len(omitted)} smaller ones up to order {omitted[-1]:g} are left out: --orders shows any, JSON has all"
-        )
+        notes.append(f"not shown: {len(omitted)} smaller up to order {omitted[-1]:g}; --orders shows any, JSON has all")
     return table._replace(notes=(*table.notes, *notes))
 
 
@@ -149,7 +147,9 @@ def make_remark(row: OrderRow, quantity: str) -> str:
         return row.verdict
     share = row.size / row.body_sum
     return (
-        f"{100.0 * share:.2g} % of the bodies' own" if share < REMARK_SHARE and quantity in ("force", "moment") else ""
+        f"{100.0 * share:.2g} % of the sum over bodies"
+        if share < REMARK_SHARE and quantity in ("force", "moment")
+        else ""
     )
 
 
@@ -189,7 +189,7 @@ def make_residual_table(results: BalanceResults) -> TextTable:
             )
             rows.append((f"{name} [{get_unit(results, name)}]", rms, peak, within, place))
     columns = (
-        TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("within"), TextColumn("at", "left"),
+        TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("error"), TextColumn("at", "left"),
     )  # fmt: skip
     return TextTable(RESIDUAL, columns, tuple(rows))
 

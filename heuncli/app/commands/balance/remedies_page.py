@@ -11,19 +11,19 @@ from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import OPEN, choose_style, trim_zeros
 
-WEIGHTS = "COUNTERWEIGHTS  of least {}; mass times radius from the body's axis, else its point; angle in body axes"
-COST = "COST  the scene solved again with the weights in it, loads and weight included: over the cycle, before -> after"
-FLYWHEEL = "FLYWHEEL  on {}: fastest less slowest is {:.4g} of the mean rate"
+WEIGHTS = "COUNTERWEIGHTS  for minimum {}; mass times radius from the body's axis, else its point; angle in body axes"
+COST = "COST  model solved again with the counterweights, loads and gravity included: over the cycle, before -> after"
+FLYWHEEL = "FLYWHEEL  on {}: (max. - min. speed) / mean speed = {:.4g}"
 OBJECTIVES = {
     "force": "force", "moment": "moment", "mix": "force² + moment²/lever², lever {:.6g} m",
 }  # fmt: skip
-SEVERAL = "others leave as little: these are the least; a second plane, --minimise mix or moment tells them apart"
-NO_RATE = "at 1 rad/s, for no rate is known: --rate tells one"
-INDETERMINATE = "open: redundant joints leave it so (heun explain open)"
-LABELS = {"force": "force of the masses [N]", "moment": "moment of the masses [N·m]", "drive": "drive [N·m]"}
+SEVERAL = "not unique: these are the smallest; a second plane, --minimise mix or moment makes them unique"
+NO_RATE = "at 1 rad/s, as no speed is known: give one with --rate"
+INDETERMINATE = "open: statically indeterminate (heun explain open)"
+LABELS = {"force": "inertia force [N]", "moment": "inertia moment [N·m]", "drive": "drive [N·m]"}
 RATE_FREE_LABELS = {
-    "force": "force of the masses [kg·m]",
-    "moment": "moment of the masses [kg·m²]",
+    "force": "inertia force [kg·m]",
+    "moment": "inertia moment [kg·m²]",
     "drive": "drive [N·m]",
 }
 AXES = ("x", "y", "z")
@@ -59,12 +59,12 @@ def make_weights_table(counterbalance: Counterbalance) -> TextTable:
         for k, weight in enumerate(counterbalance.weights)
     )
     notes = [
-        f"left of force: {counterbalance.summaries['force']}",
-        f"left of moment: {counterbalance.summaries['moment']}",
+        f"remaining force: {counterbalance.summaries['force']}",
+        f"remaining moment: {counterbalance.summaries['moment']}",
     ]
     notes += [SEVERAL] if counterbalance.several else []
     unneeded = [f"{weight.body}.{weight.place}" for weight in counterbalance.weights if weight.product == 0.0]
-    notes += [f"no weight at {' or '.join(unneeded)} leaves less"] if unneeded else []
+    notes += [f"a counterweight at {' or '.join(unneeded)} does not help"] if unneeded else []
     return TextTable(
         WEIGHTS.format(OBJECTIVES[counterbalance.objective].format(counterbalance.lever or 0.0)),
         columns,
@@ -86,7 +86,7 @@ def make_cost_table(counterbalance: Counterbalance, results: BalanceResults) -> 
     labels = LABELS if results.rate is not None else RATE_FREE_LABELS
     columns = (
         TextColumn("", "left"), TextColumn("rms"), TextColumn("-> after"), TextColumn("peak"), TextColumn("-> after"),
-        TextColumn("times"),
+        TextColumn("ratio"),
     )  # fmt: skip
     rows = []
     for name, old in counterbalance.loads_without.items():
@@ -113,19 +113,19 @@ def make_wheel_table(wheel: Flywheel) -> TextTable:
     rows = (
         (
             "added", f"{format_certain(wheel.added, errors['added'])} kg·m²", f"{errors['added']:.1g}",
-            f"ΔE/(δ ω²) less what turns evenly, the textbook's: {format_certain(wheel.textbook, errors['textbook'])}",
+            f"textbook ΔE/(δ ω²) minus the constant inertia: {format_certain(wheel.textbook, errors['textbook'])}",
         ),
-        ("own", f"{wheel.own:.6g} kg·m²", f"{errors['own']:.1g}", "the machine's reduced inertia, mean over the cycle"),
+        ("machine", f"{wheel.own:.6g} kg·m²", f"{errors['own']:.1g}", "mean reduced inertia of the machine"),
         ("ΔE", f"{wheel.energy:.6g} J", f"{errors['energy']:.1g}",
-         "of work that loads and inertia give and take at an even rate"),
-        ("unevenness", f"{wheel.present:.6g}", f"{errors['present']:.1g}", "as it is, without the wheel"),
-        ("mean", f"{wheel.mean_rate * RPM:.9g} rpm", "", "angle of the cycle over its time"),
+         "energy fluctuation of loads and inertia at constant speed"),
+        ("fluctuation", f"{wheel.present:.6g}", f"{errors['present']:.1g}", "without the flywheel"),
+        ("mean", f"{wheel.mean_rate * RPM:.9g} rpm", "", "cycle angle divided by cycle time"),
         ("start", *format_speed(wheel.start, errors["start"]),
-         "the rate at the start of the cycle that has this mean, with the wheel"),
-        ("slowest", *format_speed(wheel.slowest, errors["slowest"]), "with the wheel"),
-        ("fastest", *format_speed(wheel.fastest, errors["fastest"]), "with the wheel"),
+         "speed at the start of the cycle for this mean, with the flywheel"),
+        ("slowest", *format_speed(wheel.slowest, errors["slowest"]), "with the flywheel"),
+        ("fastest", *format_speed(wheel.fastest, errors["fastest"]), "with the flywheel"),
     )  # fmt: skip
-    columns = TextColumn("", "left"), TextColumn("", "left"), TextColumn("within"), TextColumn("", "left")
+    columns = TextColumn("", "left"), TextColumn("", "left"), TextColumn("error"), TextColumn("", "left")
     return TextTable(FLYWHEEL.format(wheel.joint, wheel.delta), columns, rows)
 
 

@@ -87,8 +87,8 @@ def parse_methods(words: str | None) -> tuple[str, ...] | None:
             names = [each.name for each in METHODS]
             hint = method_hint(word.strip())
             if word.strip().lower() == AUTO:
-                hint = f"auto chooses among these: {', '.join(names)}"
-            raise UsageError(Problem("bad-option", f"--methods {word.strip()}: not a method", hint=hint))
+                hint = f"auto is not a single method; accepted: {', '.join(names)}"
+            raise UsageError(Problem("bad-option", f"--methods {word.strip()}: unknown method", hint=hint))
         method_names.append(row.name)
     return tuple(dict.fromkeys(method_names))
 

@@ -86,7 +86,7 @@ def draw_heading(chart: ChartResults) -> list[Text]:
     y = texts[-1].y
     reference = chart.reference
     sentences = (
-        f"Judged up to t = {reference.last_time:.6g} s against a reference: {reference.description}",
+        f"Compared up to t = {reference.last_time:.6g} s with a reference: {reference.description}",
         *reference.notes,
     )
     for sentence in sentences:
@@ -124,9 +124,11 @@ def draw_grid(frame: ChartFrame) -> list[Shape]:
     edge = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
     shapes.append(Line((*edge, edge[0]), "#000000", 1.0))
     middle = (box.left + box.right) / 2
-    shapes.append(Text(middle, box.bottom + 36.0, "processor time of the integration alone", NAME, "middle"))
+    shapes.append(Text(middle, box.bottom + 36.0, "processor time of the integration only", NAME, "middle"))
     y = (box.top + box.bottom) / 2
-    shapes.append(Text(24.0, y, "largest error of any point, of the scene's size", NAME, "middle", is_vertical=True))
+    shapes.append(
+        Text(24.0, y, "largest error of any point, relative to the model size", NAME, "middle", is_vertical=True)
+    )
     return shapes
 
 
@@ -134,7 +136,7 @@ def draw_reference_error(chart: ChartResults, frame: ChartFrame) -> tuple[list[S
     """Draw the line of the reference's own error, below which errors cannot be told; returns the shapes and the box of
     its label.
     """
-    reference_error, text = chart.reference.error["motion"], "the reference's own error"
+    reference_error, text = chart.reference.error["motion"], "error of the reference"
     if not reference_error:
         return [], []
     y, box, label_width = frame.y(reference_error), frame.box, estimate_width(text, SMALL)
@@ -273,8 +275,8 @@ def draw_crosses(groups: Sequence[FailedRuns], levels: Sequence[int], frame: Cha
 def draw_notes(chart: ChartResults, groups: Sequence[FailedRuns], y: float) -> list[Text]:
     """Return the notes below the field."""
     has_lost = any(point.error >= LOST for point in list_points(chart.runs))
-    marks = "Heavy grey: the front, which no other run beats in both."
-    marks += f" At the upper border: errors of {LOST:g} and more." if has_lost else ""
+    marks = "Heavy grey: Pareto front; no other run is better in both."
+    marks += f" At the upper edge: errors of {LOST:g} or more." if has_lost else ""
     sentences = [marks, *chart.notes, *(format_note(group) for group in groups[:MAX_NOTES])]
     if len(groups) > MAX_NOTES:
         sentences.append(f"and {len(groups) - MAX_NOTES} more")

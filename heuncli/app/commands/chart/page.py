@@ -23,11 +23,11 @@ from heuncli.output.tables.export import FORMAT
 from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines
 from heuncli.version import VERSION
 
-HEADING = "RUNS  processor time of the integration alone, median; errors at the judged instants, * on the front"
+HEADING = "RUNS  median processor time of the integration only; errors at the compared instants; * Pareto front"
 ERROR_WORDS = {
-    "motion": "motion: largest error of any point, of the scene's size",
-    "reactions": "reactions: of joints, of the largest",
-    "sections": "sections: of the largest",
+    "motion": "motion: largest error of any point, relative to the model size",
+    "reactions": "reactions: of joints, relative to the largest",
+    "sections": "sections: relative to the largest",
 }
 AT_MOST = "≤"
 COLUMNS = (
@@ -42,7 +42,7 @@ def format_heading(chart: ChartResults) -> list[tuple[str, str]]:
     instants = f"{reference.instants} instants" if reference.instants != 1 else "1 instant"
     return [
         ("heun", f"{VERSION}  {chart.title}"),
-        ("chart", f"speed against accuracy, judged at {instants} up to t = {reference.last_time:.6g} s"),
+        ("chart", f"speed against accuracy, compared at {instants} up to t = {reference.last_time:.6g} s"),
         ("reference", reference.description),
         *(("", note) for note in (*reference.notes, *chart.notes)),
     ]
@@ -75,7 +75,7 @@ def make_table(chart: ChartResults) -> TextTable:
         ]
     notes = ["; ".join(ERROR_WORDS[kind] for kind in kinds)]
     if any(run.upper_bounds for run in chart.runs):
-        notes.append(f"{AT_MOST}: the run differs from the reference by no more than that one may err itself")
+        notes.append(f"{AT_MOST}: the run differs from the reference by no more than the error of the reference")
     notes += list_reasons(chart)
     return TextTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
 

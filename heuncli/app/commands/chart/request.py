@@ -7,22 +7,25 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ChartRequest(NamedTuple):
-    """Speed against accuracy: methods at several tolerances or steps, which ones fail, and where."""
+    """Compare speed and accuracy of methods at several tolerances or steps, and show which fail and where."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
-        str | None, Option(("--save",), "Draw it there, too: chart.svg; .png and .pdf by matplotlib.", "FILE")
+        str | None,
+        Option(("--save",), "Also draw the chart in this file: chart.svg; .png and .pdf with matplotlib.", "FILE"),
     ] = None
-    methods: Annotated[str | None, Option(("--methods",), "These alone; heun methods lists them.", "NAME,...")] = None
+    methods: Annotated[
+        str | None, Option(("--methods",), "Run only these methods; heun methods lists them.", "NAME,...")
+    ] = None
     tolerances: Annotated[
         str | None, Option(("--tolerances",), "Local tolerances of adaptive methods.", "NUMBER,...")
     ] = None
-    steps: Annotated[str | None, Option(("--steps",), "Steps of methods of fixed step [s].", "NUMBER,...")] = None
+    steps: Annotated[str | None, Option(("--steps",), "Step sizes of fixed-step methods [s].", "NUMBER,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     time_limit: Annotated[
-        float | None, Option(("--time-limit",), "After that long no run is begun; what is left is told.", "SECONDS")
+        float | None, Option(("--time-limit",), "Start no run after this time; runs left out are listed.", "SECONDS")
     ] = None
     quiet: Annotated[bool, QUIET] = False

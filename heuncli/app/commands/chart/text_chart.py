@@ -67,8 +67,8 @@ def draw_text_chart(chart: ChartResults, width: int = WIDTH) -> str:
 def make_legend(letter: dict[str, str], floor: bool, width: int) -> list[str]:
     """Return the lines that say which letter is which method."""
     text = ", ".join(f"{mark} {name}" for name, mark in letter.items())
-    about = f"error of the motion against time; capitals: the front, {SEVERAL} several" + (
-        f", {FLOOR} {FLOOR} {FLOOR} what the reference may err by" if floor else ""
+    about = f"error of the motion against time; capitals: Pareto front, {SEVERAL} several" + (
+        f", {FLOOR} {FLOOR} {FLOOR} error of the reference" if floor else ""
     )
     return [line for part in (text, about) for line in wrap_text(f"{'':{LABEL}}  {part}", width, 0)]
 

@@ -44,7 +44,7 @@ from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from heuncli.version import VERSION
 
-STOPPED = "the scene was not solved"
+STOPPED = "the model was not solved"
 
 
 class CheckTask(NamedTuple):
@@ -162,9 +162,9 @@ def _read_golden(task: CheckTask, request: CheckRequest) -> GoldenFile | None:
     except Finding as finding:
         raise goldens.make_golden_error(task.file, finding) from None
     if golden_file.spec.path != task.name:
-        message = f"kept of another spec: {golden_file.spec.path}, not {task.name}"
+        message = f"golden file of another spec: {golden_file.spec.path}, not {task.name}"
         raise goldens.make_golden_error(
-            task.file, Finding("not-golden", message, "move it back, or remove it and --update")
+            task.file, Finding("not-golden", message, "move it back, or remove it and use --update")
         )
     return golden_file
 

@@ -24,7 +24,7 @@ from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.text_safety import escape
 
-NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
+NAMED = "give a folder of specs, or files; folders named broken and hidden folders are skipped"
 JOB_FORMATS = ("markdown", "github")  # formats that include errors: nobody sees standard error there
 
 
@@ -37,7 +37,7 @@ def main(request: CheckRequest) -> int:
     specs = [one for argument in request.paths for one in find_specs(argument, skipped)]
     for folder in skipped if not request.quiet else ():
         if folder.reason:
-            print_stderr(f"heun: {escape(folder.path)} passed by: {escape(folder.reason)}")
+            print_stderr(f"heun: {escape(folder.path)} skipped: {escape(folder.reason)}")
     if not specs:
         message = f"no *.yaml in {', '.join(request.paths)}" if request.paths else "no PATH is given"
         raise UsageError(Problem("nothing-to-check", message, hint=NAMED))
@@ -140,7 +140,7 @@ def _never(one: CheckResult) -> bool:
 def _make_death_result(task: CheckTask, death: jobs.ProcessDeath) -> CheckResult:
     """Make the result of a spec whose process died."""
     path = task.spec.path
-    hint = "the memory may not have sufficed: --jobs 1; else please report it with the spec"
+    hint = "possibly out of memory: try --jobs 1; otherwise please report it with the spec"
     problem = death.make_problem("checked it", hint)
     error = death.code if death.is_time_up else BUG
     return CheckResult(path, problems=(problem,), error=error, messages=tuple(format_problems([problem], f"{path}: ")))
@@ -160,12 +160,12 @@ def _write_goldens(results: Sequence[CheckResult], request: CheckRequest) -> lis
     updates = [one.golden for one in results if one.golden is not None and one.golden.text is not None]
     if any(problem.code == "not-golden" for one in results for problem in one.problems):
         if updates:
-            print_stderr("heun: no golden file was written: one that stands there cannot be used")
+            print_stderr("heun: no golden file was written: an existing one cannot be used")
         return []
     for golden in updates:
         _write_golden(golden.path, encode_text(golden.text or ""))
         if not request.quiet:
-            print_stderr(f"heun: {escape(golden.path)} {'written' if golden.is_new else 'written anew'}")
+            print_stderr(f"heun: {escape(golden.path)} {'written' if golden.is_new else 'rewritten'}")
     return []
 
 

@@ -58,7 +58,7 @@ def find_specs(argument: str, skipped: list[SkippedFolder]) -> Iterator[FoundSpe
             if known == path:
                 pending += reversed(list_entries(path, skipped))
             else:
-                skipped.append(SkippedFolder(path, f"it is the folder {known} once more"))
+                skipped.append(SkippedFolder(path, f"same folder as {known}"))
         except OSError as error:
             yield FoundSpec(path, argument, make_unreadable_problem(path, error))
 
@@ -87,6 +87,6 @@ def leads_to_directory(entry: os.DirEntry[str]) -> bool:
 
 def make_unreadable_problem(path: str, error: OSError) -> Problem:
     """Make the problem of a folder that cannot be read."""
-    hint = "look at its permissions, or name the folders beside it; the others are checked"
-    message = f"the folder cannot be looked into: {error.strerror or error}"
+    hint = "check its permissions, or give the other folders; these are checked"
+    message = f"the folder cannot be read: {error.strerror or error}"
     return Problem("unreadable", message, SourceLocation(path, 1, 1), hint)

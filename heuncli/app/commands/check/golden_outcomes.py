@@ -15,7 +15,7 @@ from heuncli.output.snapshots.outcomes import GOLDEN, Outcome
 from heuncli.version import VERSION
 
 NO_FILE = "no golden file: --update writes it"
-HOLDS_LESS = "kept by an earlier version without means, so less is compared; --update renews it"
+HOLDS_LESS = "written by an earlier version without mean values, so less is compared; --update renews it"
 
 
 def compare_golden(
@@ -44,14 +44,14 @@ def _make_unchanged_outcome(
     """Make the outcome if no number changed, and what --update renews then: the digests, or what a file of an earlier
     format lacks.
     """
-    notes = [f"{changed}, and no number left its bounds"] if (changed := _describe_changed_files(old, new)) else []
+    notes = [f"{changed}, but no number left its bounds"] if (changed := _describe_changed_files(old, new)) else []
     notes += [] if old.has_courses else [HOLDS_LESS]
     text = None
     if request.update and notes:
         renewed = old.model_copy(update={"spec": new.spec, "tables": new.tables})
         text = format_golden_file(renewed if old.has_courses else new)
     note = "; ".join(notes)
-    block = {"golden": file, "passed": True, "message": note or "as kept"} | ({"written": True} if text else {})
+    block = {"golden": file, "passed": True, "message": note or "unchanged"} | ({"written": True} if text else {})
     return [Outcome(GOLDEN, file, None, block=block, note=note)], GoldenUpdate(file, text)
 
 
@@ -71,7 +71,7 @@ def _list_changes(old: RunSnapshot | None, new: RunSnapshot | None, request: Che
 def _describe_context(old: GoldenFile, new: GoldenFile) -> str:
     """Describe what else changed since the golden file was written: spec, tables, version."""
     changed = _describe_changed_files(old, new)
-    version = f"kept by version {old.heun}" if old.heun != VERSION else ""
+    version = f"written by version {old.heun}" if old.heun != VERSION else ""
     return "; ".join(part for part in (changed, version) if part)
 
 
@@ -82,7 +82,7 @@ def _describe_changed_files(old: GoldenFile, new: GoldenFile) -> str:
         name for name in old.tables.keys() | new.tables.keys() if old.tables.get(name) != new.tables.get(name)
     )
     parts += [f"table {name}" for name in tables]
-    return f"{' and '.join(parts)} changed since it was kept" if parts else ""
+    return f"{' and '.join(parts)} changed since it was written" if parts else ""
 
 
 def _make_outcome(file: str, case: str, change: Change, context: str, is_written: bool) -> Outcome:

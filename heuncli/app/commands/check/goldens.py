@@ -39,20 +39,22 @@ def require_consistent_options(request: CheckRequest) -> None:
         return
     if request.force and not request.update:
         raise UsageError(
-            Problem("bad-option", "--force without --update", hint="it lets --update write where CI is set")
+            Problem("bad-option", "--force without --update", hint="--force allows --update where CI is set")
         )
     share = request.golden_tolerance
     if share is not None and not 0.0 < share < 1.0:
-        hint = "such as 1e-6; without it the stated errors hold"
-        raise UsageError(Problem("bad-option", f"--golden-tolerance {share:g}: expected a share below 1", hint=hint))
+        hint = "such as 1e-6; without it, the stated errors apply"
+        raise UsageError(
+            Problem("bad-option", f"--golden-tolerance {share:g}: expected a fraction between 0 and 1", hint=hint)
+        )
     if request.update and not request.force and os.environ.get("CI", "").lower() not in CI_OFF:
-        hint = "run it where the change is made, look at what changed, and commit the files; --force writes here, too"
+        hint = "run it locally, review the changes and commit the files; --force writes here too"
         raise UsageError(Problem("bad-option", "--update where CI is set: a pipeline would approve itself", hint=hint))
     folder = Path(request.golden)
     if folder.exists() and not folder.is_dir():
-        raise UsageError(Problem("bad-option", f"--golden {request.golden}: this is no folder", hint="name a folder"))
+        raise UsageError(Problem("bad-option", f"--golden {request.golden}: not a folder", hint="give a folder"))
     if not folder.exists() and not request.update:
-        hint = "--update makes it, with the numbers of today"
+        hint = "--update creates it from the current results"
         raise UsageError(Problem("bad-option", f"--golden {request.golden}: there is no such folder", hint=hint))
 
 
@@ -68,9 +70,9 @@ def map_golden_files(specs: Sequence[FoundSpec], folder: str) -> dict[str, str]:
         file = find_golden_file(one, folder)
         other = owners.setdefault(file, one.path)
         if os.path.realpath(other) != os.path.realpath(one.path):
-            hint = "name the folder above both, or check one after the other with folders of their own"
+            hint = "give their common parent folder, or check them separately with separate golden folders"
             raise UsageError(
-                Problem("bad-option", f"--golden: {other} and {one.path} would both have {file}", hint=hint)
+                Problem("bad-option", f"--golden: {other} and {one.path} would both use {file}", hint=hint)
             )
         files[one.path] = file
     return files
@@ -95,7 +97,8 @@ def require_inside(file: str, folder: str) -> None:
     inside, real = os.path.realpath(folder), os.path.realpath(file)
     if os.path.commonpath([inside, real]) != inside:
         raise make_golden_error(
-            file, Finding("not-golden", f"this leads out of {escape(folder)}: to {escape(real)}", "remove the link")
+            file,
+            Finding("not-golden", f"this link leads out of {escape(folder)}, to {escape(real)}", "remove the link"),
         )
     if Path(file).is_dir():
         raise make_golden_error(

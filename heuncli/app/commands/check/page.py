@@ -17,7 +17,7 @@ from heuncli.output.tables.text_table import TextColumn, TextTable, format_markd
 from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
 HEADS = ("file", "of", "at", "expected", "found", "why it fails")
-CHANGED = ("file", "of", "at", "kept", "found", "what is written anew")
+CHANGED = ("file", "of", "at", "golden", "found", "what is rewritten")
 
 
 class CheckSummary(NamedTuple):
@@ -92,12 +92,12 @@ def format_summary(check_summary: CheckSummary) -> str:
     unchecked = sum(not one.outcomes and not one.error for one in check_summary.results)
     parts = [format_count(len(check_summary.results), "spec"), f"{len(met)} passed", f"{len(failed)} failed"]
     parts += [f"{format_count(errors, 'spec')} not solved"] if errors else []
-    parts += [f"{format_count(unchecked, 'spec')} ran with nothing expected"] if unchecked else []
+    parts += [f"{format_count(unchecked, 'spec')} {'has' if unchecked == 1 else 'have'} no checks"] if unchecked else []
     without_golden = sum(
         outcome.kind == GOLDEN and outcome.is_warning and not _is_written(outcome) for outcome in outcomes
     )
     parts += [f"{format_count(without_golden, 'spec')} without a golden file"] if without_golden else []
-    parts += [f"{escape(folder.path)} passed by" for folder in check_summary.skipped_folders]
+    parts += [f"{escape(folder.path)} skipped" for folder in check_summary.skipped_folders]
     return ", ".join(parts)
 
 
@@ -109,7 +109,7 @@ def render_json(check_summary: CheckSummary) -> str:
             message = "\n".join(map(str, one.problems))
             cases.append({"file": one.path, "passed": False, "exit": one.error, "message": message})
         elif not one.outcomes:
-            cases.append({"file": one.path, "passed": True, "message": "ran; nothing expected"})
+            cases.append({"file": one.path, "passed": True, "message": "no acceptance checks are defined"})
         cases += [{"file": one.path} | dict(outcome.block) for outcome in one.outcomes if not outcome.is_skipped]
     cases += [
         {"golden": path, "passed": not check_summary.strict, "message": "a golden file without a spec"}

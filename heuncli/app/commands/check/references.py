@@ -31,8 +31,8 @@ def require_alone(request: CheckRequest) -> None:
     """Raise UsageError for options that have no meaning together with --references."""
     for word, field in EXCLUDED_OPTIONS:
         if getattr(request, field):
-            hint = "published cases are held against what was printed, and nothing else"
-            raise UsageError(Problem("bad-option", f"--references with {word}: these do not go together", hint=hint))
+            hint = "--references only compares published cases with their printed results"
+            raise UsageError(Problem("bad-option", f"--references and {word} cannot be combined", hint=hint))
 
 
 def main(request: CheckRequest) -> tuple[int, list[CheckResult]]:

@@ -25,8 +25,8 @@ from heuncli.output.tables.text_table import (
 )
 
 REFERENCE = "reference"
-CASES = ("case", "what it is", "numbers", "which are", "digits", "last digits", "of the largest", "verdict")
-NUMBERS = ("what", "at", "published", "heun", "difference", "last digits", "heun states", "verdict")
+CASES = ("case", "description", "numbers", "kind", "digits", "in last digits", "relative", "verdict")
+NUMBERS = ("quantity", "at", "published", "heun", "difference", "in last digits", "heun error", "verdict")
 NUMBER_COLUMNS = tuple(TextColumn(head, "left") for head in NUMBERS)
 NEGLIGIBLE = 1e-12  # of the largest number of a table; larger differences are shown
 
@@ -113,7 +113,7 @@ def make_case_row(one: ReferenceResult) -> tuple[str, ...]:
     wrong = sum(number.verdict != AGREES for number in one.numbers)
     return (
         one.case.name, one.case.description, str(len(one.numbers)), list_kinds(one.case), format_digits(one.numbers),
-        *format_largest_difference(one.tables), f"{wrong} differ" if wrong else AGREES,
+        *format_largest_difference(one.tables), f"{wrong} differ{'s' * (wrong == 1)}" if wrong else AGREES,
     )  # fmt: skip
 
 
@@ -170,7 +170,7 @@ def _describe_table(part: TableComparison) -> str:
     case = f"; case {table_.case}" if table_.case else ""
     axes = f"; --axes {table_.axes}" if table_.axes != "world" else ""
     let = "".join(f"; {name} = {text}" for name, text in table_.let)
-    error = f"; known to {table_.error:g} of the largest: {table_.because}" if table_.error else ""
+    error = f"; error of the source {table_.error:g} of the largest: {table_.because}" if table_.error else ""
     return f"{table_.where} ({KINDS[table_.kind]}){case}{axes}{let}{error}"
 
 

@@ -23,9 +23,11 @@ from heuncli.output.snapshots.changes import EXTRA, MISSING, find_changes
 from heuncli.output.snapshots.golden_file import RunSnapshot
 
 CHANGED = 1
-SAMPLED = "results in JSON hold samples: what lies between these is not compared"
-OTHER_SPEC = "the specs are not the same text"
-HOLDS_LESS = "{} was kept by an earlier version without means, so less is compared; heun check --update renews it"
+SAMPLED = "JSON results hold samples only: values between samples are not compared"
+OTHER_SPEC = "the spec files differ"
+HOLDS_LESS = (
+    "{} was written by an earlier version without mean values, so less is compared; heun check --update renews it"
+)
 
 
 def main(request: DiffRequest) -> int:

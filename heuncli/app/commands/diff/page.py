@@ -65,7 +65,7 @@ def _make_table(difference: Difference) -> TextTable:
 def _make_row(case: str, change: Change) -> tuple[str, ...]:
     name = f"{case}: {change.path}" if case else change.path
     change_text = change.reason or format_difference(change)
-    change_text += f"; {change.n_similar} more of its values" if change.n_similar else ""
+    change_text += f"; and {change.n_similar} more of its values" if change.n_similar else ""
     allowed = f"{change.tolerance:.2g}" if change.tolerance and not change.reason else ""
     values = (format_value(value, change.unit) for value in (change.old, change.new))
     return tuple(map(escape, (name, change.what, *values, change_text, allowed)))
@@ -79,9 +79,7 @@ def _format_notes(difference: Difference) -> list[str]:
 def format_summary(difference: Difference) -> str:
     """Format how many quantities changed, and how many were compared."""
     if not difference.changes:
-        return (
-            f"nothing changed by more than both state: {format_count(difference.compared_count, 'quantity')} compared"
-        )
+        return f"no change exceeds both stated errors: {format_count(difference.compared_count, 'quantity')} compared"
     return (
         f"{format_count(len(difference.changes), 'change')}, "
         f"{format_count(difference.compared_count, 'quantity')} compared"

@@ -9,14 +9,14 @@ FORMATS = ("table", "json", "markdown", "github")
 
 
 class DiffRequest(NamedTuple):
-    """What changed between two specs, golden files or results in JSON by more than both state."""
+    """Show what changed between two specs, golden files or JSON results by more than both stated errors."""
 
     before: Annotated[
         str, Option((), "A spec, a golden file, or a result of heun run --format json.", "A", completes="spec")
     ]
-    after: Annotated[str, Option((), "The same of what it became.", "B", completes="spec")]
-    format: Annotated[str | None, Option(("--format",), "How to write it. Default: table.", "|".join(FORMATS))] = None
+    after: Annotated[str, Option((), "The changed version, likewise.", "B", completes="spec")]
+    format: Annotated[str | None, Option(("--format",), "Output format. Default: table.", "|".join(FORMATS))] = None
     output: Annotated[str | None, OUTPUT] = None
-    exit_code: Annotated[bool, Option(("--exit-code",), "Leave with 1 if anything changed.")] = False
+    exit_code: Annotated[bool, Option(("--exit-code",), "Exit with 1 if anything changed.")] = False
     time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
     quiet: Annotated[bool, QUIET] = False

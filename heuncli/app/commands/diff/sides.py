@@ -96,12 +96,14 @@ def restrict_to_common_instants(old: Side, new: Side) -> tuple[Side, Side, list[
             continue
         prefix = f"case {name}: " if name else ""
         if not common[0]:
-            hint = "run both with the same analysis.samples; heun diff of the two specs compares the whole courses"
-            message = f"{prefix}{old.path} and {new.path} have no instant in common: these are not compared"
+            hint = (
+                "run both with the same analysis.samples; heun diff of the two specs compares the full time histories"
+            )
+            message = f"{prefix}{old.path} and {new.path} have no instant in common and are not compared"
             raise UsageError(Problem("bad-option", message, hint=hint))
         for runs, one, indices in zip(sides, both, common, strict=True):
             runs[name] = read_run_snapshot(one, indices)
-        text = f"{prefix}the results are of other instants: of {n[0]} and {n[1]} instants {len(common[0])} are the same"
+        text = f"{prefix}the results have different instants: {len(common[0])} of {n[0]} and {n[1]} are common"
         notes.append(f"{text}, and only these are compared")
     return old._replace(runs=sides[0]), new._replace(runs=sides[1]), notes
 
@@ -113,10 +115,10 @@ def _parse_json(content: bytes) -> dict[str, Any]:
         data = json.loads(content)
     except (ValueError, RecursionError) as error:
         text = content.decode("utf-8", "replace")
-        whole = "it ends before it is complete; " * is_text_cut_off(text, error)
-        raise Finding("not-a-result", f"this is no JSON: {whole}{error!s:.100}", hint) from None
+        whole = "it is incomplete; " * is_text_cut_off(text, error)
+        raise Finding("not-a-result", f"this is not JSON: {whole}{error!s:.100}", hint) from None
     if not isinstance(data, dict):
-        raise Finding("not-a-result", "this is JSON, but no result and no golden file", hint)
+        raise Finding("not-a-result", "this is JSON, but neither a result nor a golden file", hint)
     return data
 
 
@@ -150,6 +152,6 @@ def require_same_kind(old: Side, new: Side) -> None:
     """Raise UsageError if only one side is a result: its extremes are those of its samples."""
     if (old.kind == RESULT) != (new.kind == RESULT):
         other, result = (old, new) if new.kind == RESULT else (new, old)
-        hint = f"heun run SPEC --format json of both; {result.path} holds samples, without what lies between them"
-        message = f"{result.path} is a result, {other.path} a {other.kind}: these are not compared"
+        hint = f"use heun run SPEC --format json for both; {result.path} holds samples only"
+        message = f"{result.path} is a result, {other.path} a {other.kind}: these cannot be compared"
         raise UsageError(Problem("bad-option", message, hint=hint))

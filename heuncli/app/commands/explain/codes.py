@@ -11,6 +11,6 @@ LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 
 def parse_codes(page: str) -> dict[str, str]:
     """Return every code with its explanation."""
-    rows = {code: f"{says}\n\nCure: {cure}\n" for code, says, cure in ROW.findall(page)}
+    rows = {code: f"{says}\n\nRemedy: {cure}\n" for code, says, cure in ROW.findall(page)}
     texts = rows | dict(SECTION.findall(page))
     return {code: f"# {code}\n\n" + LINK.sub(r"\1", text) for code, text in texts.items()}

@@ -123,7 +123,7 @@ def format_equation(number: str) -> str:
     row_found = next((row for row in equations if f"({number})" in row[0]), None)
     if row_found is None:
         message = f"explain {number}: no equation of the paper has this number"
-        raise UsageError(Problem("bad-option", message, hint="they are (16) to (61): heun explain equations"))
+        raise UsageError(Problem("bad-option", message, hint="the equations are (16) to (61): heun explain equations"))
     width = max(map(len, heads))
     return "".join(f"{head:<{width}}  {cell}\n" for head, cell in zip(heads, row_found, strict=True))
 

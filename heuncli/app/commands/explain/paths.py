@@ -22,12 +22,12 @@ LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 WORLD = "components in world axes"
 # by block: on which body it acts, about which point, in which axes; details on the manual page "signs"
 SIGNS = {
-    "joints": f"of `from` ON `to`, moments about the `to` point; {WORLD}, or --axes from, to",
-    "foundation": f"of the machine ON the ground, moments about foundation.about; {WORLD}",
-    "sections": "of the far side ON the near side of the cut (the normal points to the far side); N > 0 in tension",
-    "stops": "of the stop ON `to`, along the limited coordinate",
-    "forces": "as in the spec: > 0 along its vector, or if it pushes its two points apart",
-    "coordinates": "of `to` relative to `from`, about or along the joint's axis, right-handed",
+    "joints": f"reaction of `from` ON `to`, moments about the `to` point; {WORLD}, or --axes from, to",
+    "foundation": f"force of the machine ON the ground, moments about foundation.about; {WORLD}",
+    "sections": "force of the far side (normal points into it) ON the near side of the cut; N > 0 tension",
+    "stops": "force of the stop ON `to`, along the coordinate that it limits",
+    "forces": "as in the spec: > 0 along its vector, or pushing its two points apart",
+    "coordinates": "motion of `to` relative to `from`, about or along the joint's axis, right-handed",
     "bodies": WORLD,
     "points": WORLD,
     "momentum": f"{WORLD}; moments about foundation.about",
@@ -126,7 +126,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     yield path, ""
     yield "meaning", meaning
     if row.units:
-        twofold = ", for sliding or for rotation" if len(row.units) > 1 else ""
+        twofold = " (translation or rotation)" if len(row.units) > 1 else ""
         yield "unit", " or ".join(row.units).replace("1", "none") + twofold
     if row.is_words:
         yield "form", "text"
@@ -138,7 +138,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
     yield (
         "error",
-        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, relative to the largest number of its kind: "
+        f"accuracy.estimate.{ESTIMATE_OF_ERROR_KIND.get(kind, kind)}, relative to the largest of its kind: "
         "heun explain accuracy",
     )
     report = REPORT_OF.get(keys[0], keys[0])

@@ -7,16 +7,16 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ExplainRequest(NamedTuple):
-    """Show a page or section of the manual, a word, a code."""
+    """Explain a page, section or word of the manual, or a code."""
 
     topic: Annotated[
         str | None,
         Option(
             (),
             "A page, 'PAGE SECTION', a word, a command, a code, a result path or an equation's number. "
-            "Default: a list of the pages.",
+            "Default: list the pages.",
             "TOPIC",
         ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
-    no_pager: Annotated[bool, Option(("--no-pager",), "Print everything at once, on a terminal too.")] = False
+    no_pager: Annotated[bool, Option(("--no-pager",), "Do not use a pager on a terminal.")] = False

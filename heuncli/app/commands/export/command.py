@@ -75,8 +75,8 @@ def main(request: ExportRequest) -> int:
 
 def _require_one_case(case: str | None) -> None:
     if case == ALL_CASES:
-        message = "--case all: a deck is of one load case of the spec"
-        raise UsageError(Problem("bad-option", message, hint="--case NAME, and a file for each"))
+        message = "--case all: a deck holds one load case of the spec"
+        raise UsageError(Problem("bad-option", message, hint="use --case NAME, with one file each"))
 
 
 def choose_form(request: ExportRequest) -> str:
@@ -92,11 +92,11 @@ def choose_form(request: ExportRequest) -> str:
     if ending in ENDINGS:
         return ENDINGS[ending]
     if ending == AMBIGUOUS_ENDING:
-        message = f"-o {output}: CalculiX and Abaqus read .inp, and not all the same cards"
-        raise UsageError(Problem("bad-option", message, hint="--format calculix or --format abaqus"))
+        message = f"-o {output}: CalculiX and Abaqus both read .inp, but with different cards"
+        raise UsageError(Problem("bad-option", message, hint="use --format calculix or --format abaqus"))
     known = ", ".join(f"{end} ({form})" for end, form in ENDINGS.items())
-    hint = f"known endings: {known}; with --format {'|'.join(FORMATS)} any name will do"
-    raise UsageError(Problem("bad-option", f"-o {output}: no deck is known by that ending", hint=hint))
+    hint = f"accepted: {known}; with --format {'|'.join(FORMATS)} any name is accepted"
+    raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension", hint=hint))
 
 
 def _parse_units(words: str | None) -> unit_systems.UnitSystem:
@@ -125,8 +125,8 @@ def _select_body(name: str | None, spec: Spec) -> str:
         return next(iter(spec.bodies))
     if name is not None and name in spec.bodies:
         return name
-    message = "which body is not said" if name is None else f"--body {name}: there is no such body"
-    hint = f"--body NAME, of {list_words(spec.bodies)}" if name is None else suggest(name, spec.bodies, "bodies")
+    message = "no body is given" if name is None else f"--body {name}: there is no such body"
+    hint = f"--body NAME, one of {list_words(spec.bodies)}" if name is None else suggest(name, spec.bodies, "bodies")
     raise UsageError(Problem("bad-option", message, hint=hint))
 
 
@@ -136,8 +136,8 @@ def _choose_instant(spec: Spec) -> list[InstantRequest]:
         return parse("impulse:0")
     if spec.analysis.type in ("state", "rest"):
         return parse("first")
-    hint = "such as --at peak:joints.NAME.force,last; a case each"
-    raise UsageError(Problem("bad-option", "--at: when the loads are taken is not said", hint=hint))
+    hint = "such as --at peak:joints.NAME.force,last; one load case each"
+    raise UsageError(Problem("bad-option", "--at: no instants are given", hint=hint))
 
 
 def _solve_scene(request: ExportRequest, spec: Spec, body: str, instants: Sequence[InstantRequest]) -> Study:
@@ -166,8 +166,8 @@ def _require_writable(form: str, cases: LoadCases) -> None:
     """Raise UsageError for an impulse in a deck, which can only hold forces."""
     impulse_cases = [case.name for case in cases.cases if case.is_impulse]
     if impulse_cases and DECKS[form].static:
-        message = f"--at {impulse_cases[0]}: a blow is told in {cases.units[0]} s, and a deck for {form} knows forces"
-        hint = "--blow-over SECONDS gives the mean loads of so long a time; or --format csv"
+        message = f"--at {impulse_cases[0]}: impulses are in {cases.units[0]} s, but a deck for {form} takes forces"
+        hint = "--blow-over SECONDS gives the mean loads over this duration; or use --format csv"
         raise UsageError(Problem("bad-option", message, hint=hint))
 
 
@@ -175,12 +175,12 @@ def _read_mesh(request: ExportRequest, form: str, cases: LoadCases, names: DeckN
     """Read the given mesh, for a deck that needs one. Raises UsageError, SpecError."""
     if request.mesh is None:
         if form == "calculix" and any(case.field.angular_acceleration.any() for case in cases.cases):
-            message = "CalculiX has no load of angular acceleration, which some of the cases have"
-            hint = "--mesh FILE, the mesh of the body in these units: its nodes then take it; other decks have a card"
+            message = "CalculiX has no angular acceleration load, which some load cases need"
+            hint = "give --mesh FILE, the body mesh in these units, to load its nodes instead; other decks have a card"
             raise UsageError(Problem("bad-option", message, hint=hint))
         return None
     if form != "calculix":
-        message = f"--mesh {request.mesh}: {form} needs none, for it has cards for all of the inertia"
+        message = f"--mesh {request.mesh}: {form} needs no mesh: it has cards for all inertia loads"
         raise UsageError(Problem("bad-option", message, hint="leave it out"))
     from heuncli.analyses.load_cases.solid_mesh import read_mesh  # of few decks
 
@@ -190,7 +190,7 @@ def _read_mesh(request: ExportRequest, form: str, cases: LoadCases, names: DeckN
         raise UsageError(Problem(finding.code, f"--mesh {finding.message}", hint=finding.hint)) from None
     common_numbers = {node.number for node in DeckNodes(cases, names).nodes} & set(mesh.numbers.tolist())
     if common_numbers:
-        message = f"--first-node {names.first_node}: the mesh has a node {min(common_numbers)} of its own"
+        message = f"--first-node {names.first_node}: the mesh already has a node {min(common_numbers)}"
         raise UsageError(Problem("bad-option", message, hint=f"such as --first-node {int(mesh.numbers.max()) + 1}"))
     return mesh
 
@@ -203,7 +203,7 @@ def _read_text(name: str) -> str:
         return Path(name).read_text(encoding="latin-1")  # only comments may contain non-ASCII bytes
     except (OSError, ValueError) as reason:
         why = getattr(reason, "strerror", None) or str(reason)
-        raise UsageError(Problem("bad-mesh", f"--mesh {name}: {why}", hint="a file that can be read")) from None
+        raise UsageError(Problem("bad-mesh", f"--mesh {name}: {why}", hint="give a readable file")) from None
 
 
 def _print_sums(cases: LoadCases, form: str, names: DeckNames) -> None:
@@ -211,8 +211,8 @@ def _print_sums(cases: LoadCases, form: str, names: DeckNames) -> None:
     for case in cases.cases:
         sums = cases.body.balance(case)
         largest = f"{sums.largest_force:.4g} {cases.units[0]}{' s' * case.is_impulse}"
-        what = f"{format_count(len(case.actions), 'load')} and inertia, the largest {largest}"
-        remainder = f"sums of forces and moments {sums.relative:.1e} of the largest"
+        what = f"{format_count(len(case.actions), 'load')} and inertia, largest {largest}"
+        remainder = f"force and moment sums balance to {sums.relative:.1e} of the largest"
         print_stderr(f"heun: {case.name}: t = {case.time:.6g} s, {what}, {remainder}")
     for note in DECKS[form].notes(cases, names):
         print_stderr(f"heun: {note}")

@@ -22,52 +22,54 @@ FORMATS = ("csv", "json", "ansys", "nastran", "calculix", "abaqus")
 
 
 class ExportRequest(NamedTuple):
-    """Write the self-balanced load cases of a body for a stress analysis."""
+    """Write self-balanced load cases of a body for a stress analysis."""
 
-    what: Annotated[str, Option((), "What is written: loads.", "loads")]
+    what: Annotated[str, Option((), "What to export: loads.", "loads")]
     spec: Annotated[str, SPEC]
-    body: Annotated[str | None, Option(("--body",), "The body. Default: the only one.", "NAME", completes="body")] = (
-        None
-    )
+    body: Annotated[
+        str | None, Option(("--body",), "Body to export. Default: the only one.", "NAME", completes="body")
+    ] = None
     at: Annotated[
         str | None,
         Option(
             ("--at",),
-            "When, a case each: a time, first, last, peak:PATH (the largest magnitude), max:PATH, min:PATH, "
-            "impulse:NAME or impulse:NUMBER. Default: the one instant of a state.",
+            "Instants, one load case each: a time, first, last, peak:PATH (largest magnitude), max:PATH, min:PATH, "
+            "impulse:NAME or impulse:NUMBER. Default: the instant of a state, rest or impulse analysis.",
             "WHEN,...",
         ),
     ] = None
     format: Annotated[
         str | None,
-        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else csv.", "|".join(FORMATS)),
+        Option(("--format",), "Output format. Default: from the extension of -o FILE, else csv.", "|".join(FORMATS)),
     ] = None
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Write there, whole or not at all: .csv, .json, .bdf, .mac, .inp.", "FILE"),
+        Option(("--output", "-o"), "Output file, written atomically: .csv, .json, .bdf, .mac, .inp.", "FILE"),
     ] = None
     units: Annotated[
         str | None,
-        Option(("--units",), "Force, length, mass that go together, such as N,mm,t. Default: N,m,kg.", "UNIT,..."),
+        Option(
+            ("--units",), "Consistent units of force, length and mass, such as N,mm,t. Default: N,m,kg.", "UNIT,..."
+        ),
     ] = None
     first_node: Annotated[
-        int | None, Option(("--first-node",), "The number of the first node of a deck. Default: 1001.", "NUMBER")
+        int | None, Option(("--first-node",), "Number of the first node of a deck. Default: 1001.", "NUMBER")
     ] = None
     elements: Annotated[
         str | None,
-        Option(("--elements",), "The mesh's set of all elements of the body, in decks. Default: BODY.", "NAME"),
+        Option(("--elements",), "Name of the mesh's set of all elements of the body, in decks. Default: BODY.", "NAME"),
     ] = None
     mesh: Annotated[
         str | None,
         Option(
             ("--mesh",),
-            "The mesh of the body, of solids, for CalculiX, whose nodes take the angular acceleration.",
+            "Solid mesh of the body for CalculiX; its nodes take the load of the angular acceleration.",
             "FILE",
         ),
     ] = None
     blow_over: Annotated[
         float | None,
-        Option(("--blow-over",), "Blows as the mean loads of so long a time; decks need it.", "SECONDS"),
+        Option(("--blow-over",), "Impulses as mean loads over this duration; required for decks.", "SECONDS"),
     ] = None
     case: Annotated[str | None, CASE] = None
     set: Annotated[tuple[str, ...], SET] = ()

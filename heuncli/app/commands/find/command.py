@@ -32,7 +32,7 @@ from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.quantities.table_units import Units
 
 DEFAULT_SCAN, DEFAULT_EVALUATIONS = 7, 300  # default numbers of variants: of the scan, in all
-FORM = "expected MEASURE = VALUE, or <, >, <=, >= between the two"
+FORM = "expected MEASURE = VALUE, or <, >, <=, >= in place of ="
 HINT = "such as 'max joints.main.force = 10 kN'"
 MIN_SCAN = 4  # fewer values do not show a course
 MAX_SCAN = 10_000
@@ -84,10 +84,10 @@ def parse_counts(request: FindRequest) -> tuple[int, int]:
     scan = DEFAULT_SCAN if request.scan is None else request.scan
     max_variants = max(DEFAULT_EVALUATIONS, 2 * scan) if request.evaluations is None else request.evaluations
     if not MIN_SCAN <= scan <= MAX_SCAN:
-        message = f"--scan {scan}: accepted: {MIN_SCAN} to {MAX_SCAN:,}"
+        message = f"--scan {scan}: expected {MIN_SCAN} to {MAX_SCAN:,}"
         raise UsageError(Problem("bad-option", message, hint="such as --scan 25"))
     if max_variants < scan:
-        message = f"--evaluations {max_variants}: fewer than the {scan} of the scan"
+        message = f"--evaluations {max_variants}: fewer than the {scan} values of the scan"
         raise UsageError(Problem("bad-option", message, hint=f"such as --evaluations {DEFAULT_EVALUATIONS}"))
     return scan, max_variants
 
@@ -113,9 +113,9 @@ def require_known_measure(findings: IntervalFindings) -> None:
     """Raise SolveError if no variant has the measure."""
     if findings.least is None:
         stretch = findings.unsolved_stretches[0]
-        message = f"the measure is known in none of the {len(findings.samples)} variants: {stretch.reason}"
+        message = f"none of the {len(findings.samples)} variants gives a result: {stretch.reason}"
         raise SolveError(
-            Problem(stretch.code, message, hint="another interval; heun run --set tells more of one variant")
+            Problem(stretch.code, message, hint="try another interval; heun run --set shows one variant in detail")
         )
 
 

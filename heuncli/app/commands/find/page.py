@@ -41,10 +41,10 @@ from heuncli.version import VERSION
 
 DIRECTIONS = {1: "rises", -1: "falls", 0: "at the end"}
 SCAN = (
-    "a scan of {} at most {} apart, and more where the course beside them asks for it; crossings nearer together than "
-    "that may be missed where nothing beside them tells of them"
+    "a scan of {} at most {} apart, refined where neighbouring values require it; crossings closer together than that "
+    "may be missed if nothing nearby indicates them"
 )
-ENDED = "ended after {}: there may be more, and what stands here may be unfinished (--evaluations)"
+ENDED = "stopped after {}: there may be more, and those shown may not be fully refined (--evaluations)"
 MAX_WITHHELD = 2  # variants in singular poses that are listed one by one
 CSV_COLUMNS = ("kind", "value", "error", "unit", "measure", "measure_error", "measure_unit", "word", "reason")
 
@@ -116,14 +116,14 @@ def _make_crossings_table(page: FindPage) -> TextTable:
         TextColumn("", "left"),
     )
     rows = tuple(_make_crossing_row(page, each) for each in page.findings.crossings)
-    return TextTable("CROSSINGS  where the measure passes the value, as the unknown grows", columns, rows)
+    return TextTable("CROSSINGS  where the measure passes the value, as the parameter increases", columns, rows)
 
 
 def _make_crossing_row(page: FindPage, each: Crossing) -> tuple[str, ...]:
     size = page.units.find(page.condition.unit)[1]
     value = ((each.sample.gap or 0.0) + page.condition.value) * size
     error = each.sample.error * size
-    word = DIRECTIONS[each.direction] + (", so flat that it is not told better" if each.flat else "")
+    word = DIRECTIONS[each.direction] + (", too flat to be located more closely" if each.flat else "")
     cells = (
         format_with_error(each.sample.x, each.error),
         format_error(each.error),
@@ -151,7 +151,7 @@ def _make_met_table(page: FindPage) -> TextTable:
 def _format_edge(page: FindPage, edge: MetEdge) -> tuple[str, str]:
     error = f", ± {format_error(edge.error)}" if edge.error else ""
     words = {
-        "end": "end of the interval", "unsolved": "last variant that is solved", "bracket": "not closed",
+        "end": "end of the interval", "unsolved": "last solved variant", "bracket": "not resolved",
     }  # fmt: skip
     return format_with_error(edge.x, edge.error), words.get(edge.kind, edge.kind) + error
 
@@ -163,11 +163,11 @@ def format_notes(page: FindPage) -> Iterator[str]:
         findings.met_stretches or ("=" in condition.relation and not findings.is_met_nowhere)
     ):
         is_whole = findings.is_complete and not findings.not_excluded
-        yield ("met nowhere" if is_whole else "not met in what was looked at") + _format_extremes(page)
+        yield ("met nowhere" if is_whole else "not met in the searched part") + _format_extremes(page)
     elif findings.is_met_nowhere:
         yield ("no crossing" if SIDES[condition.relation] else "met nowhere") + _format_extremes(page)
     elif not (findings.crossings or findings.touches or findings.brackets or findings.not_excluded):
-        yield "not met in what was looked at" + _format_extremes(page)
+        yield "not met in the searched part" + _format_extremes(page)
     yield from (_describe_touch(page, each) for each in findings.touches)
     yield from (_describe_jump(page, each) for each in findings.jumps)
     yield from (_describe_bracket(page, each) for each in findings.brackets)
@@ -187,7 +187,7 @@ def _format_extremes(page: FindPage) -> str:
         f"{page.format_measure(each.gap or 0.0, each.error)} at {page.format_place(each.x, 0.0)}"
         for each in (least, greatest)
     )
-    return f": the least is {next(ends)}, the greatest {next(ends)}"
+    return f": minimum {next(ends)}, maximum {next(ends)}"
 
 
 def _describe_touch(page: FindPage, each: Touch) -> str:
@@ -198,10 +198,10 @@ def _describe_touch(page: FindPage, each: Touch) -> str:
             if each.low < each.high
             else "there"
         )
-        return f"not told from the value wherever it is known: {ends}"
+        return f"equal to the value within its error wherever known: {ends}"
     side = "above" if each.side > 0 else "below"
-    place = f"touches the value at {page.format_place(each.sample.x)}, {side} it around"
-    return f"{place}: not told from it within its error between {ends}"
+    place = f"touches the value at {page.format_place(each.sample.x)}, {side} it nearby"
+    return f"{place}: equal to it within its error between {ends}"
 
 
 def _describe_jump(page: FindPage, each: MeasureJump) -> str:
@@ -216,7 +216,7 @@ def _describe_jump(page: FindPage, each: MeasureJump) -> str:
 def _describe_bracket(page: FindPage, each: UnresolvedBracket) -> str:
     value_before, value_after = (page.format_measure(one.gap or 0.0, one.error) for one in each)
     ends = f"{page.format_place(each.left.x)}, and {value_after} at {page.format_place(each.right.x)}"
-    return f"passes the value between {value_before} at {ends}: a crossing or a jump that the search did not close"
+    return f"passes the value between {value_before} at {ends}: a crossing or a jump that the search did not resolve"
 
 
 def _describe_not_excluded(page: FindPage, each: PossibleMeeting) -> str:
@@ -224,13 +224,13 @@ def _describe_not_excluded(page: FindPage, each: PossibleMeeting) -> str:
     ends = (
         f"{page.format_place(each.left.x)} ({value_before}) and {format_with_error(each.right.x, 0.0)} ({value_after})"
     )
-    return f"not excluded between {ends}: the variants and their errors leave open whether the value is met there"
+    return f"not excluded between {ends}: the variants and their errors do not decide whether the value is met there"
 
 
 def _describe_unsolved(page: FindPage, each: UnsolvedStretch) -> Iterator[str]:
     """Describe where the measure is not known, and how well the ends of that stretch are."""
     stretch = f"{page.format_place(each.low)} to {format_with_error(each.high, 0.0)}"
-    yield f"no measure from {stretch} ({format_count(each.variants, 'variant')}): {each.reason} [{each.code}]"
+    yield f"no result from {stretch} ({format_count(each.variants, 'variant')}): {each.reason} [{each.code}]"
     ends = [(each.low, each.first, "last", "first"), (each.high, each.last, "first", "last")]
     for solved, failed, of_solved, of_failed in ends:
         if solved != failed:
@@ -239,10 +239,10 @@ def _describe_unsolved(page: FindPage, each: UnsolvedStretch) -> Iterator[str]:
             yield f"  {text} {page.interval.format_value(failed)} (± {error})"
     for one in each.withheld[:MAX_WITHHELD]:
         yield (
-            f"  at {page.interval.format_value(one.x)} alone: {page.format_measure(one.withheld_gap or 0.0, one.error)}"
+            f"  at {page.interval.format_value(one.x)} only: {page.format_measure(one.withheld_gap or 0.0, one.error)}"
         )
     if len(each.withheld) > MAX_WITHHELD:
-        yield f"  and {format_count(len(each.withheld) - MAX_WITHHELD, 'variant')} more in singular poses"
+        yield f"  and {format_count(len(each.withheld) - MAX_WITHHELD, 'more variant')} in singular positions"
 
 
 def to_json(page: FindPage) -> str:

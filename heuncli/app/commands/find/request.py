@@ -7,11 +7,11 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class FindRequest(NamedTuple):
-    """Find every value of a parameter at which a measure meets a value, or where it is below or above."""
+    """Find every value of a parameter at which a result equals a value, or where it is below or above."""
 
     spec: Annotated[str, SPEC]
     unknown: Annotated[
-        str, Option((), "The parameter, or a dotted key, and the ends of its interval: n=500:6000rpm.", "NAME=A:B")
+        str, Option((), "Parameter or dotted key, and the ends of its interval: n=500:6000rpm.", "NAME=A:B")
     ]
     condition: Annotated[
         str,
@@ -23,17 +23,18 @@ class FindRequest(NamedTuple):
     case: Annotated[str | None, CASE] = None
     scan: Annotated[
         int | None,
-        Option(("--scan",), "So many values are looked at first. Default: 7; more find narrower pairs.", "N"),
+        Option(("--scan",), "Number of values solved first. Default: 7; more find closer pairs of crossings.", "N"),
     ] = None
-    evaluations: Annotated[
-        int | None, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")
-    ] = None
+    evaluations: Annotated[int | None, Option(("--evaluations",), "Maximum number of variants. Default: 300.", "N")] = (
+        None
+    )
     tolerance: Annotated[float | None, TOLERANCE] = None
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
     strict: Annotated[
-        bool, Option(("--strict",), "Leave with 1 if it is met nowhere, or a part of the interval is not solved.")
+        bool,
+        Option(("--strict",), "Exit with 1 if the condition is met nowhere, or part of the interval is not solved."),
     ] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -89,17 +89,19 @@ def _validate_spec(text: str, name: str) -> list[str]:
     except SpecError as error:
         if all(problem.code == "magnitude" for problem in error.problems):
             raise SpecError(*(problem._replace(location=None) for problem in error.problems)) from None
-        raise RuntimeError(f"the spec that was made is none: {error}") from None
+        raise RuntimeError(f"the converted spec is invalid: {error}") from None
 
 
 def _parse_options(request: ImportRequest) -> ImportOptions:
     """Parse the options of the import. Raises UsageError."""
     if request.base is not None and request.base not in BASES:
         hint = suggest(request.base, BASES, "values")
-        raise UsageError(Problem("bad-option", f"--base {request.base}: known: {', '.join(BASES)}", hint=hint))
+        raise UsageError(Problem("bad-option", f"--base {request.base}: accepted: {', '.join(BASES)}", hint=hint))
     if request.limits and not request.free:
-        message = "--limits: a joint that a drive holds runs against no stop"
-        raise UsageError(Problem("bad-option", message, hint="with --free; the limits stand in comments either way"))
+        message = "--limits: a joint locked by a drive cannot reach a stop"
+        raise UsageError(
+            Problem("bad-option", message, hint="use it with --free; comments list the limits in any case")
+        )
     words = [word.strip() for word in request.repair.split(",")] if request.repair is not None else []
     density = _parse_density(request.density) if request.density is not None else None
     return ImportOptions(
@@ -128,7 +130,7 @@ def _require_supported(request: ImportRequest, options: ImportOptions, reader: M
         OPTION_WORDS[field] for field in OPTION_WORDS if field in given_fields and field not in reader.options
     ]
     if unsupported:
-        message = f"{', '.join(unsupported)}: not for {reader.form}"
+        message = f"{', '.join(unsupported)}: not available for {reader.form}"
         raise UsageError(Problem("bad-option", message, hint="leave it out"))
     _require_repairs(options.repair, reader.repairs)
 
@@ -137,4 +139,4 @@ def _require_repairs(words: Collection[str], supported: Collection[str]) -> None
     for word in sorted(words):
         if word not in supported:
             hint = suggest(word, supported, "faults")
-            raise UsageError(Problem("bad-option", f"--repair {word}: known: {', '.join(supported)}", hint=hint))
+            raise UsageError(Problem("bad-option", f"--repair {word}: accepted: {', '.join(supported)}", hint=hint))

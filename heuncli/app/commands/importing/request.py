@@ -7,23 +7,23 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ImportRequest(NamedTuple):
-    """Make a spec of another program's model: of a robot in URDF, a scene of MuJoCo's."""
+    """Convert a model of another program to a spec: a robot in URDF, or a MuJoCo model (MJCF)."""
 
-    file: Annotated[str, Option((), "The model; - reads standard input.", "FILE")]
+    file: Annotated[str, Option((), "Model file; - reads standard input.", "FILE")]
     output: Annotated[str | None, OUTPUT] = None
     base: Annotated[
-        str | None, Option(("--base",), "The root stands on the ground (default), or is free.", "fixed|free")
+        str | None, Option(("--base",), "Root body fixed to the ground (default), or free.", "fixed|free")
     ] = None
-    free: Annotated[bool, Option(("--free",), "Let the joints go; by default drives hold them.")] = False
-    limits: Annotated[bool, Option(("--limits",), "With --free: limits of joints as stops.")] = False
+    free: Annotated[bool, Option(("--free",), "Leave the joints free; by default drives lock them.")] = False
+    limits: Annotated[bool, Option(("--limits",), "With --free: convert joint limits to stops.")] = False
     density: Annotated[
         str | None,
-        Option(("--density",), "Of the shapes of what has no inertia, such as '2700 kg/m^3'.", "NUMBER"),
+        Option(("--density",), "Density of the shapes of bodies without inertia, such as '2700 kg/m^3'.", "NUMBER"),
     ] = None
-    repair: Annotated[
-        str | None, Option(("--repair",), "Faults that are repaired, each named in a comment.", "FAULT,...")
-    ] = None
-    keyframe: Annotated[str | None, Option(("--keyframe",), "Of MJCF: the pose of the start.", "NAME")] = None
-    strict: Annotated[bool, Option(("--strict",), "Fail where something has no counterpart.")] = False
+    repair: Annotated[str | None, Option(("--repair",), "Faults to repair, each noted in a comment.", "FAULT,...")] = (
+        None
+    )
+    keyframe: Annotated[str | None, Option(("--keyframe",), "MJCF: keyframe of the start position.", "NAME")] = None
+    strict: Annotated[bool, Option(("--strict",), "Fail if something has no counterpart.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -36,11 +36,11 @@ def render_page(course: InertiaCurve, units: Units) -> str:
         f"{course.epsilon[i]:.6g} {unit_set.inertia} at {course.values[i] * size:.6g} {unit}" for i in (low, high)
     )
     mean = (
-        "has no mean that settles"
+        "mean does not converge"
         if np.isnan(course.mean)
         else f"mean {course.mean:.6g} {unit_set.inertia} over the range"
     )
-    lines.append(("inertia", f"ε {mean}; of the values least {least}, largest {largest}"))
+    lines.append(("inertia", f"ε {mean}; smallest value {least}, largest {largest}"))
     return (
         format_labelled_lines(lines)
         + "\n"

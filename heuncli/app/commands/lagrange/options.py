@@ -58,13 +58,13 @@ def require_together(request: LagrangeRequest, form: str) -> None:
     if request.over is not None:
         others = {"--at": request.at is not None, "--coordinates": request.coordinates, "--seen": request.seen}
         others |= {"--christoffel": request.christoffel, "--state-space": request.state_space, "--only": request.only}
-        hint_text = "the one free coordinate is told over its range"
-        wrong += [(f"--over and {name}", hint_text) for name, on in others.items() if on]
+        hint_text = "leave it out; --over shows the single free coordinate over its range"
+        wrong += [(f"--over and {name} cannot be combined", hint_text) for name, on in others.items() if on]
     if not request.state_space:
         dependent = {"--inputs": request.inputs, "--outputs": request.outputs, "--format m, or -o FILE.m": form == "m"}
         wrong += [(f"{name} without --state-space", "add --state-space") for name, on in dependent.items() if on]
     unknown = [part for part in parse_names(request.only) if part not in KEYS]
-    wrong += [(f"--only {part}: no part is called so", f"known: {', '.join(KEYS)}") for part in unknown]
+    wrong += [(f"--only {part}: unknown part", f"accepted: {', '.join(KEYS)}") for part in unknown]
     for place in parse_places(request.seen):
         wrong += check_place(place)
     if wrong:
@@ -87,12 +87,12 @@ def require_instant(instant: float | None, spec: Spec) -> None:
     if instant is None:
         return
     if not (math.isfinite(instant) and instant >= 0.0):
-        raise UsageError(
-            Problem("bad-option", f"--at {instant:g}: expected an instant from 0 on", hint="such as --at 0.5, in s")
-        )
+        raise UsageError(Problem("bad-option", f"--at {instant:g}: expected 0 or later", hint="such as --at 0.5, in s"))
     if spec.analysis.type != "motion" and instant > 0.0:
-        message = f"--at {instant:g}: the analysis is no motion (type: {spec.analysis.type})"
-        raise UsageError(Problem("bad-option", message, hint="leave it out; or ask for a motion, by analysis.duration"))
+        message = f"--at {instant:g}: the analysis is not a motion (type: {spec.analysis.type})"
+        raise UsageError(
+            Problem("bad-option", message, hint="leave it out, or request a motion with analysis.duration")
+        )
 
 
 def parse_range(argument: str, spec: Spec) -> CoordinateRange:
@@ -113,8 +113,8 @@ def parse_range(argument: str, spec: Spec) -> CoordinateRange:
         if not joint_spec.tension_only
     ]
     if name not in known:
-        hint = suggest(name, known, "coordinates") or "of pins, slides, cylinders and rods"
-        raise make_range_error(argument, f"no coordinate is called {name}", hint)
+        hint = suggest(name, known, "coordinates") or "use coordinates of pins, slides, cylinders and rods"
+        raise make_range_error(argument, f"there is no coordinate {name}", hint)
     a, b = (parse_bound(argument, text, LENGTH if is_length(name) else NUMBER) for text in (first, last))
     if a == b:
         raise make_range_error(argument, "both ends are the same", FORM)

@@ -26,13 +26,13 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
 
 HEADING = "LAGRANGE  {at}: coordinates q and rates q'; ε q'' + C = k + drive"
-MASS = "MASS  ε = ∂²E/∂q'∂q', and the inertia that is seen: with the other coordinates held, and with them free"
+MASS = "MASS  ε = ∂²E/∂q'∂q', and the effective inertia with the other coordinates fixed, and with them free"
 RECIPROCAL = "RECIPROCAL  η = 1/ε: E = p η p / 2"
-FORCES = "FORCES  k along each coordinate, by cause; C: what the masses' accelerations at q'' = 0 do there"
+FORCES = "FORCES  k along each coordinate, by cause; C: centrifugal and Coriolis terms"
 CHRISTOFFEL = "CHRISTOFFEL  γ(i; l, k) = (∂ε_il/∂q_k + ∂ε_ik/∂q_l − ∂ε_lk/∂q_i) / 2 and α(i; l, k) = −Σ η_ij γ(j; l, k)"
-BLOWS = "BLOWS  ε [q'] = h + drives; r': what the piece beyond a cut does on the rest in the blow"
-SECTIONS = "SECTIONS  s' along each coordinate: what the piece beyond the cut does on the rest"
-STATE_SPACE = "STATE SPACE  x' = A x + B u: A by the states, B by the inputs"
+BLOWS = "IMPULSES  ε [q'] = h + drives; r': impulse of the far side on the near side of the cut"
+SECTIONS = "SECTIONS  s' along each coordinate: force of the far side on the near side of the cut"
+STATE_SPACE = "STATE SPACE  x' = A x + B u: columns of A: states, of B: inputs"
 OUTPUTS = "OUTPUTS  y = C x + D u"
 OWN_ROWS = ("k", "C")  # after the rows of the causes
 SI = Units()
@@ -74,7 +74,7 @@ def format_energy(results: LagrangeResults, units: Units) -> Iterator[tuple[str,
         else ""
     )
     yield "energy", f"E = {size * results.energy:.6g} {unit}, F = {size * results.reciprocal_energy:.6g} {unit}{parts}"
-    yield "", f"ε q'' + C = k + drive is met to {results.residual:.1g} of what its terms are summed from"
+    yield "", f"ε q'' + C = k + drive holds to {results.residual:.1g} of the summed terms"
     for note in results.notes:
         yield "", note
 
@@ -175,7 +175,7 @@ def make_mass_table(results: LagrangeResults) -> TextTable:
             (one.name, *matrix_cells, one.unit, format_number(one.others_locked), format_number(one.others_free))
         )
     columns = [TextColumn(f"ε {name}") for name in results.names] if shows_matrix else []
-    heads = (TextColumn("seen at", "left"), *columns, TextColumn("unit", "left"), TextColumn("others held"))
+    heads = (TextColumn("at", "left"), *columns, TextColumn("unit", "left"), TextColumn("others fixed"))
     return TextTable(MASS, (*heads, TextColumn("others free")), tuple(rows))
 
 
@@ -259,7 +259,7 @@ def make_impulse_table(results: LagrangeResults, units: Units) -> TextTable:
     for kind in sorted(set(unit_sets)):
         unit_names = ", ".join(units.find(unit)[0] for unit in (kind.momentum, kind.rate))
         notes.append(f"along {'lengths' if kind is LENGTH else 'angles'}: {unit_names}")
-    heads = (TextColumn("blow", "left", is_shown_once=True), TextColumn("", "left"), *map(TextColumn, results.names))
+    heads = (TextColumn("impulse", "left", is_shown_once=True), TextColumn("", "left"), *map(TextColumn, results.names))
     return TextTable(BLOWS, heads, tuple(rows), tuple(notes))
 
 

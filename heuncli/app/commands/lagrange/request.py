@@ -7,51 +7,49 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class LagrangeRequest(NamedTuple):
-    """Lagrange's equations in numbers: the inertia at each coordinate, forces along it by cause, velocity terms."""
+    """Show Lagrange's equations in numbers: inertia at each coordinate, forces along it by cause, velocity terms."""
 
     spec: Annotated[str, SPEC]
     at: Annotated[
-        float | None, Option(("--at",), "An instant of the motion [s]. Default: the start, or the pose at rest.", "T")
+        float | None, Option(("--at",), "Instant of the motion [s]. Default: the start, or the rest position.", "T")
     ] = None
     over: Annotated[
         str | None,
         Option(
             ("--over",),
-            "Over a range of a coordinate, where one motion is free: nothing is integrated.",
+            "Evaluate over a range of a coordinate, for 1 degree of freedom; nothing is integrated.",
             "COORDINATE=FROM:TO/COUNT",
         ),
     ] = None
     coordinates: Annotated[
         str | None,
-        Option(("--coordinates",), "The coordinates; rodrigues: of bodies on balls.", "NAME,..."),
+        Option(("--coordinates",), "Coordinates; rodrigues: for bodies on ball joints.", "NAME,..."),
     ] = None
     seen: Annotated[
         tuple[str, ...],
         Option(
             ("--seen",),
-            "Where inertia is seen: coordinates, points in a direction.",
+            "Where to show the effective inertia: coordinates, or points in a direction.",
             "NAME|POINT:X,Y,Z,...",
         ),
     ] = ()
-    christoffel: Annotated[bool, Option(("--christoffel",), "Christoffel symbols as well.")] = False
+    christoffel: Annotated[bool, Option(("--christoffel",), "Also show the Christoffel symbols.")] = False
     state_space: Annotated[
-        bool, Option(("--state-space",), "A, B, C, D of small motions about the state, for a controller.")
+        bool, Option(("--state-space",), "Show A, B, C, D of small motions about the state, for controller design.")
     ] = False
     inputs: Annotated[
-        str | None, Option(("--inputs",), "Of the state space: forces by value, drives by acceleration.", "NAME,...")
+        str | None, Option(("--inputs",), "State-space inputs: forces by value, drives by acceleration.", "NAME,...")
     ] = None
     outputs: Annotated[
-        str | None, Option(("--outputs",), "Of the state space: coordinates, their rates, points.", "NAME,...")
+        str | None, Option(("--outputs",), "State-space outputs: coordinates, their rates, points.", "NAME,...")
     ] = None
     only: Annotated[
         str | None,
-        Option(("--only",), "Parts of tables and JSON: equations, mass, forces, sections and others.", "PART,..."),
+        Option(("--only",), "Show only these parts: equations, mass, forces, sections and others.", "PART,..."),
     ] = None
     format: Annotated[
         str | None,
-        Option(
-            ("--format",), "How to write them. Default: by the name's end of -o FILE, else table.", "table|json|csv|m"
-        ),
+        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json|csv|m"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None

@@ -7,10 +7,10 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class MethodsRequest(NamedTuple):
-    """List the methods of integration, and what each is for."""
+    """List the integration methods and their uses."""
 
     format: Annotated[
         str | None,
-        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "table|json"),
+        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None

@@ -41,13 +41,15 @@ def main(request: ModelRequest) -> int:
 def require_sketch(request: ModelRequest, form: str) -> None:
     """Raise UsageError before the work for options that do not go with a drawing, or only with one."""
     if request.sketch and form != "text":
-        message = f"--sketch is a drawing in letters, and not in {form}"
-        raise UsageError(Problem("bad-option", message, hint="heun plot SPEC scene -o x.svg draws the scene as a file"))
+        message = f"--sketch is a text drawing, not available in {form}"
+        raise UsageError(
+            Problem("bad-option", message, hint="heun plot SPEC scene -o x.svg draws the machine to a file")
+        )
     drawing_options = [
         name for name, value in (("--view", request.view), ("--width", request.width)) if value is not None
     ]
     if drawing_options and not request.sketch:
-        message = f"{', '.join(drawing_options)}: of a drawing, which is not asked for"
+        message = f"{', '.join(drawing_options)}: only for a drawing, which is not requested"
         raise UsageError(Problem("bad-option", message, hint="add --sketch"))
     if request.view is not None:
         from heuncli.app.cli.views import require_view

@@ -7,17 +7,15 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ModelRequest(NamedTuple):
-    """Tell which model is made of a scene, and why."""
+    """Show which model is made from a spec, and why."""
 
     spec: Annotated[str, SPEC]
-    format: Annotated[str | None, Option(("--format",), "How to write it. Default: text.", "text|json")] = None
+    format: Annotated[str | None, Option(("--format",), "Output format. Default: text.", "text|json")] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
-    sketch: Annotated[bool, Option(("--sketch",), "Below it a drawing of the machine as assembled, in letters.")] = (
-        False
-    )
+    sketch: Annotated[bool, Option(("--sketch",), "Add a text drawing of the assembled machine.")] = False
     view: Annotated[str | None, VIEW] = None
     width: Annotated[int | None, WIDTH] = None
     time_limit: Annotated[float | None, TIME_LIMIT] = None

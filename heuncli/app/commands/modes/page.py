@@ -16,7 +16,7 @@ from heuncli.version import VERSION
 HEADING = "MODES  motions exp(growth t) cos(2π frequency t): damping ratio -growth/|growth + 2πi frequency|"
 COLUMNS = (
     TextColumn("mode"), TextColumn("frequency Hz"), TextColumn("period s"), TextColumn("damping"),
-    TextColumn("growth 1/s"), TextColumn("kind", "left"), TextColumn("what moves most (rad, m)", "left"),
+    TextColumn("growth 1/s"), TextColumn("kind", "left"), TextColumn("largest amplitudes (rad, m)", "left"),
 )  # fmt: skip
 CSV_COLUMNS = "mode,kind,name,quantity,component,unit,value"
 PHASE_TOLERANCE = 0.02  # relative; a smaller out-of-phase part is not shown

@@ -7,7 +7,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ModesRequest(NamedTuple):
-    """Frequencies, damping and shapes of small oscillations about the pose at rest."""
+    """Find frequencies, damping and mode shapes of small oscillations about the rest position."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[str | None, FORMAT] = None

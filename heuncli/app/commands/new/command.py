@@ -19,7 +19,7 @@ FOLDER = Path(__file__).parents[3] / "starters"
 STANDARD_OUTPUT = "-"
 SCHEMA = """\
 # yaml-language-server: $schema=heun.schema.json
-# An editor completes and underlines by that line, once `heun schema -o heun.schema.json` has written the file here.
+# This line lets an editor complete and check the keys; `heun schema -o heun.schema.json` writes the file.
 """
 
 
@@ -28,7 +28,7 @@ def main(request: NewRequest) -> int:
     known = list_kinds()
     published = {name: read_text(name).splitlines()[0].removeprefix("# ") for name in list_names()}
     if request.kind is None:
-        emit(f"{_format_list(known)}\npublished cases, which heun check --references holds against what was printed:\n"
+        emit(f"{_format_list(known)}\npublished cases, which heun check --references compares with printed results:\n"
              f"{_format_list(published)}")  # fmt: skip
         return 0
     if request.kind not in {**known, **published}:
@@ -64,7 +64,11 @@ def list_kinds() -> dict[str, str]:
 def _write_new(text: str, file: str) -> None:
     """Write a new file, whole or not at all. Raises UsageError if the file exists, OutputError."""
     exists_error = UsageError(
-        Problem("bad-option", f"new: {file}: something stands there", hint="name another file; none is written over")
+        Problem(
+            "bad-option",
+            f"new: {file}: this file exists",
+            hint="give another file name; existing files are not overwritten",
+        )
     )
     try:
         number = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)  # O_EXCL also refuses a link

@@ -56,7 +56,7 @@ def _iter_problems(kind: str, request: PlotRequest) -> Iterator[Problem]:
         ):
             continue
         others = [other.what for other in KINDS.values() if name in other.options]
-        message = f"{field.option.words[0]} does nothing to {figure_kind.what}"
-        yield Problem("bad-option", message, hint=f"leave it out: it is of {', '.join(others)}")
+        message = f"{field.option.words[0]} has no effect on {figure_kind.what}"
+        yield Problem("bad-option", message, hint=f"leave it out: it applies to {', '.join(others)}")
     if request.output is not None and request.width is not None:
-        yield Problem("bad-option", "--width is of pictures in letters, not of files", hint="leave it out, or -o FILE")
+        yield Problem("bad-option", "--width applies to text drawings, not to files", hint="leave it out, or -o FILE")

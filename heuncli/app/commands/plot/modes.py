@@ -31,7 +31,7 @@ def draw(target: PlotTarget, request: PlotRequest) -> Figure:
     require_no_paths(target)
     specs = load_specs(target.files, request)
     if len(specs) > 1:
-        message = f"heun plot modes: of one scene in one case, and {len(specs)} are named"
+        message = f"heun plot modes: expected one model in one load case, found {len(specs)}"
         raise UsageError(Problem("bad-option", message, hint="call it once for each"))
     ((_, spec),) = specs
     entries = find_excluded(spec, request.without)

@@ -31,19 +31,19 @@ def parse_words(words: Sequence[str]) -> PlotTarget:
     files = [word for k, word in enumerate(words) if _is_file(word, first=k == 0)]
     others = [word for word in words if word not in files]
     if not files:
-        raise _make_error("no spec is named", USAGE)
+        raise _make_error("no spec is given", USAGE)
     if not all(words):
-        raise _make_error("an empty word", USAGE)
+        raise _make_error("an empty argument", USAGE)
     sweep_files = [file for file in files if _find_ending(file) in SWEEPS]
     if sweep_files:
         if len(sweep_files) < len(files):
-            raise _make_error(f"{', '.join(files)}: specs and sweeps in one picture", "call it once for each")
+            raise _make_error(f"{', '.join(files)}: specs and sweeps cannot share one plot", "call it once for each")
         return PlotTarget(files, SWEEP_KIND, others)
     if not others:
-        raise _make_error("what is to be drawn is not said", USAGE)
+        raise _make_error("nothing to draw is given", USAGE)
     kinds = [word for word in others if word in NAMED_KINDS]
     if len(kinds) > 1 or (kinds and kinds[0] != others[0]):
-        raise _make_error(f"{', '.join(others)}: one kind of picture at a time", "call it once for each")
+        raise _make_error(f"{', '.join(others)}: one kind of plot at a time", "call it once for each")
     return PlotTarget(files, kinds[0] if kinds else _choose_path_kind(others), others[len(kinds) :])
 
 
@@ -52,11 +52,11 @@ def _choose_path_kind(paths: Sequence[str]) -> str:
     entries = [path for path in paths if path.startswith("sections.") and path.count(".") == 1]
     if entries and len(entries) < len(paths):
         other = next(path for path in paths if path not in entries)
-        message = f"{entries[0]} is a diagram along a bar, {other} a number over time: one kind of picture at a time"
-        raise _make_error(message, f"call it once for each; over time {entries[0]}.N, say")
+        message = f"{entries[0]} is a diagram along a bar, {other} a number over time: one kind of plot at a time"
+        raise _make_error(message, f"call it once for each; over time, for example, {entries[0]}.N")
     suggestion = find_similar(paths[0], NAMED_KINDS) if "." not in paths[0] else None
     if suggestion is not None:
-        raise _make_error(f"'{paths[0]}' is no kind of picture", f"did you mean {suggestion}?")
+        raise _make_error(f"'{paths[0]}' is not a kind of plot", f"did you mean {suggestion}?")
     return "sections" if entries else "history"
 
 

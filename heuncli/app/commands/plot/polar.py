@@ -30,7 +30,7 @@ SUCH_AS = "such as polar joints.main, or polar foundation"
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:
     """Draw the figure. Raises UsageError, NotDrawable, SpecError and what solving raises."""
     if not target.paths:
-        raise UsageError(Problem("bad-option", "heun plot polar: of what is not said", hint=SUCH_AS))
+        raise UsageError(Problem("bad-option", "heun plot polar: no vector is given", hint=SUCH_AS))
     axes = "world" if request.axes is None else require_choice("--axes", request.axes, JOINT_AXES)
     view = None if request.view is None else require_choice("--view", request.view, AXIS_LETTERS)
     paths = [_append_force(path) for path in target.paths]
@@ -69,5 +69,5 @@ def _require_vectors(paths: list[str], spec: Spec) -> None:
             and number_kind.is_known
             and (number_kind.axes != (SPACE,) or not number_kind.is_timed)
         ):
-            message = f"polar {path}: a polar diagram is of a vector over the instants, and this is none"
+            message = f"polar {path}: not a vector over time"
             raise UsageError(Problem("bad-option", message, hint=SUCH_AS))

@@ -20,14 +20,14 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class PlotRequest(NamedTuple):
-    """Draw loads and motion: over time, along a bar, as a polar diagram; the machine itself; a sweep, modes, orders."""
+    """Plot loads and motion over time, along a bar or in polar form; the machine; a sweep, modes or orders."""
 
     words: Annotated[
         tuple[str, ...],
         Option(
             (),
             "Specs, then one of: paths, such as joints.main.force (over time); sections.NAME (along the bar); "
-            "polar joints.NAME; scene; modes; balance. Or the store or CSV of a sweep.",
+            "polar joints.NAME; scene; modes; balance. Or the store or CSV file of a sweep.",
             "SPEC... WHAT...",
         ),
     ]
@@ -35,36 +35,36 @@ class PlotRequest(NamedTuple):
         str | None,
         Option(
             ("--output", "-o"),
-            "Draw it there: x.svg; .png and .pdf by matplotlib. Default: on the terminal.",
+            "Output file: x.svg; .png and .pdf with matplotlib. Default: draw on the terminal.",
             "FILE",
         ),
     ] = None
     x: Annotated[
-        str | None, Option(("--x",), "Over this number in place of time, such as coordinates.shaft.angle.", "PATH")
+        str | None,
+        Option(("--x",), "Quantity on the x axis in place of time, such as coordinates.shaft.angle.", "PATH"),
     ] = None
     measured: Annotated[
         tuple[str, ...],
         Option(
             ("--with",),
-            "Measured points over it: a CSV's columns, as t:F or t[ms]:2[kN]. May be repeated.",
+            "Add measured points from columns of a CSV file, as t:F or t[ms]:2[kN]. May be repeated.",
             "FILE:X:Y",
         ),
     ] = ()
-    at: Annotated[str | None, Option(("--at",), "When, of diagrams and scenes; as of heun export.", "WHEN,...")] = None
+    at: Annotated[
+        str | None, Option(("--at",), "Instants of diagrams and of scene, as in heun export.", "WHEN,...")
+    ] = None
     axes: Annotated[
-        str | None, Option(("--axes",), "Joint loads in the axes of the one or the other body.", "world|from|to")
+        str | None,
+        Option(("--axes",), "Axes of joint loads: world, or those of one of the two bodies.", "world|from|to"),
     ] = None
     view: Annotated[str | None, VIEW] = None
-    tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
-        False
-    )
+    tension_side: Annotated[bool, Option(("--tension-side",), "Draw bending moments on the tension side.")] = False
     without: Annotated[tuple[str, ...], WITHOUT] = ()
     width: Annotated[int | None, WIDTH] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    case: Annotated[
-        str | None, Option(("--case",), "In these load cases, over each other; all: in all.", "NAME,...|all")
-    ] = None
+    case: Annotated[str | None, Option(("--case",), "Overlay these load cases, or all.", "NAME,...|all")] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
     tolerance: Annotated[float | None, TOLERANCE] = None

@@ -74,8 +74,8 @@ def parse_instants(source: FigureSource, words: str) -> Array:
     horizon = source.study.results.horizon
     if horizon is not None and times[-1] >= horizon:
         late = times[times >= horizon][0]
-        message = f"--at {late:.6g}: from t = {horizon:.6g} s on nothing is claimed, and so nothing is drawn"
-        raise UsageError(Problem("bad-option", message, hint="an earlier instant"))
+        message = f"--at {late:.6g}: results are not reliable from t = {horizon:.6g} s on and are not drawn"
+        raise UsageError(Problem("bad-option", message, hint="give an earlier instant"))
     return times
 
 
@@ -89,14 +89,14 @@ def list_extreme_paths(words: str | None, spec: Spec) -> list[str]:
 def require_joint_paths(paths: Sequence[str], request: PlotRequest) -> None:
     """Raise UsageError for --axes if no load of a joint is drawn."""
     if request.axes is not None and not any("joints" in split_path(path) for path in paths):
-        message = f"--axes {request.axes} does nothing to {', '.join(paths)}: it is of the loads of joints"
+        message = f"--axes {request.axes} has no effect on {', '.join(paths)}: it applies to joint loads"
         raise UsageError(Problem("bad-option", message, hint="leave it out, or draw a joint: joints.NAME.force"))
 
 
 def require_no_paths(target: PlotTarget) -> None:
     """Raise UsageError for paths if the figure shows the whole scene."""
     if target.paths:
-        message = f"heun plot {target.kind} {' '.join(target.paths)}: {target.kind} is of the whole scene"
+        message = f"heun plot {target.kind} {' '.join(target.paths)}: {target.kind} draws the whole model"
         raise UsageError(Problem("bad-option", message, hint=f"heun plot {target.files[0]} {target.kind}"))
 
 

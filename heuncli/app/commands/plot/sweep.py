@@ -15,6 +15,6 @@ from heuncli.output.figures.sweeps import make_sweep_figure
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:
     """Draw the figure. Raises UsageError, OutputError, NotDrawable."""
     if len(target.files) > 1:
-        message = f"heun plot {' '.join(target.files)}: one sweep at a time, and no spec beside it"
+        message = f"heun plot {' '.join(target.files)}: one sweep at a time, without a spec"
         raise UsageError(Problem("bad-option", message, hint="call it once for each"))
     return make_sweep_figure(read_sweep(target.files[0]), parse_units(request.units), target.paths)

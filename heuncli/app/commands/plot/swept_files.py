@@ -110,7 +110,7 @@ def _read_csv(path: str) -> SweepTable:
     table: list[list[str]] = []
     for number, row in enumerate(rows, 2):
         if len(row) != len(columns.heads):
-            raise _make_error(path, f"row {number} has {len(row)} cells, the first one {len(columns.heads)}")
+            raise _make_error(path, f"row {number} has {len(row)} cells, the first row {len(columns.heads)}")
         table.append(row)
     by_column = list(zip(*table, strict=True)) or [() for _ in columns.heads]
     codes, reasons = by_column[-2], by_column[-1]
@@ -172,7 +172,7 @@ def _find_columns(path: str, heads: Sequence[str]) -> CsvColumns:
 
 
 def _make_error(path: str, why: str) -> UsageError:
-    return UsageError(Problem("bad-option", f"{path}: this is no CSV of a sweep: {why}", hint=WRITES_ONE))
+    return UsageError(Problem("bad-option", f"{path}: not a CSV file of a sweep: {why}", hint=WRITES_ONE))
 
 
 def _split_unit(head: str) -> tuple[str, str]:
@@ -199,4 +199,4 @@ def _find_missing_word(measure: str, value: float, code: str, reason: str) -> st
 
 def _shorten(word: str) -> str:
     """Return the word for a missing number as the notes of the figure spell it."""
-    return {"unknown": UNKNOWN_TEXT, "beyond": "beyond the horizon"}.get(word, word)
+    return {"unknown": UNKNOWN_TEXT, "beyond": "past the horizon"}.get(word, word)

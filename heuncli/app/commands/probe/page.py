@@ -12,13 +12,15 @@ from heuncli.version import VERSION
 
 MAX_EVENTS = 30  # events that a table lists; JSON has more
 REST = "rest"  # stands in `model` in place of a method
-GROWTH = "GROWTH  of a small disturbance, the largest of all directions that the joints leave free"
-STEPS = "STEPS  of explicit methods: what stability allows where it allows least, what accuracy asks for, about"
-STEPS_HERE = "STEPS  of explicit methods: what stability allows here"
-CONDITION = "CONDITION  largest singular value over the smallest; shifts by the scene's size"
-ATTITUDES = "ATTITUDES  bodies whose turns are all free: half turns, largest condition of the matrices of Euler angles"
+GROWTH = "GROWTH  of a small disturbance, largest over all unconstrained directions"
+STEPS = "STEPS  of explicit methods: smallest stability limit; approximate step for accuracy"
+STEPS_HERE = "STEPS  of explicit methods: stability limit here"
+CONDITION = "CONDITION  largest / smallest singular value; displacements relative to the model size"
+ATTITUDES = (
+    "ATTITUDES  bodies free to rotate about any axis: half revolutions, condition of Euler angle matrices (max.)"
+)
 EVENTS = "INSTANTS"
-NAMES = {"mass": "mass matrix", "closure": "closures"}
+NAMES = {"mass": "mass matrix", "closure": "loop closures"}
 
 
 def render_page(results: Probe) -> str:
@@ -35,7 +37,7 @@ def format_heading(results: Probe) -> Iterator[tuple[str, str]]:
     yield "probe", f"{results.model['space']}, {describe_motion(results)}"
     yield "verdict", results.verdict
     yield from (("", text) for text in results.trouble[1:])
-    yield from (("beside" if k == 0 else "", text) for k, text in enumerate(results.others))
+    yield from (("also" if k == 0 else "", text) for k, text in enumerate(results.others))
     yield from (("unknown" if k == 0 else "", text) for k, text in enumerate(format_reasons(results)))
 
 
@@ -43,7 +45,7 @@ def describe_motion(results: Probe) -> str:
     """Describe by which method the motion was found, and how long it is."""
     method, colon, other_method = str(results.model["method"]).partition(": ")
     if not results.duration:
-        return "a rest pose" if method == REST else "one instant"
+        return "rest position" if method == REST else "one instant"
     return f"{other_method if colon else f'by {method}'} over {results.duration:.6g} s"
 
 
@@ -58,7 +60,7 @@ def format_reasons(results: Probe) -> list[str]:
 def make_tables(results: Probe) -> Iterator[TextTable]:
     """Yield all tables that have something to show."""
     if grown := tuple(make_growth_row(name, g) for name, g in list_growths(results) if g is not None):
-        heads = ("of", "e times every [s]", "times", "until [s]", "horizon of double precision [s]")
+        heads = ("of", "grows e-fold every [s]", "factor", "until [s]", "horizon of double precision [s]")
         yield TextTable(GROWTH, make_columns(heads, 1), grown)
     if results.stiffness is not None and results.stiffness.steps:
         yield make_steps_table(results.stiffness, results.duration)
@@ -67,7 +69,7 @@ def make_tables(results: Probe) -> Iterator[TextTable]:
         yield TextTable(CONDITION, (*make_columns(("of", "condition", "t [s]"), 1), TextColumn("in", "left")), rows)
     if results.attitudes:
         sequences = tuple(results.attitudes[0].euler)
-        column_heads = ("body", "half turns", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
+        column_heads = ("body", "half revolutions", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
         bodies = tuple(
             (t.body, str(t.half_turns), *(x for k, at in t.euler.values() for x in (format_condition(k), f"{at:.6g}")))
             for t in results.attitudes
@@ -82,7 +84,7 @@ def make_steps_table(stiffness: StiffnessResults, duration: float) -> TextTable:
     run.
     """
     note = (
-        f"rates of the tangent: decay up to {stiffness.decay:.3g} 1/s, oscillation up to "
+        f"rates of the linearised motion: decay up to {stiffness.decay:.3g} 1/s, oscillation up to "
         f"{stiffness.oscillation:.3g} 1/s"
     )
     if not duration:
@@ -99,7 +101,7 @@ def make_events_table(results: Probe) -> TextTable:
     """Make the table of the instants, limited to the first MAX_EVENTS."""
     rows = [(f"{e.time:.6g}", e.kind, e.message) for e in results.events[:MAX_EVENTS]]
     omitted = len(results.events) - len(rows) + sum(count for _, _, count in results.further_events)
-    notes = (f"{omitted} more; JSON lists a hundred of each kind and place",) if omitted else ()
+    notes = (f"{omitted} more; JSON lists up to 100 of each kind and place",) if omitted else ()
     heads = (TextColumn("t [s]"), TextColumn("what", "left"), TextColumn("", "left"))
     return TextTable(EVENTS, heads, tuple(rows), notes)
 
@@ -111,19 +113,19 @@ def make_columns(heads: tuple[str, ...], word_count: int) -> tuple[TextColumn, .
 
 def list_growths(results: Probe) -> tuple[tuple[str, GrowthResults | None], ...]:
     """Return the growths to show, each with the name of its motion."""
-    name = "motion in the plane" if results.out_of_plane is not None else "motion"
-    return (name, results.growth), ("out of the plane", results.out_of_plane)
+    name = "in-plane motion" if results.out_of_plane is not None else "motion"
+    return (name, results.growth), ("out-of-plane motion", results.out_of_plane)
 
 
 def make_growth_row(name: str, growth: GrowthResults) -> tuple[str, ...]:
     """Make the cells of a growth."""
-    rate_text = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "no faster than the time"
+    rate_text = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "not exponential"
     if growth.rate < 0.0 and growth.logarithm < 0.0:
-        rate_text = "fades"
-    horizon_bound = "beyond the run" if growth.stop_reason is None else f"beyond {growth.end_time:.4g}"
+        rate_text = "decays"
+    horizon_bound = "after the run" if growth.stop_reason is None else f"after {growth.end_time:.4g}"
     horizon = f"{growth.horizon:.4g}" if growth.horizon is not None else horizon_bound
     if growth.expected_horizon is not None:
-        horizon += f", about {growth.expected_horizon:.2g} if it goes on so"
+        horizon += f", about {growth.expected_horizon:.2g} if growth continues"
     times = f"{math.exp(growth.logarithm):.2g}" if growth.logarithm < 700.0 else f"e^{growth.logarithm:.0f}"
     return name, rate_text, times, f"{growth.end_time:.4g}", horizon
 

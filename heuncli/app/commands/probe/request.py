@@ -7,12 +7,12 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ProbeRequest(NamedTuple):
-    """Where a motion comes near to what methods cannot bear, with a verdict."""
+    """Show where a motion is numerically difficult (singular positions, stiffness, chaos), with a verdict."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[
         str | None,
-        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "table|json"),
+        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json"),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()

@@ -39,7 +39,7 @@ def choose_form(request: ReportRequest) -> str:
     output = request.output
     if output is None:
         hint = "such as -o report.html, or -o - for standard output"
-        raise UsageError(Problem("bad-option", "heun report: where it is to be written is not said", hint=hint))
+        raise UsageError(Problem("bad-option", "heun report: no output file is given", hint=hint))
     if output != STDOUT:
         require_writable(output)
     if request.format is not None:
@@ -49,5 +49,5 @@ def choose_form(request: ReportRequest) -> str:
         return ENDINGS.get(ending, FORMATS[0])
     if ending == ".pdf":
         raise UsageError(Problem("bad-option", f"-o {output}: a report is not written as PDF", hint=PRINT))
-    hint = f"known endings: {', '.join(ENDINGS)}; with --format {'|'.join(FORMATS)} any name will do"
-    raise UsageError(Problem("bad-option", f"-o {output}: no report is known by that ending", hint=hint))
+    hint = f"accepted: {', '.join(ENDINGS)}; with --format {'|'.join(FORMATS)} any name is accepted"
+    raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension", hint=hint))

@@ -20,23 +20,23 @@ FORMATS = ("html", "md")
 
 
 class ReportRequest(NamedTuple):
-    """Write a report for a client: loads, sections, checks, the machine, and how far all that can be trusted."""
+    """Write a client report: loads, sections, checks, the machine, and the accuracy of the results."""
 
     spec: Annotated[str, SPEC]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Write it there, whole or not at all: x.html, x.md; - is standard output.", "FILE"),
+        Option(("--output", "-o"), "Output file, written atomically: x.html, x.md; - is standard output.", "FILE"),
     ] = None
     format: Annotated[
         str | None,
-        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else html.", "|".join(FORMATS)),
+        Option(("--format",), "Output format. Default: from the extension of -o FILE, else html.", "|".join(FORMATS)),
     ] = None
-    date: Annotated[str | None, Option(("--date",), "The date on its first page. Default: none.", "TEXT")] = None
-    author: Annotated[str | None, Option(("--author",), "Whose report it is.", "TEXT")] = None
-    project: Annotated[str | None, Option(("--project",), "Of what project.", "TEXT")] = None
+    date: Annotated[str | None, Option(("--date",), "Date on the first page. Default: none.", "TEXT")] = None
+    author: Annotated[str | None, Option(("--author",), "Author of the report.", "TEXT")] = None
+    project: Annotated[str | None, Option(("--project",), "Name of the project.", "TEXT")] = None
     case: Annotated[
         str | None,
-        Option(("--case",), "Of these load cases alone. Default: of all.", "NAME,...", completes="case"),
+        Option(("--case",), "Report only these load cases. Default: all.", "NAME,...", completes="case"),
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of loads, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()

@@ -21,10 +21,10 @@ from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTabl
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
 
-HEADS = ("of", "unit", "least", "at [s]", "case", "greatest", "at [s]", "case")
+HEADS = ("of", "unit", "min", "at [s]", "case", "max", "at [s]", "case")
 DIGITS = 6
-ALL_ALIKE = "all alike"  # if cases differ by no more than their errors
-NO_IMPULSES = "without blows: these stand in the tables of each case"
+ALL_ALIKE = "all equal"  # if cases differ by no more than their errors
+NO_IMPULSES = "without impulses, which are in the tables of each case"
 
 
 def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
@@ -116,7 +116,7 @@ def _format_governing(extreme: Bound) -> str:
     return (
         ", ".join(extreme.governing)
         if len(extreme.similar) <= 1
-        else f"{extreme.case} and {len(extreme.similar)} alike"
+        else f"{extreme.case} and {len(extreme.similar)} equal"
     )
 
 
@@ -137,7 +137,7 @@ def _make_notes(runs: Mapping[str, RunSnapshot]) -> list[str]:
     """Return notes on cases with a horizon, and on impulses, which only the tables of each case show."""
     notes = [NO_IMPULSES] if any(run.blows for run in runs.values()) else []
     return notes + [
-        f"{name}: nothing is claimed from its horizon on, t = {run.horizon:.6g} s"
+        f"{name}: not reliable from its horizon on, t = {run.horizon:.6g} s"
         for name, run in runs.items()
         if run.horizon is not None
     ]

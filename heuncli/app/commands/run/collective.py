@@ -53,7 +53,7 @@ def require_collective(request: RunRequest) -> None:
     """Raise UsageError for an option of collectives without --collective."""
     for name in ("slope", "cycles", "bins", "repeat"):
         if getattr(request, name) is not None:
-            raise make_option_error(f"--{name} is of load collectives", f"add {OPTION} joints.NAME.force")
+            raise make_option_error(f"--{name} applies to load collectives", f"add {OPTION} joints.NAME.force")
 
 
 def require_alone(others: Sequence[str]) -> None:
@@ -61,7 +61,8 @@ def require_alone(others: Sequence[str]) -> None:
     if others:
         words = ", ".join(f"--{name.replace('_', '-')}" for name in others)
         raise make_option_error(
-            f"{OPTION} prints collectives and nothing else: not with {words}", f"leave {words} out, or run twice"
+            f"{OPTION} prints load collectives only and cannot be combined with {words}",
+            f"leave out {words}, or run twice",
         )
 
 
@@ -70,7 +71,7 @@ def parse_paths(words: str) -> list[str]:
     paths = [word.strip() for word in words.split(",")]
     if not all(paths):
         raise make_option_error(
-            f"{OPTION} '{words}': expected paths into the results, with commas between",
+            f"{OPTION} '{words}': expected result paths separated by commas",
             f"such as {OPTION} joints.NAME.force.x",
         )
     return list(dict.fromkeys(paths))

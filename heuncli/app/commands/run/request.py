@@ -21,14 +21,14 @@ FORMATS = ("table", "json", "csv", "markdown")
 
 
 class RunRequest(NamedTuple):
-    """Solve a scene and report its loads and motion."""
+    """Solve a spec and report its loads and motion."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[
         str | None,
         Option(
             ("--format",),
-            "How to write the results. Default: by the name's end of -o FILE, else table.",
+            "Output format. Default: from the extension of -o FILE, else table.",
             "|".join(FORMATS),
         ),
     ] = None
@@ -37,8 +37,8 @@ class RunRequest(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; or "
-            "entries: joints.NAME, foundation.axis, ...",
+            "Report only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; "
+            "or entries: joints.NAME, foundation.axis, ...",
             "REPORT,...",
             completes="only",
         ),
@@ -48,13 +48,13 @@ class RunRequest(NamedTuple):
         str | None,
         Option(
             ("--case",),
-            "In a load case, or in all with their envelope; --set goes on top.",
+            "Solve this load case, or all with their envelope; --set is applied on top.",
             "NAME|all",
             completes="case",
         ),
     ] = None
     at: Annotated[
-        str | None, Option(("--at",), "Show these instants instead of the extremes; first, last.", "WHEN,...")
+        str | None, Option(("--at",), "Show these instants instead of the extremes: times, first, last.", "WHEN,...")
     ] = None
     all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
     measure: Annotated[
@@ -70,22 +70,23 @@ class RunRequest(NamedTuple):
         str | None,
         Option(
             ("--collective",),
-            "Load collectives of these numbers over the motion: rainflow cycles, level crossings.",
+            "Count load collectives of these quantities over the motion: rainflow cycles, level crossings.",
             "PATH,...",
             completes="collective",
         ),
     ] = None
     slope: Annotated[
-        str | None, Option(("--slope",), "Damage-equivalent ranges for these slopes of Wöhler lines.", "M,...")
+        str | None,
+        Option(("--slope",), "Give damage-equivalent ranges for these slopes of the S-N (Wöhler) curve.", "M,..."),
     ] = None
     cycles: Annotated[
         float | None,
-        Option(("--cycles",), "Of how many cycles equivalent ranges are. Default: one each time.", "N"),
+        Option(("--cycles",), "Number of cycles of the equivalent ranges. Default: one per repetition.", "N"),
     ] = None
-    bins: Annotated[int | None, Option(("--bins",), "Classes of ranges and means. Default: 10.", "N")] = None
+    bins: Annotated[int | None, Option(("--bins",), "Number of classes of ranges and means. Default: 10.", "N")] = None
     repeat: Annotated[
         str | None,
-        Option(("--repeat",), "The motion is a cycle that is run through N times, or (closed) for ever.", "N|closed"),
+        Option(("--repeat",), "Repeat the motion N times as a cycle, or for ever (closed).", "N|closed"),
     ] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
@@ -93,11 +94,13 @@ class RunRequest(NamedTuple):
     no_reduce: Annotated[bool, NO_REDUCE] = False
     least_norm: Annotated[bool, LEAST_NORM] = False
     by_cause: Annotated[
-        bool, Option(("--by-cause",), "Split every load by its causes: gravity, each force, drives, motion.")
+        bool, Option(("--by-cause",), "Split every load by cause: gravity, each force, drives, motion.")
     ] = False
     axes: Annotated[
         str | None,
-        Option(("--axes",), "Joint loads in the axes of the one or the other body, as it turns.", "world|from|to"),
+        Option(
+            ("--axes",), "Axes of joint loads: world, or those of one of the two (rotating) bodies.", "world|from|to"
+        ),
     ] = None
     units: Annotated[
         str | None,
@@ -105,10 +108,13 @@ class RunRequest(NamedTuple):
             ("--units",), "Units of tables and --measure, such as kN,mm,deg,rpm; JSON and CSV stay in SI.", "UNIT,..."
         ),
     ] = None
-    watch: Annotated[bool, Option(("--watch",), "Again at each save of the spec, until Ctrl-C.")] = False
-    strict: Annotated[bool, Option(("--strict",), "Leave with 1 if there are warnings or open reactions.")] = False
+    watch: Annotated[bool, Option(("--watch",), "Solve again at each save of the spec, until Ctrl-C.")] = False
+    strict: Annotated[bool, Option(("--strict",), "Exit with 1 if there are warnings or indeterminate reactions.")] = (
+        False
+    )
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
     verbose: Annotated[
-        bool, Option(("--verbose", "-v"), "Also what was made smaller; on standard error where the time went.")
+        bool,
+        Option(("--verbose", "-v"), "Also show how the model was reduced; print the solving times on standard error."),
     ] = False

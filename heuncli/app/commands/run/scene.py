@@ -157,7 +157,7 @@ def _check_strict(results: Results, warnings: list[str]) -> int:
     if warnings:
         print_stderr(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")
     if indeterminate:
-        print_stderr(f"heun: --strict: open reactions in {', '.join(dict.fromkeys(indeterminate))}")
+        print_stderr(f"heun: --strict: indeterminate reactions in {', '.join(dict.fromkeys(indeterminate))}")
     return int(bool(warnings or indeterminate))
 
 

@@ -31,8 +31,8 @@ def watch(request: RunRequest, run: Callable[[RunRequest], int]) -> NoReturn:
     """Run again after each change, until interrupted. Raises UsageError if there is no file to watch."""
     for is_given, word in ((request.time_limit is not None, "--time-limit"), (request.spec == STANDARD_INPUT, "-")):
         if is_given:
-            hint = "--watch goes on until Ctrl-C, and looks at a file"
-            raise UsageError(Problem("bad-option", f"--watch with {word}", hint=hint))
+            hint = "leave it out; --watch runs until Ctrl-C and needs a file"
+            raise UsageError(Problem("bad-option", f"--watch and {word} cannot be combined", hint=hint))
     single_run = request._replace(watch=False)
     while True:
         old_state = read_state(request.spec)
@@ -42,7 +42,7 @@ def watch(request: RunRequest, run: Callable[[RunRequest], int]) -> NoReturn:
         except HeunError as error:
             report_problems(error.problems)
         if not request.quiet:
-            print_stderr(f"heun: watching {escape(request.spec)}; Ctrl-C ends it")
+            print_stderr(f"heun: watching {escape(request.spec)}; Ctrl-C stops it")
         while (new_state := read_state(request.spec)) == old_state or new_state[
             0
         ] is None:  # briefly missing while an editor replaces it

@@ -9,5 +9,7 @@ from heuncli.base.named_tuples import NamedTuple
 class SchemaRequest(NamedTuple):
     """Print the JSON Schema of specs, for editors."""
 
-    results: Annotated[bool, Option(("--results",), "That of the results of heun run --format json.")] = False
+    results: Annotated[bool, Option(("--results",), "Print the schema of the results of heun run --format json.")] = (
+        False
+    )
     output: Annotated[str | None, OUTPUT] = None

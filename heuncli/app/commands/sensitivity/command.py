@@ -30,7 +30,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.quantities.measure_uncertainty import find_unit
 
 VARIANTS_PER_NUMBER = 10  # usual number
-NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
+NO_ERROR = ("no-error", "the run states no error for it (as for counts), so no step can be chosen")
 
 
 def main(request: SensitivityRequest) -> int:
@@ -67,10 +67,10 @@ def parse_words(words: Sequence[str]) -> tuple[str, list[str]]:
     """Return the spec's file, and the names of the numbers. Raises UsageError."""
     if not words:
         hint = "heun sensitivity SPEC [NAME...] --measure WHAT"
-        raise UsageError(Problem("bad-option", "sensitivity: no spec is named", hint=hint))
+        raise UsageError(Problem("bad-option", "sensitivity: no spec is given", hint=hint))
     for word in words[1:]:
         if "=" in word:
-            hint = f"the name alone; --set {word} sets it"
+            hint = f"give the name only; --set {word} sets it"
             raise UsageError(Problem("bad-option", f"sensitivity: {word}: expected a parameter", hint=hint))
     return words[0], list(dict.fromkeys(words[1:]))
 
@@ -79,7 +79,7 @@ def make_recipe(request: SensitivityRequest, path: str) -> Recipe:
     """Make the recipe of all variants. Raises UsageError, SpecError."""
     if not request.measure:
         hint = "such as --measure 'max abs joints.main.force'"
-        raise UsageError(Problem("bad-option", "sensitivity: nothing is measured", hint=hint))
+        raise UsageError(Problem("bad-option", "sensitivity: no measure is given", hint=hint))
     options = Options(tolerance=require_tolerance(request.tolerance))
     measures = tuple(measure.parse_measures(request.measure))
     return Recipe(path, read_text(path), measures, options, parse_overrides(request.set), request.case)
@@ -94,8 +94,8 @@ def select_numbers(
     }
     numbers = [*by_name.values()] or list(spec_numbers.iter_parameters())
     if not numbers:
-        message = "sensitivity: the spec has no parameters that are numbers"
-        raise UsageError(Problem("bad-option", message, hint="name a dotted key, such as bodies.crank.mass"))
+        message = "sensitivity: the spec has no numeric parameters"
+        raise UsageError(Problem("bad-option", message, hint="give a dotted key, such as bodies.crank.mass"))
     return numbers
 
 

@@ -20,11 +20,11 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
 
 COLUMNS = (
-    TextColumn("by", "left"), TextColumn("value"), TextColumn("", "left"), TextColumn("derivative"),
+    TextColumn("parameter", "left"), TextColumn("value"), TextColumn("", "left"), TextColumn("derivative"),
     TextColumn("error"), TextColumn("", "left"), TextColumn("% per %"), TextColumn("", "left"),
 )  # fmt: skip
 SPREAD_COLUMNS = (
-    TextColumn("by", "left"), TextColumn("spread ±"), TextColumn("", "left"), TextColumn("contributes ±"),
+    TextColumn("parameter", "left"), TextColumn("spread ±"), TextColumn("", "left"), TextColumn("contributes ±"),
     TextColumn("error"), TextColumn("at its lower end"), TextColumn("at its upper end"), TextColumn("", "left"),
 )  # fmt: skip
 CSV_COLUMNS = (
@@ -32,7 +32,7 @@ CSV_COLUMNS = (
     "spread", "contribution", "contribution_error", "code", "reason",
 )  # fmt: skip
 LINEARITY_TOLERANCE = 0.05  # of the worst case; corners that differ by more get a note
-ALONE = "a number without a unit counts in SI"
+ALONE = "numbers without a unit are in SI"
 
 
 class MeasureFindings(NamedTuple):
@@ -126,7 +126,7 @@ def _make_rows(
     lead = (number.name, format_with_error(number.value, 0.0), number.unit)
     per = f"{unit if unit not in ('', '1') else '1'}/{_format_denominator(number.unit)}"
     if slope.left is not None and slope.right is not None:
-        bends = f"on the right: it bends within {format_error(slope.step)} of the value"
+        bends = f"on the right: the slope changes within {format_error(slope.step)} of the value"
         for (value, error), side in ((slope.left, "on the left"), (slope.right, bends)):
             yield (*lead, format_with_error(value * size, error * size), format_error(error * size), per, "", side)
         return
@@ -140,10 +140,10 @@ def _make_rows(
 
 def _make_remark(slope: NoisyDerivative) -> str:
     if slope.kind == "nothing":
-        return "nothing hangs on it"
+        return "no effect"
     if slope.kind == "one-sided":
         return f"from one side: {slope.why[1]} [{slope.why[0]}]"
-    return "not told from 0" if abs(slope.value or 0.0) <= slope.error else ""
+    return "0 within its error" if abs(slope.value or 0.0) <= slope.error else ""
 
 
 def _format_denominator(unit: str) -> str:
@@ -182,7 +182,7 @@ def _describe_nonlinear(total: SpreadSum, size: float) -> Iterator[str]:
     for one in total.contributions:
         if one.bent and one.least is not None and one.greatest is not None:
             linear = (
-                "there is no derivative" if one.linear is None else f"the derivative says ± {one.linear * size:.4g}"
+                "there is no derivative" if one.linear is None else f"the derivative gives ± {one.linear * size:.4g}"
             )
             ends = " to ".join(
                 f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")"
@@ -200,10 +200,10 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
     """Yield worst case, root of the sum of squares, and how the variants at the corners compare."""
     yield from _describe_nonlinear(total, size)
     if total.worst is None or total.square is None:
-        yield "worst case: not known, since a contribution is not"
+        yield "worst case: unknown, since a contribution is unknown"
         return
-    partly = ", of what can be solved of the spreads" if any(one.why[0] for one in total.contributions) else ""
-    shown_by = ", shown by a variant of several numbers" if total.by_variant else ""
+    partly = ", for the solvable part of the spreads" if any(one.why[0] for one in total.contributions) else ""
+    shown_by = ", found by a variant of several parameters" if total.by_variant else ""
     found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
     words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
     for word, (value, error), remark in words:
@@ -212,14 +212,14 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
     low, high = total.corners
     if base.value is None or low.value is None or high.value is None:
         why = next((end.why for end in total.corners if end.value is None), ("", ""))
-        yield f"the variants with all numbers at their ends: {why[1]} [{why[0]}]"
+        yield f"the variants with all parameters at their ends: {why[1]} [{why[0]}]"
         return
     changes = low.value - base.value, high.value - base.value
-    where = "where each does most" if any(one.bent for one in total.contributions) else "at their ends"
-    text = f"the variants with all numbers {where}: {changes[0] * size:+.6g} and {changes[1] * size:+.6g}"
+    where = "where each has the largest effect" if any(one.bent for one in total.contributions) else "at their ends"
+    text = f"the variants with all parameters {where}: {changes[0] * size:+.6g} and {changes[1] * size:+.6g}"
     deviation = max(abs(abs(change) - total.worst[0]) for change in changes)
     if deviation > LINEARITY_TOLERANCE * total.worst[0] + total.worst[1] + low.error + high.error:
-        text += ": the spreads are too large for the sum"
+        text += ": the spreads are too large for a linear sum"
     yield text
 
 

@@ -7,13 +7,13 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class SensitivityRequest(NamedTuple):
-    """Tell what measures hang on: their derivatives by parameters, and what tolerances make of them."""
+    """Show how results depend on parameters."""
 
     words: Annotated[
         tuple[str, ...],
         Option(
             (),
-            "The scene's YAML file, and parameters or dotted keys. Default: all parameters that are given as numbers.",
+            "YAML file of the spec, and parameters or dotted keys. Default: all parameters given as numbers.",
             "SPEC NAME...",
             completes="spec",
         ),
@@ -22,14 +22,16 @@ class SensitivityRequest(NamedTuple):
         tuple[str, ...],
         Option(
             ("--measure",),
-            "What hangs on them: 'max abs sections.middle.M1', 'final energy.kinetic'. May be repeated.",
+            "Result to differentiate: 'max abs sections.middle.M1', 'final energy.kinetic'. May be repeated.",
             "WHAT",
             completes="measure",
         ),
     ] = ()
     spread: Annotated[
         str | None,
-        Option(("--spread",), "Tolerances, each way: what of the measures they make together.", "NAME=VALUE,..."),
+        Option(
+            ("--spread",), "Tolerances (±) of parameters; show their combined effect on the results.", "NAME=VALUE,..."
+        ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
@@ -37,6 +39,6 @@ class SensitivityRequest(NamedTuple):
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
-    strict: Annotated[bool, Option(("--strict",), "Leave with 1 if a derivative is refused.")] = False
+    strict: Annotated[bool, Option(("--strict",), "Exit with 1 if a derivative cannot be given.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

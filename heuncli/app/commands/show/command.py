@@ -63,13 +63,13 @@ def _require_output(request: ShowRequest) -> str | None:
     name = request.output
     if name is None:
         if request.glb is None:
-            message = "where the page goes is not said"
+            message = "no output file is given"
             raise UsageError(Problem("bad-option", message, hint="-o machine.html; -o - for standard output"))
         return None
     if name != STDOUT:
         if name and PurePath(name).suffix.lower() not in ENDINGS:
-            hint = f"known endings: {', '.join(ENDINGS)}; heun plot draws .svg, .png and .pdf"
-            raise UsageError(Problem("bad-option", f"-o {name}: no page is known by that ending", hint=hint))
+            hint = f"accepted: {', '.join(ENDINGS)}; heun plot draws .svg, .png and .pdf"
+            raise UsageError(Problem("bad-option", f"-o {name}: unknown file extension", hint=hint))
         require_writable(name)
     return name
 
@@ -80,11 +80,13 @@ def _require_glb(request: ShowRequest) -> str | None:
     if name is None:
         return None
     if PurePath(name).suffix.lower() != GLB:
-        message = f"--glb {name}: no glTF in one file is known by that ending"
-        raise UsageError(Problem("bad-option", message, hint=f"known ending: {GLB}"))
+        message = f"--glb {name}: unknown file extension"
+        raise UsageError(Problem("bad-option", message, hint=f"accepted: {GLB}"))
     require_writable(name, "--glb")
     if is_same_file("/dev/stdout" if request.output == STDOUT else request.output, name):
-        raise UsageError(Problem("bad-option", f"--glb {name}: that is where the page goes", hint="name another file"))
+        raise UsageError(
+            Problem("bad-option", f"--glb {name}: the page is written to this file", hint="name another file")
+        )
     return name
 
 
@@ -93,8 +95,8 @@ def _require_page(request: ShowRequest) -> None:
     page_options = [("--frames", request.frames), ("--units", request.units)]
     unused = [option for option, value in page_options if value is not None] if request.output is None else []
     if unused:
-        message = f"{', '.join(unused)}: of the page, and none is written; a file of moving bodies is in SI"
-        raise UsageError(Problem("bad-option", message, hint="leave it out, or say where the page goes: -o x.html"))
+        message = f"{', '.join(unused)}: only for the page, and none is written; the glTF file is in SI"
+        raise UsageError(Problem("bad-option", message, hint="leave it out, or give the page: -o x.html"))
 
 
 def _parse_frame_count(frames: int | None) -> int:
@@ -110,5 +112,5 @@ def _parse_frame_count(frames: int | None) -> int:
 def _require_few_bodies(spec: Spec) -> None:
     """Raise LimitError if there are more bodies than a page can show."""
     if len(spec.bodies) > MAX_BODIES:
-        message = f"the scene has {len(spec.bodies):,} bodies; a page shows at most {MAX_BODIES}"
-        raise LimitError(Problem("output-size", message, hint="heun run tells the loads of any number of bodies"))
+        message = f"the model has {len(spec.bodies):,} bodies; a page shows at most {MAX_BODIES}"
+        raise LimitError(Problem("output-size", message, hint="heun run reports the loads of any number of bodies"))

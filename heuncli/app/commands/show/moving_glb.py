@@ -12,7 +12,7 @@ from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.study.queries.study import Study
 from heuncli.study.search.instants import find_largest_turns
 
-WARNING = "--glb: between two of its instants a body turns up to {:.0f}°; what is shown between them is not the motion"
+WARNING = "--glb: a body rotates up to {:.0f}° between two instants; the animation between them is not accurate"
 
 
 def make_glb(study: Study) -> bytes:

@@ -19,18 +19,18 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ShowRequest(NamedTuple):
-    """Show the machine as it moves, with its loads: one page for a browser, which needs nothing else."""
+    """Show the moving machine and its loads on a self-contained page for a browser."""
 
     spec: Annotated[str, SPEC]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Write the page there: x.html; - for standard output.", "FILE"),
+        Option(("--output", "-o"), "Output page, written atomically: x.html; - is standard output.", "FILE"),
     ] = None
-    glb: Annotated[
-        str | None, Option(("--glb",), "Write the moving bodies there, as animated glTF: x.glb.", "FILE")
-    ] = None
+    glb: Annotated[str | None, Option(("--glb",), "Also write the moving bodies as animated glTF: x.glb.", "FILE")] = (
+        None
+    )
     frames: Annotated[
-        int | None, Option(("--frames",), "At most so many instants in the page. Default: 600.", "NUMBER")
+        int | None, Option(("--frames",), "Maximum number of instants on the page. Default: 600.", "NUMBER")
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of the page, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()

@@ -21,7 +21,7 @@ NAME_CODES = frozenset({
     "no-such-key", "dimension", "wrong-dimension", "wrong-kind", "expression-syntax", "expression-limit",
     "function-arguments", "parameter-circle", "not-in-time", "not-yaml", "bad-character", "too-deep", "empty",
 })  # fmt: skip
-ONCE = "one axis a parameter"
+ONCE = "give one axis per parameter"
 
 
 def find_problems(
@@ -78,7 +78,7 @@ def _check_values(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Pr
             evaluator.load({one.name: text})
         except SpecError as error:
             relevant = [each for each in error.problems if each.code in NAME_CODES or each.code.startswith("unknown-")]
-            count_text = f"; in all at {len(relevant)} places" if len(relevant) > 1 else ""
+            count_text = f"; {len(relevant)} places in all" if len(relevant) > 1 else ""
             for problem in relevant[:1]:
                 extended = problem._replace(message=problem.message + count_text)
                 yield one.locate_problem(extended, None if problem.code == "no-such-key" else k)
@@ -96,7 +96,7 @@ def find_warnings(axes: Sequence[AxisArgument], evaluator: VariantEvaluator) -> 
                 ]
                 warnings += [str(problem._replace(hint=_make_unit_hint(one, problem))) for problem in located]
     unused = evaluator.find_unused_parameters([one.name for one in axes])
-    warnings += [f"{one.word}: nothing hangs on {one.name}" for one in axes if one.name in unused]
+    warnings += [f"{one.word}: {one.name} has no effect" for one in axes if one.name in unused]
     return list(dict.fromkeys(warnings))
 
 

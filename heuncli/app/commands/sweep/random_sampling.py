@@ -21,10 +21,10 @@ def draw_samples(laws: Sequence[RandomVariable], request: SweepRequest) -> Draws
         options = {"--samples": request.samples is not None, "--seed": request.seed is not None}
         for option, is_given in (options | {"--indices": request.indices}).items():
             if is_given:
-                raise UsageError(Problem("bad-option", f"{option}: nothing is drawn at random", hint=RANDOM_HINT))
+                raise UsageError(Problem("bad-option", f"{option}: no parameter is random", hint=RANDOM_HINT))
         return None
     if request.samples is None:
-        message = f"{', '.join(law.name for law in laws)}: how many are drawn?"
+        message = f"{', '.join(law.name for law in laws)}: the number of samples is missing"
         raise UsageError(Problem("bad-option", message, hint=SAMPLES_HINT))
     draws = make_draws(laws, request.samples, request.seed or 0, indices=request.indices)
     imbalance = make_imbalance_warning(laws, request.samples)

@@ -9,14 +9,14 @@ FORMATS = ("table", "json", "csv", "parquet")
 
 
 class SweepRequest(NamedTuple):
-    """Solve a scene with other values, one variant after the other, and list a measure of each."""
+    """Solve variants of a spec and list a result of each."""
 
     words: Annotated[
         tuple[str, ...],
         Option(
             (),
-            "The scene's YAML file, and what is varied: n=1000:6000/51rpm, L=0.1,0.12,0.15, c=1:1000/31log, case=all, "
-            "d=normal(100,0.1)mm, r=uniform(a,b), lhs(a,b), sobol(a,b).",
+            "YAML file of the spec, and the varied parameters: n=1000:6000/51rpm, L=0.1,0.12,0.15, c=1:1000/31log, "
+            "case=all, d=normal(100,0.1)mm, r=uniform(a,b), lhs(a,b), sobol(a,b).",
             "SPEC NAME=VALUES...",
             completes="spec",
         ),
@@ -25,44 +25,48 @@ class SweepRequest(NamedTuple):
         tuple[str, ...],
         Option(
             ("--measure",),
-            "What is listed of each: 'max abs sections.middle.M1', 'final energy.kinetic'. May be repeated.",
+            "Result to list: 'max abs sections.middle.M1', 'final energy.kinetic'. May be repeated.",
             "WHAT",
             completes="measure",
         ),
     ] = ()
-    zip: Annotated[bool, Option(("--zip",), "The values of one place together, not all combinations.")] = False
+    zip: Annotated[
+        bool, Option(("--zip",), "Vary the parameters together, value by value, not in all combinations.")
+    ] = False
     variants: Annotated[
         str | None,
-        Option(("--variants",), "A CSV table of variants: a column a parameter, a row a variant.", "FILE"),
+        Option(("--variants",), "CSV table of variants: one column per parameter, one row per variant.", "FILE"),
     ] = None
     store: Annotated[
         str | None,
-        Option(("--store",), "Keep every row there as it is done; what is there already is not solved again.", "FILE"),
+        Option(("--store",), "Store every row as soon as it is solved; stored variants are not solved again.", "FILE"),
     ] = None
     show: Annotated[
         str | None,
-        Option(("--show",), "Print the last sweep of a store, or the one of that number; solves nothing.", "FILE[:N]"),
+        Option(("--show",), "Print the last sweep of a store, or sweep number N; nothing is solved.", "FILE[:N]"),
     ] = None
     shard: Annotated[
         str | None,
-        Option(("--shard",), "One part of so many, such as 2/8: every eighth variant, from the second on.", "K/N"),
+        Option(("--shard",), "Solve part K of N, such as 2/8: every eighth variant, starting with the second.", "K/N"),
     ] = None
     jobs: Annotated[
-        int | None, Option(("--jobs", "-j"), "Processes. Default: one a processor, from eight variants on.", "N")
+        int | None,
+        Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight variants on.", "N"),
     ] = None
     time_limit_each: Annotated[
-        float | None, Option(("--time-limit",), "Give up on a variant after that long; the others go on.", "SECONDS")
+        float | None, Option(("--time-limit",), "Stop each variant after this time; the others continue.", "SECONDS")
     ] = None
-    samples: Annotated[int | None, Option(("--samples",), "How many of what is drawn at random.", "N")] = None
-    seed: Annotated[int | None, Option(("--seed",), "Of what is drawn at random. Default: 0.", "S")] = None
+    samples: Annotated[int | None, Option(("--samples",), "Number of random samples.", "N")] = None
+    seed: Annotated[int | None, Option(("--seed",), "Seed of the random samples. Default: 0.", "S")] = None
     indices: Annotated[
-        bool, Option(("--indices",), "Sobol indices of what is drawn: N (d + 2) variants for d parameters.")
+        bool,
+        Option(("--indices",), "Compute Sobol indices of the random parameters: N (d + 2) variants for d parameters."),
     ] = False
     format: Annotated[
         str | None,
         Option(
             ("--format",),
-            "How to write the rows. Default: by the name's end of -o FILE, else table.",
+            "Output format. Default: from the extension of -o FILE, else table.",
             "|".join(FORMATS),
         ),
     ] = None
@@ -77,11 +81,11 @@ class SweepRequest(NamedTuple):
         str | None,
         Option(
             ("--dask",),
-            "The scheduler of a Dask cluster whose workers solve the variants; takes heuncli[dask].",
+            "Scheduler of a Dask cluster whose workers solve the variants; requires heuncli[dask].",
             "tcp://HOST:PORT",
         ),
     ] = None
     units: Annotated[str | None, UNITS] = None
-    all: Annotated[bool, Option(("--all",), "Tables show all variants, however many.")] = False
-    strict: Annotated[bool, Option(("--strict",), "Leave with 1 if a variant could not be solved.")] = False
+    all: Annotated[bool, Option(("--all",), "Show all variants in tables.")] = False
+    strict: Annotated[bool, Option(("--strict",), "Exit with 1 if a variant could not be solved.")] = False
     quiet: Annotated[bool, QUIET] = False

@@ -70,7 +70,7 @@ def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> i
     if stopping.number:
         if request.store is None and done_count:
             write_sweep(sweep.head, rows, output)
-        advice = "the same command goes on with the rest" if request.store is not None else "--store FILE keeps them"
+        advice = "the same command continues with the rest" if request.store is not None else "--store FILE keeps them"
         print_stderr(f"{stopping.reason}: {done_count} of {sweep.size} variants are done; {advice}")
         return 128 + stopping.number
     warnings = collect_warnings(sweep.head, rows)
@@ -173,7 +173,7 @@ class SweepProgress:
         report_progress(
             self.done_count,
             self.total,
-            f"{self.done_count} of {self.total} variants, {rate:.3g} a second, {format_duration(remaining)} to go",
+            f"{self.done_count} of {self.total} variants, {rate:.3g} per second, {format_duration(remaining)} left",
         )
 
 

@@ -54,5 +54,5 @@ def _require_alone(request: SweepRequest) -> None:
     for name in EXCLUDED_OPTIONS:
         if getattr(request, name):
             word = " ".join(request.words) if name == "words" else f"--{name.removesuffix('_each').replace('_', '-')}"
-            hint = "--show solves nothing: leave it out, or name the store with --store"
-            raise UsageError(Problem("bad-option", f"--show with {word}", hint=hint))
+            hint = "leave it out; --show solves nothing. Or name the store with --store"
+            raise UsageError(Problem("bad-option", f"--show and {word} cannot be combined", hint=hint))

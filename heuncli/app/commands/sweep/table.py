@@ -24,7 +24,7 @@ MAX_BYTES = 1_000_000_000  # bytes
 CODE = "variants-table"
 DECIMAL_COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?(?:\s*[^\d\s,.].*)?)\Z")
 SEPARATORS = (";", "\t", ",")
-FORM = "a column a parameter, its name in the first row: n [rpm],L [mm]"
+FORM = "one column per parameter, its name in the first row: n [rpm],L [mm]"
 QUOTES = 'a quote in a quoted cell is doubled, as "", and the cell ends on its line'
 
 
@@ -53,16 +53,21 @@ def read_axes(path: str) -> tuple[AxisArgument, ...]:
         if not cells:
             continue
         if len(cells) != len(heads):
-            message = f"the row has {len(cells)} cells, the first one {len(heads)}"
+            message = f"the row has {len(cells)} cells, the first row {len(heads)}"
             problems.append(
-                Problem(CODE, message, SourceLocation(file, line_number, 1), "a cell each, or leave the row out")
+                Problem(
+                    CODE,
+                    message,
+                    SourceLocation(file, line_number, 1),
+                    "give one cell per column, or leave out the row",
+                )
             )
             continue
         for k, cell in enumerate(cells):
             texts[k].append(_format_value(file, line_number, cell, names[k], mark, problems))
             places[k].append((line_number, cell.column))
     if not problems and not texts[0]:
-        problems.append(Problem(CODE, "there is no variant below the names", SourceLocation(file, n, 1), FORM))
+        problems.append(Problem(CODE, "there is no variant below the header", SourceLocation(file, n, 1), FORM))
     if problems:
         raise SpecError(*problems)
     return tuple(
@@ -89,7 +94,7 @@ def _parse_heads(file: str, n: int, heads: Sequence[TableCell], problems: list[P
         if not name or parse_number_with_unit(name) is not None:
             problems.append(Problem(CODE, f"'{cell.text}' is not the name of a parameter", place, FORM))
         elif any(name == other for other, _ in names):
-            problems.append(Problem(CODE, f"there are two columns '{name}'", place, "one column a parameter"))
+            problems.append(Problem(CODE, f"there are two columns '{name}'", place, "give one column per parameter"))
         try:
             if unit:
                 parse_unit(unit)
@@ -103,7 +108,7 @@ def _format_value(file: str, n: int, cell: TableCell, head: tuple[str, str], mar
     """Return a cell in the form of `--set`."""
     name, unit = head
     if not cell.text:
-        hint = "each row has a value of every parameter; that of the spec is written, too"
+        hint = "give every parameter a value in each row, even that of the spec"
         problems.append(
             Problem(CODE, f"an empty cell in the column '{name}'", SourceLocation(file, n, cell.column), hint)
         )
@@ -133,7 +138,7 @@ def _iter_cells(line: str, mark: str) -> Iterator[TableCell]:
             cell_end = line.find(mark, end) if end >= 0 else -1
             cell_end = len(line) if cell_end < 0 else cell_end
             if end < 0 or line[end + 1 : cell_end].strip():
-                raise Finding(CODE, "a quote that does not end with its cell", QUOTES)
+                raise Finding(CODE, "a quote that is not closed in its cell", QUOTES)
             yield TableCell(line[start + 1 : end].replace('""', '"').strip(), start + 1)
         else:
             cell_end = line.find(mark, cell_start)

@@ -77,8 +77,8 @@ def answer_of(evaluator: VariantEvaluator, values: Mapping[str, str]) -> Variant
 def make_death_result(death: jobs.ProcessDeath) -> VariantResult:
     """Make the result of a variant that ended two processes, or one at the hard end of its time limit."""
     if death.is_time_up:
-        return VariantResult(code="time-limit", reason="the time limit was reached, and the work did not stop")
-    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it was {death.description}, twice")
+        return VariantResult(code="time-limit", reason="the time limit was reached, but the work did not stop")
+    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
 
 
 class Batches:

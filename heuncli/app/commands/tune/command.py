@@ -68,7 +68,7 @@ def require_consistent_options(request: TuneRequest, options: TuningOptions) -> 
         return
     require_writable(request.history, "--history")
     if is_same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.history):
-        message = f"--history {request.history}: that is where the result goes"
+        message = f"--history {request.history}: the result is written to this file"
         raise UsageError(Problem("bad-option", message, hint="name another file"))
 
 
@@ -98,7 +98,7 @@ def run_search(request: TuneRequest, options: TuningOptions, evaluator: VariantE
             timeout.disarm(late=True)
     if trials.time_is_up and trials.best() is None:
         message = "the time limit was reached before any variant was solved"
-        raise LimitError(Problem("time-limit", message, hint="a longer --time-limit"))
+        raise LimitError(Problem("time-limit", message, hint="use a longer --time-limit"))
     return tuning
 
 
@@ -107,8 +107,8 @@ def require_result(results: TuneResults) -> None:
     if results.best is None:
         code, times = Counter(trial.failure[0] for trial in results.history).most_common(1)[0]
         reason = next(trial.failure[1] for trial in results.history if trial.failure[0] == code)
-        message = f"none of {len(results.history)} variants could be solved; {times} of them as this one: {reason}"
-        raise SolveError(Problem(code, message, hint="heun run --set with one of them tells more; or other bounds"))
+        message = f"none of {len(results.history)} variants could be solved; {times} of them for this reason: {reason}"
+        raise SolveError(Problem(code, message, hint="try heun run --set with one of them, or other bounds"))
 
 
 def finish(request: TuneRequest, results: TuneResults, spec: Spec) -> int:

@@ -22,9 +22,9 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
 
 VARIABLES = "VARIABLES  values and bounds, in the unit of the bounds"
-MOVES = "MOVES  how far a variable may move alone, down and up, before the goal is worse"
-MEASURES = "MEASURES  the goal first; left: to the limit, below 0 where it is passed"
-PASTED = "Its numbers, to the bit:"
+MOVES = "MOVES  how far each variable alone may change, down and up, before the goal gets worse"
+MEASURES = "MEASURES  goal first; margin to the limit, negative if exceeded"
+PASTED = "Command that reproduces these numbers exactly:"
 AT_BOUND = {"low": "lower bound", "high": "upper bound", "": ""}
 UNTIL = {"worse": "", "bound": " (bound)", "jump": " (jumps)", "less": "", "more": ""}
 BOUND_OF = {"less": "<", "more": ">"}
@@ -49,14 +49,14 @@ def format_heading(results: TuneResults, scene: TunedScene, units: Units) -> Ite
     """Yield label and text of the lines above the tables."""
     task = results.task
     names = ", ".join(one.name for one in task.variables)
-    kind = "greatest" if task.goal.is_maximised else "least"
+    kind = "maximise" if task.goal.is_maximised else "minimise"
     yield "heun", f"{VERSION}  {scene.title}"
     yield "tune", f"{kind} {task.goal.measure}, by {names}"
     yield "", describe_ending(results, units)
     if not results.is_feasible:
         yield "", describe_nearest_unmet(results, units)
     if results.is_spec_better:
-        yield "", "as it is, outside of the bounds, it is better"
+        yield "", "the spec's own values, outside the bounds, are better"
     yield "", f"{len(results.history)} variants{format_failures(results)}"
 
 
@@ -73,16 +73,20 @@ def describe_ending(results: TuneResults, units: Units) -> str:
         assert results.gain is not None
         unit, size = units.find(results.task.goal.unit)
         gain_text = f"{format_error(size * max(results.gain, results.floor))} {unit}".rstrip()
-        return f"converged: two restarts gained no more than {gain_text}"
+        return f"converged: two restarts improved the goal by no more than {gain_text}"
     if results.ending == "infeasible":
-        return "nothing was found that keeps all limits: this passes them least"
+        return "no values meet all limits: these violate them least"
     why = (
         "the time limit is reached"
         if results.ending == "time"
         else f"all {results.task.max_variants} evaluations are used up"
     )
-    result_text = "this is the best so far" if results.is_feasible else "nothing that keeps all limits was found so far"
-    advice = f"; --evaluations {2 * results.task.max_variants} looks on" if results.ending == "evaluations" else ""
+    result_text = "this is the best so far" if results.is_feasible else "no values meet all limits so far"
+    advice = (
+        f"; --evaluations {2 * results.task.max_variants} continues the search"
+        if results.ending == "evaluations"
+        else ""
+    )
     return f"not converged: {why}; {result_text}{advice}"
 
 
@@ -93,14 +97,14 @@ def describe_nearest_unmet(results: TuneResults, units: Units) -> str:
     one = results.task.constraints[index]
     unit, size = units.find(one.unit)
     excess, limit = size * one.compute_excess(results.best.constraint_values[index]), size * one.limit
-    return f"nearest to being met: {one.measure} {one.sign} {limit:.6g} {unit}, passed by {excess:.3g} {unit}".rstrip()
+    return f"closest limit: {one.measure} {one.sign} {limit:.6g} {unit}, exceeded by {excess:.3g} {unit}".rstrip()
 
 
 def make_variables_table(results: TuneResults) -> TextTable:
     """Make the table of the variables, one row each."""
     assert results.best is not None
     columns = (
-        TextColumn("variable", LEFT), TextColumn("as it is"), TextColumn("best"), TextColumn("from"), TextColumn("to"),
+        TextColumn("variable", LEFT), TextColumn("spec"), TextColumn("best"), TextColumn("from"), TextColumn("to"),
         TextColumn("at", LEFT),
     )  # fmt: skip
     rows = []
@@ -142,8 +146,8 @@ def _format_move(one: ToleranceMove | None) -> str:
 def make_measures_table(results: TuneResults, units: Units) -> TextTable:
     """Make the table of the goal and the constraints, one row each."""
     columns = (
-        TextColumn("measure", LEFT), TextColumn("as it is"), TextColumn("best"), TextColumn("error"),
-        TextColumn("at t [s]"), TextColumn("limit", LEFT), TextColumn("left"), TextColumn("", LEFT),
+        TextColumn("measure", LEFT), TextColumn("spec"), TextColumn("best"), TextColumn("error"),
+        TextColumn("at t [s]"), TextColumn("limit", LEFT), TextColumn("margin"), TextColumn("", LEFT),
     )  # fmt: skip
     assert results.best is not None
     task = results.task
@@ -163,9 +167,7 @@ def make_measures_table(results: TuneResults, units: Units) -> TextTable:
         limit = f"{one.sign} {size * one.limit:.6g}"
         lines.append(_make_measure_row(results, index + 1, one.measure, one.unit, units, (limit, margin, word)))
     note = (
-        ()
-        if results.spec_outcome.readings
-        else (f"as it is: {results.spec_outcome.reason} [{results.spec_outcome.code}]",)
+        () if results.spec_outcome.readings else (f"spec: {results.spec_outcome.reason} [{results.spec_outcome.code}]",)
     )
     return TextTable(MEASURES, columns, tuple(lines), note)
 

@@ -9,69 +9,74 @@ FORMATS = ("table", "json")
 
 
 class TuneRequest(NamedTuple):
-    """Find the values of parameters for which a measure is least, or greatest, within limits on others."""
+    """Find the parameter values that minimise or maximise a result, within limits on other results."""
 
     words: Annotated[
         tuple[str, ...],
         Option(
             (),
-            "The scene's YAML file, and what is varied between which bounds: m=0:3kg, r=20:60mm.",
+            "YAML file of the spec, and the varied parameters with their bounds: m=0:3kg, r=20:60mm.",
             "SPEC NAME=LOW:HIGH...",
             completes="spec",
         ),
     ]
     minimise: Annotated[
         str | None,
-        Option(("--minimise",), "What is to be least: 'max foundation.force'.", "WHAT", completes="measure"),
+        Option(("--minimise",), "Result to minimise: 'max foundation.force'.", "WHAT", completes="measure"),
     ] = None
     maximise: Annotated[
         str | None,
-        Option(("--maximise",), "What is to be greatest: 'min joints.main.axial'.", "WHAT", completes="measure"),
+        Option(("--maximise",), "Result to maximise: 'min joints.main.axial'.", "WHAT", completes="measure"),
     ] = None
     subject_to: Annotated[
         tuple[str, ...],
         Option(
             ("--subject-to",),
-            "What is to hold: 'max abs sections.web.M2 < 40 N*m'. May be repeated.",
+            "Limit on a result: 'max abs sections.web.M2 < 40 N*m'. May be repeated.",
             "CONDITION",
             completes="measure",
         ),
     ] = ()
     evaluations: Annotated[
         int | None,
-        Option(("--evaluations",), "At most so many variants. Default: 200, and 200 for each variable.", "N"),
+        Option(("--evaluations",), "Maximum number of variants. Default: 200 plus 200 per variable.", "N"),
     ] = None
     precision: Annotated[
         float | None,
-        Option(("--precision",), "Look for no gain below that share of what it ranges over. Default: 1e-6.", "SHARE"),
+        Option(
+            ("--precision",),
+            "Smallest gain to search for, relative to the range of the result. Default: 1e-6.",
+            "SHARE",
+        ),
     ] = None
     seed: Annotated[
-        int | None, Option(("--seed",), "Of what is drawn: the same seed, the same variants. Default: 0.", "N")
+        int | None, Option(("--seed",), "Random seed; the same seed gives the same variants. Default: 0.", "N")
     ] = None
     format: Annotated[
         str | None,
         Option(
             ("--format",),
-            "How to write the result. Default: by the name's end of -o FILE, else table.",
+            "Output format. Default: from the extension of -o FILE, else table.",
             "|".join(FORMATS),
         ),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
-    history: Annotated[
-        str | None, Option(("--history",), "Write all variants there, too, in their order: history.csv.", "FILE")
-    ] = None
+    history: Annotated[str | None, Option(("--history",), "Also write all variants in order: history.csv.", "FILE")] = (
+        None
+    )
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     tolerance: Annotated[float | None, TOLERANCE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
     units: Annotated[str | None, UNITS] = None
     jobs: Annotated[
-        int | None, Option(("--jobs", "-j"), "Variants at once, where they do not hang on each other.", "N")
+        int | None, Option(("--jobs", "-j"), "Number of variants solved in parallel, where they are independent.", "N")
     ] = None
     strict: Annotated[
-        bool, Option(("--strict",), "Leave with 1 if it did not converge, or nothing keeps all limits.")
+        bool, Option(("--strict",), "Exit with 1 if the search did not converge, or nothing meets all limits.")
     ] = False
     time_limit: Annotated[
-        float | None, Option(("--time-limit",), "End the search after that long, and tell the best so far.", "SECONDS")
+        float | None,
+        Option(("--time-limit",), "Stop the search after this time and report the best result so far.", "SECONDS"),
     ] = None
     quiet: Annotated[bool, QUIET] = False

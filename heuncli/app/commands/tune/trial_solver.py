@@ -82,7 +82,7 @@ def make_death_result(values: Mapping[str, str], death: jobs.ProcessDeath) -> Va
     """Make the result of a variant whose process died."""
     if death.is_time_up:
         return VariantResult(code=TIME_LIMIT_CODE)
-    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it was {death.description}, twice")
+    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
 
 
 def to_outcome(result: VariantResult) -> TrialOutcome:

@@ -48,7 +48,7 @@ def parse_options(request: TuneRequest) -> TuningOptions:
     path, intervals = parse_words(request.words)
     goals = [(text, greatest) for text, greatest in ((request.minimise, False), (request.maximise, True)) if text]
     if len(goals) != 1:
-        message = "both --minimise and --maximise are given" if goals else "what is to be tuned is not said"
+        message = "both --minimise and --maximise are given" if goals else "no goal is given"
         hint = "--minimise WHAT or --maximise WHAT, such as --minimise 'max foundation.force'"
         raise UsageError(Problem("bad-option", f"tune: {message}", hint=hint))
     ((goal, greatest),) = goals
@@ -62,17 +62,17 @@ def parse_words(words: Sequence[str]) -> tuple[str, list[Interval]]:
     intervals = [parse_interval(word) for word in assignments]
     names = [interval.name for interval in intervals]
     if not names:
-        raise UsageError(Problem("bad-option", "tune: nothing is varied", hint=INTERVAL_HINT))
+        raise UsageError(Problem("bad-option", "tune: no parameter is varied", hint=INTERVAL_HINT))
     for name in names:
         if names.count(name) > 1:
-            raise AxisError(name, "is varied twice", "one interval a parameter")
+            raise AxisError(name, "is varied twice", "give one interval per parameter")
     return path, intervals
 
 
 def _parse_constraint(text: str) -> MeasureCondition:
     condition = parse_condition(text, FORM, HINT)
     if condition.sign == "=":
-        raise AxisError(text, "a constraint has < or >: no two numbers are equal to the last bit", HINT)
+        raise AxisError(text, "a limit has < or >: = cannot be met exactly", HINT)
     return condition
 
 
@@ -124,7 +124,7 @@ def parse_precision(request: TuneRequest) -> float:
     if requested is None:
         return TuneTask.precision
     if not (math.isfinite(requested) and 0.0 < requested <= 0.1):
-        message = f"--precision {requested:g}: expected more than 0, and 0.1 at most"
+        message = f"--precision {requested:g}: expected more than 0 and at most 0.1"
         raise UsageError(Problem("bad-option", message, hint="such as --precision 1e-6"))
     return requested
 

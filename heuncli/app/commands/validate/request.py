@@ -11,4 +11,4 @@ class ValidateRequest(NamedTuple):
 
     specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...", completes="spec")]
     time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
-    quiet: Annotated[bool, Option(("--quiet", "-q"), "Nothing but errors.")] = False
+    quiet: Annotated[bool, Option(("--quiet", "-q"), "Print only errors.")] = False

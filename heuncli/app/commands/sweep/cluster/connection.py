@@ -19,14 +19,14 @@ from heuncli.base.errors import LimitError, Problem
 
 PATIENCE = 10.0  # seconds for an answer of the scheduler
 SCHEMES = ("tcp", "tls")
-EXAMPLE = "such as --dask tcp://127.0.0.1:8786; `dask scheduler` tells its address as it starts"
+EXAMPLE = "such as --dask tcp://127.0.0.1:8786; `dask scheduler` prints its address at start"
 INSTALL = 'pip install "heuncli[dask]"'
 TLS = "tls:// takes certificates: DASK_DISTRIBUTED__COMM__TLS__CA_FILE and the other keys of distributed.comm.tls"
 # Hints for addresses with another scheme.
 SCHEME_HINTS = {
-    "http": "that is a dashboard; the scheduler is beside it: --dask tcp://HOST:8786",
-    "https": "that is a dashboard; the scheduler is beside it: --dask tcp://HOST:8786",
-    "inproc": "a cluster within another process cannot be reached: LocalCluster(processes=True)",
+    "http": "this is the dashboard; the scheduler has another port: --dask tcp://HOST:8786",
+    "https": "this is the dashboard; the scheduler has another port: --dask tcp://HOST:8786",
+    "inproc": "a cluster inside another process cannot be reached; use LocalCluster(processes=True)",
 }
 LOGGERS = ("distributed", "distributed.client", "distributed.core", "tornado", "tornado.application", "asyncio")
 IGNORED_WARNINGS = ("Sending large graph", "\\n?Mismatched versions")  # the beginnings of warnings
@@ -36,7 +36,7 @@ class ClusterGone(LimitError):
     """The cluster went away during the work; earlier results remain in the store, if there is one."""
 
     def __init__(self, address: str, why: str) -> None:
-        hint = "what was answered before is kept by --store FILE; the same command goes on from there"
+        hint = "--store FILE keeps solved variants; the same command continues from there"
         super().__init__(Problem("cluster-gone", f"--dask {address}: {why}", hint=hint))
 
 
@@ -83,7 +83,7 @@ def _require_listener(address: str, host: str, port: int) -> None:
     try:
         socket.create_connection((host, port), timeout=PATIENCE).close()
     except socket.gaierror:
-        raise _make_no_cluster_error(address, f"there is no machine '{host}'", EXAMPLE) from None
+        raise _make_no_cluster_error(address, f"unknown host '{host}'", EXAMPLE) from None
     except (OSError, UnicodeError) as error:
         is_refused = isinstance(error, ConnectionRefusedError)
         is_timeout = isinstance(error, TimeoutError)
@@ -91,7 +91,7 @@ def _require_listener(address: str, host: str, port: int) -> None:
             "nothing listens there" if is_refused else f"no answer within {PATIENCE:g} s" if is_timeout else str(error)
         )
         raise _make_no_cluster_error(
-            address, why, "is the scheduler running? `dask scheduler` tells its address"
+            address, why, "is the scheduler running? `dask scheduler` prints its address"
         ) from None
 
 

@@ -38,7 +38,7 @@ UPDATE_INTERVAL = 1.0  # seconds between updates of the list of workers
 LONGEST_WAIT = 600.0  # seconds without a worker
 FETCH_TIMEOUT = 2.0  # seconds to fetch the results of a finished batch
 MAX_MISSES = 10  # how often results may fail to arrive from a connected worker
-SAME_HEUN = f"the same heun on every worker: pip install heuncli=={VERSION}"
+SAME_HEUN = f"install the same heun on every worker: pip install heuncli=={VERSION}"
 NumberedResult = tuple[int, VariantResult]
 
 
@@ -142,9 +142,7 @@ class _Scheduler:
         try:
             lost_batches = list(self.pool.update())
         except Exception as error:
-            raise ClusterGone(
-                self.address, f"the scheduler does not answer any more: {format_exception(error)}"
-            ) from None
+            raise ClusterGone(self.address, f"the scheduler no longer answers: {format_exception(error)}") from None
         self.last_update = now
         for batch in lost_batches:
             yield from self._handle_lost(batch)
@@ -152,7 +150,7 @@ class _Scheduler:
 
     def _require_connection(self) -> None:
         if self.client.status != "running":
-            raise ClusterGone(self.address, "the scheduler went away")
+            raise ClusterGone(self.address, "the scheduler was lost")
 
     def _require_workers(self, now: float) -> None:
         """Raise UsageError if no worker can be used, ClusterGone if none comes."""
@@ -169,7 +167,7 @@ class _Scheduler:
                 Problem("no-worker", f"--dask {self.address}: no worker can be used: {reason_text}", hint=SAME_HEUN)
             )
         if now - self.last_with_workers > LONGEST_WAIT:
-            raise ClusterGone(self.address, f"there was no worker for {LONGEST_WAIT:g} s")
+            raise ClusterGone(self.address, f"no worker was available for {LONGEST_WAIT:g} s")
         if not self.waiting:
             self.waiting = True
             self.report(f"{self.address}: no workers; waiting for them")
@@ -219,7 +217,7 @@ class _Scheduler:
             if task.misses < MAX_MISSES:
                 self.pool.wait_again(key, task)
             else:
-                self._refuse_worker(task, f"its answers do not arrive: {format_exception(error)}")
+                self._refuse_worker(task, f"its results do not arrive: {format_exception(error)}")
             return
         if task.batch is None:
             version, worker_version = task_result
@@ -232,7 +230,7 @@ class _Scheduler:
     ) -> Iterator[NumberedResult]:
         """Yield the results of a batch, or of its first variants, and put back the rest."""
         if partial.failure:
-            self.pool.refuse(worker, f"it cannot solve the scene: {partial.failure}")
+            self.pool.refuse(worker, f"it cannot solve the model: {partial.failure}")
         if partial.results:
             worker.pace.record_time(len(partial.results), partial.seconds)
         if partial.missing_file:
@@ -243,7 +241,7 @@ class _Scheduler:
     def _handle_lost(self, batch: VariantBatch, workers: int = 1) -> Iterator[NumberedResult]:
         """Put back a batch whose worker is gone, or yield the result of the variant that ends workers."""
         if self.queue.return_lost(batch, workers):
-            reason = f"the worker that solved it went away, {WORKERS} times and with nothing else to do"
+            reason = f"the worker that solved it was lost, {WORKERS} times and with no other task"
             yield _get_number(batch.variants[0]), VariantResult(code=WORKER_DIED, reason=reason)
 
     def _refuse_worker(self, task: ClusterTask, why: str) -> None:
@@ -266,5 +264,5 @@ def _get_number(variant: Variant) -> int:
 def _explain_failure(error: BaseException | None) -> str:
     """Return why a worker cannot be used, in words."""
     if isinstance(error, ModuleNotFoundError) and "heuncli" in str(error):
-        return "there is no heun"
-    return f"it cannot be asked: {format_exception(error)}"
+        return "heun is not installed"
+    return f"it cannot be queried: {format_exception(error)}"

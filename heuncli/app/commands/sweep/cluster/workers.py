@@ -128,18 +128,18 @@ class WorkerPool:
         if worker_version is None:
             self.refuse(worker, f"heun {version} there, {VERSION} here")
         elif worker_version.text != self.own_version.text:
-            self.refuse(worker, f"heun {VERSION} there, too, but with another text")
+            self.refuse(worker, f"heun {VERSION} there too, but with different code")
         else:
             worker.is_usable = True
             if worker_version.kernel != self.own_version.kernel:
                 own_kernel = self.own_version.kernel
                 self.add_remark(
                     worker,
-                    f"its kernel is the {worker_version.kernel} one, here it is the {own_kernel} one: the same bits",
+                    f"its kernel is the {worker_version.kernel} one, here it is the {own_kernel} one: same results",
                 )
             if worker.threads > 1:
                 better = f"dask worker --nworkers {worker.threads} --nthreads 1"
-                self.add_remark(worker, f"of its {worker.threads} threads one works for heun; quicker: {better}")
+                self.add_remark(worker, f"heun uses one of its {worker.threads} threads; faster: {better}")
 
     def refuse(self, worker: ClusterWorker, why: str) -> None:
         """Give a worker no more work."""

@@ -18,7 +18,7 @@ from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
 from heuncli.base.errors import Problem, SpecError
 
 GROUP = 50_000  # rows that are written together
-INSTALL = 'pip install "heuncli[parquet]"; or -o sweep.csv, which needs nothing'
+INSTALL = 'pip install "heuncli[parquet]"; or -o sweep.csv, which needs no package'
 
 
 class ByteSink(io.RawIOBase):
@@ -53,7 +53,7 @@ class ByteSink(io.RawIOBase):
 def require_parquet() -> None:
     """Raise SpecError before the work if pyarrow is missing."""
     if importlib.util.find_spec("pyarrow") is None:
-        raise SpecError(Problem("missing-extra", "Parquet is written by pyarrow, which is not installed", hint=INSTALL))
+        raise SpecError(Problem("missing-extra", "Parquet requires pyarrow, which is not installed", hint=INSTALL))
 
 
 def iter_parquet(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[bytes]:

@@ -16,11 +16,11 @@ from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, choose_style, largest_magnitude, trim_zeros
 from heuncli.study.quantities.table_units import Units
 
-LEAST, GREATEST = "least", "greatest"
+LEAST, GREATEST = "min", "max"
 NOTES = {
     OPEN: OPEN_NOTE,
-    UNKNOWN: "?: not known: beyond the horizon, beside a singular pose, or as small as its error",
-    "-": "-: does not happen in this run",
+    UNKNOWN: "?: unknown: past the horizon, next to a singular position, or as small as its error",
+    "-": "-: does not occur in this run",
 }
 
 

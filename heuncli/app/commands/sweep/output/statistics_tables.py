@@ -17,17 +17,17 @@ from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.table_units import Units
 
 MAX_BLOCKS = 12  # combinations and measures that are shown without --all
-SHARE = f"{100 * CONFIDENCE:.0f} of 100"
-HEADING = f"STATISTICS  each with its interval, which {SHARE} such samples have around the true one"
-INDICES = f"SOBOL INDICES  shares of the variance, with intervals that {SHARE} such samples have around the true ones"
-EVEN = "{} is more even than independent draws, for which the intervals are: the means are nearer than they say"
+SHARE = f"{100 * CONFIDENCE:.0f} %"
+HEADING = f"STATISTICS  with {SHARE} confidence intervals"
+INDICES = f"SOBOL INDICES  fractions of the variance, with {SHARE} confidence intervals"
+EVEN = "{} is more uniform than independent samples, for which the intervals hold: the means are more accurate"
 CALLED = {"lhs": "a Latin hypercube", "sobol": "a Sobol sequence"}
-SPOILT = "{}: the runs' own errors, up to {}, are not small beside these intervals"
+SPOILT = "{}: errors of the runs, up to {}, are not small compared with these intervals"
 ERROR_SHARE = 0.1  # share of an interval; larger errors of the runs get a note
 NO_INDICES = "{}: no Sobol indices: "
 FLAT = "it varies by no more than the errors of its runs"
-UNBOUNDED = "{}: no intervals of {} samples: they take " + f"{MIN_BOUNDED} or more (--samples {MIN_BOUNDED})"
-FEW = "all {} variants of a sample are known of {} samples only"
+UNBOUNDED = "{}: no intervals for {} samples: " + f"{MIN_BOUNDED} or more needed (--samples {MIN_BOUNDED})"
+FEW = "all {} variants of a sample are known for {} samples only"
 
 
 def make_statistics_tables(
@@ -76,7 +76,7 @@ def _make_statistics_table(
         if has_large_errors(one):
             notes.append(SPOILT.format(format_label(head, one), f"{format_error(size * one.error)} {unit}".rstrip()))
     if any("-" in row for row in rows):
-        notes.append("-: so small a sample does not bound it on that side")
+        notes.append("-: the sample is too small for a bound on this side")
     if any(one.left_out for one in statistics):
         notes.append("left out: could not be solved, or the measure is not known")
     if omitted:
@@ -89,7 +89,7 @@ def _make_notes(head: SweepHead) -> list[str]:
     draws = head.plan.draws
     assert draws is not None
     laws = {law.law for law in draws.laws}
-    notes = [f"drawn with --seed {draws.seed}: the same call draws the same"]
+    notes = [f"random samples with --seed {draws.seed}: the same call gives the same samples"]
     return notes + [EVEN.format(CALLED[law]) for law in CALLED if law in laws]
 
 
@@ -114,7 +114,7 @@ def _make_index_table(
     names = ("", "first order", "from", "to", "total", "from", "to")
     columns = tuple(TextColumn(name, "left" if not name else "point") for name in names)
     rows: list[tuple[str, ...] | str] = []
-    notes: list[str] = ["first order: of the parameter alone; total: with all that it does together with others"]
+    notes: list[str] = ["first order: of the parameter alone; total: including its interactions"]
     for one in statistics:
         if one.indices is None:
             why = FLAT if one.is_constant else FEW.format(len(laws) + 2, one.samples)

@@ -18,14 +18,14 @@ from heuncli.study.quantities.table_units import Units
 
 SPARK_WIDTH = 40  # letters of a line
 MAX_COURSES = 12  # sparklines of a measure shown without --all
-HEADING = "MEASURES  least and greatest, and the variants that have them"
+HEADING = "MEASURES  minimum and maximum, and their variants"
 
 
 def make_summary_table(
     head: SweepHead, selection: ShownRows, units: Units, spark_letters: str, all_of_them: bool
 ) -> TextTable:
     """Make the table with a row per measure; with several axes a row for each combination of those before the last."""
-    rows: list[tuple[str, ...]] = [("measure", "least", "", "greatest", "", format_course_head(head.plan))]
+    rows: list[tuple[str, ...]] = [("measure", "min", "", "max", "", format_course_head(head.plan))]
     notes: list[str] = []
     for k, measure in enumerate(head.measures):
         unit, size = units.find(measure.unit)
@@ -42,9 +42,9 @@ def make_summary_table(
         rows.append((f"{measure.text} [{unit}]" if unit else measure.text, *ends, letters[0]))
         rows += [("", "", "", "", "", course) for course in letters[1:]]
         if left_out:
-            notes.append(f"{measure.text}: {format_count(left_out, 'line')} of letters more: --all")
+            notes.append(f"{measure.text}: {format_count(left_out, 'more line')}: --all")
         if best is not None and best.is_constant:
-            notes.append(f"{measure.text}: the same in all variants, as far as their errors tell")
+            notes.append(f"{measure.text}: the same in all variants within their errors")
     heads, *cells = zip(*(pad_words(column) for column in zip(*rows, strict=True)), strict=True)
     vectors = ("", "least", "least", "greatest", "greatest", "")
     columns = (TextColumn(head, vector=vector) for head, vector in zip(heads[1:], vectors[1:], strict=True))
@@ -54,7 +54,7 @@ def make_summary_table(
 def format_course_head(plan: Plan) -> str:
     """Return what the sparklines run over."""
     if plan.draws is not None:
-        return "how often, from least to greatest"
+        return "frequency, from min to max"
     if plan.together:
         return "over the variants"
     return f"over {plan.axes[-1].name}" if plan.axes else ""

@@ -65,7 +65,7 @@ def print_warnings_summary(summary: SweepWarnings, quiet: bool) -> None:
     for text, count in summary.warnings.values():
         print_stderr(f"warning: heun: {text} ({_format_share(count, summary.rows)})")
     if summary.more:
-        print_stderr(f"warning: heun: and {summary.more} warnings of other kinds; the rows have them all")
+        print_stderr(f"warning: heun: and {summary.more} warnings of other kinds; the rows list all")
     for measure, count in summary.absent.items():
         if count == summary.rows - summary.failure_count:
             print_stderr(f"warning: heun: {measure}: no variant has it")

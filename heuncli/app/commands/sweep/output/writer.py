@@ -37,7 +37,7 @@ def require_writable_form(output: SweepOutput) -> None:
     if output.form != "parquet":
         return
     if output.output in (None, files.STDOUT):
-        raise UsageError(Problem("bad-option", "parquet goes to a file only", hint="name it: -o sweep.parquet"))
+        raise UsageError(Problem("bad-option", "parquet requires a file", hint="name the file: -o sweep.parquet"))
     from heuncli.app.commands.sweep.output.as_parquet import require_parquet
 
     require_parquet()
