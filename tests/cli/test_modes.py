@@ -75,8 +75,16 @@ NEAR_A_ROOT = with_force("{type: torque, joint: rail, value: '-10*sqrt(rail.trav
     [
         (with_force("{type: force, on: bob.b, vector: [sin(t), 0, 0]}"), "no-modes", "forces.f depends on t"),
         (with_force("{type: force, on: bob.b, vector: [1, 0, 0]}"), "not-at-rest", "accelerates"),
-        (with_force("{type: torque, joint: hinge, value: -3*sign(hinge.rate)}"), "no-modes", "forces.f has a jump or kink"),
-        (with_force("{type: torque, joint: hinge, value: -3*abs(hinge.angle)}"), "no-modes", "forces.f has a jump or kink"),
+        (
+            with_force("{type: torque, joint: hinge, value: -3*sign(hinge.rate)}"),
+            "no-modes",
+            "forces.f has a jump or kink",
+        ),
+        (
+            with_force("{type: torque, joint: hinge, value: -3*abs(hinge.angle)}"),
+            "no-modes",
+            "forces.f has a jump or kink",
+        ),
         (with_force("{type: spring, from: ground.O, to: cart.c, stiffness: 9, length: 1}"), "no-modes", "no direction"),
         (NEAR_A_ROOT, "no-modes", "forces.f has no derivative there"),
     ],

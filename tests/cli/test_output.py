@@ -157,7 +157,9 @@ def test_any_name_that_the_system_takes(name: str, tmp_path: Path, monkeypatch: 
     assert list(tmp_path.iterdir()) == [tmp_path / name]
 
 
-@pytest.mark.parametrize(("denied", "told"), [("file", "no permission to write the file"), ("", "no permission to write in the folder .")])
+@pytest.mark.parametrize(
+    ("denied", "told"), [("file", "no permission to write the file"), ("", "no permission to write in the folder .")]
+)
 def test_rights_are_asked_for_before_the_work(
     denied: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -48,7 +48,9 @@ def half_turn_of(scene: str, **options: object) -> SolveError:
 def test_a_spin_comes_to_its_half_turn_at_pi() -> None:
     error = half_turn_of(spinner(f"[{2 * math.pi}]"), reduce=False)
     assert error.reached == pytest.approx(math.pi, abs=1e-11)
-    assert "at t = 3.14159265 s: wheel reaches half a revolution from its start orientation" in error.problems[0].message
+    assert (
+        "at t = 3.14159265 s: wheel reaches half a revolution from its start orientation" in error.problems[0].message
+    )
     assert "DOP853-recentred" in str(error.problems[0].hint)
 
 

@@ -361,8 +361,6 @@ def test_a_law_that_jerks_a_taut_rope_is_told() -> None:
 @pytest.mark.parametrize(("x", "where"), [(0.3, 0.3), (0.1, 0.1)])
 def test_an_end_that_lies_on_its_sheave_is_told(x: float, where: float) -> None:
     text = atwood("free").replace("through: [a.top, {", f"through: [{{body: sheave, at: [{x}, 0]}}, {{")
-    with pytest.raises(
-        SolveError, match=f"this point is {where:g} m from the axis of the sheave after"
-    ) as refused:
+    with pytest.raises(SolveError, match=f"this point is {where:g} m from the axis of the sheave after") as refused:
         solved(text)
     assert refused.value.problems[0].entry_path == "couplings.rope.through.0"

@@ -50,7 +50,10 @@ def test_two_held_positions_that_contradict() -> None:
     )
     code, text = refusal(s)
     assert code == "held-conflict"
-    assert "joint j (ball): its points on a and b remain 0.25 m from where the joint requires them; both are prescribed" in text
+    assert (
+        "joint j (ball): its points on a and b remain 0.25 m from where the joint requires them; both are prescribed"
+        in text
+    )
     assert "leave out the position of one of them" in text
 
 

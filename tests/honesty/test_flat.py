@@ -38,7 +38,9 @@ def test_what_leaves_the_plane_is_told_with_its_number(part: str, size: float, w
 def test_a_force_in_time_is_not_looked_at_by_sampling(force: str) -> None:
     """Only what is written as zero is."""
     told = found(swing().replace('["2*t", 0.0, 1]', f'["2*t", "{force}", 1]'))
-    assert told == ("not solved in the plane normal to y: forces.push.vector varies along y, of which 1 points out of the plane",)
+    assert told == (
+        "not solved in the plane normal to y: forces.push.vector varies along y, of which 1 points out of the plane",
+    )
 
 
 DRIVEN_OUT = """

@@ -102,7 +102,9 @@ def test_a_frame_that_is_driven_in_time() -> None:
     drive = 'drives: {{d: {{joint: r2, length: "{}"}}}}\n'
     length = float(np.sqrt(4.0))
     assert "is fixed to the ground by joints" in told(carried(BALL, *RODS[:3], more=drive.format(length)))
-    assert "is fixed to the ground by joints" not in told(carried(BALL, *RODS[:3], more=drive.format(f"{length} + 0.01*t**2")))
+    assert "is fixed to the ground by joints" not in told(
+        carried(BALL, *RODS[:3], more=drive.format(f"{length} + 0.01*t**2"))
+    )
 
 
 def test_a_slider_at_its_dead_centre_is_not_held() -> None:

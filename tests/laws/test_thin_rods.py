@@ -182,7 +182,9 @@ def test_a_point_mass_held_aside_is_refused(at: list[float], normal: list[float]
     Of its two slides and three turns one combination moves no mass. Whatever the directions, it is that which is told,
     and not what rounding leaves of its inertia.
     """
-    with pytest.raises(SolveError, match=r"a degree of freedom has no inertia: bodies\.b has no inertia about its axis"):
+    with pytest.raises(
+        SolveError, match=r"a degree of freedom has no inertia: bodies\.b has no inertia about its axis"
+    ):
         solved(ASIDE.format(at=at, normal=normal) + more)
 
 
