@@ -143,7 +143,9 @@ def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> N
     env = {**os.environ, "PAGER": "sed s/^/paged:/", "TERM": "dumb"}
     assert "paged:" in on_a_terminal(["explain", "signs"], folder, env)
     assert "paged:" not in on_a_terminal(["explain", "signs", "--no-pager"], folder, env)
-    assert "for details: heun explain unknown-key" in on_a_terminal(["run", "wrong.yaml"], folder, env).replace("\r", "")
+    assert "for details: heun explain unknown-key" in on_a_terminal(["run", "wrong.yaml"], folder, env).replace(
+        "\r", ""
+    )
     piped = subprocess.run(
         [sys.executable, "-m", "heuncli", "run", "wrong.yaml"], cwd=folder, capture_output=True, text=True
     )

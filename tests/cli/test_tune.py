@@ -53,7 +53,10 @@ def test_the_table_and_the_line_that_can_be_pasted(heun: Heun) -> None:
     words = ["b=1.05:1.9m", "--minimise", "joints.k.force", "--subject-to", "joints.a.force > 0.02 kN"]
     done = heun("tune", "gable.yaml", *words)
     assert done.returncode == 0 and done.stderr == ""
-    assert "tune  minimise joints.k.force, by b\n      converged: two restarts improved the goal by no more than" in done.stdout
+    assert (
+        "tune  minimise joints.k.force, by b\n      converged: two restarts improved the goal by no more than"
+        in done.stdout
+    )
     for said in ("\nVARIABLES ", "\nb [m] ", "\nMOVES ", "\nMEASURES ", "\njoints.k.force [N] ", "> 20"):
         assert said in done.stdout
     *_, title, line = done.stdout.splitlines()
@@ -233,7 +236,7 @@ def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--format", "csv"], "known: table, json"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "hanging.yaml", "--format", "json"], "the spec itself"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--history", "hanging.yaml"], "the spec itself"),
-        (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "a.json", "--history", "a.json"], "the result is written to this file"),
+        (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "a.json", "--history", "a.json"], "result is written to this"),
         (["wrong.yaml", "m=1:2kg", *WEIGHT], "[unknown-joint-type]"),
     ],
 )  # fmt: skip
