@@ -236,7 +236,7 @@ def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--format", "csv"], "known: table, json"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "hanging.yaml", "--format", "json"], "the spec itself"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--history", "hanging.yaml"], "the spec itself"),
-        (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "a.json", "--history", "a.json"], "the result is written to this file"),
+        (["hanging.yaml", "m=1:2kg", *WEIGHT, "-o", "a.json", "--history", "a.json"], "result is written to this"),
         (["wrong.yaml", "m=1:2kg", *WEIGHT], "[unknown-joint-type]"),
     ],
 )  # fmt: skip

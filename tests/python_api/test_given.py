@@ -76,7 +76,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: heuncli.solve("none.yaml"), "none.yaml:1:1: there is no such file [unreadable]"),
     (lambda: heuncli.solve({"heun": 1, "bodies": {1: {}}}), "<mapping>: bodies: expected a string as key, found int"),
     (lambda: heuncli.solve({"heun": 1, "forces": {"f": {True: "a"}}}), "hint: PyYAML reads the key `on` as True"),
-    (lambda: heuncli.solve({"heun": 1, "bodies": {"a": {"mass": {2}}}}), "<mapping>: bodies.a.mass: set is not allowed"),
+    (lambda: heuncli.solve({"heun": 1, "bodies": {"a": {"mass": {2}}}}), "<mapping>: bodies.a.mass: set is not"),
     (lambda: heuncli.solve(CYCLE), "nested more than 64 levels deep [too-deep]"),
     (lambda: heuncli.solve({}), "<mapping>: "),
     (lambda: heuncli.solve({**REST, "gravty": [0, 0, 1]}), "<mapping>: gravty: "),

@@ -37,8 +37,8 @@ class RunRequest(NamedTuple):
         str | None,
         Option(
             ("--only",),
-            "Report only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, shares; "
-            "or entries: joints.NAME, foundation.axis, ...",
+            "Report only these: motion, points, foundation, joints, sections, forces, energy, impulses, events, "
+            "shares; or entries: joints.NAME, foundation.axis, ...",
             "REPORT,...",
             completes="only",
         ),
