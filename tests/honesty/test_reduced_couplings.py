@@ -84,7 +84,7 @@ def gear(more: str = "") -> str:
 
 
 NOT_FLAT = {  # of a frame on a ball, and what is told
-    "teeth that push along the axes": (scene, (gear(", helix: 0.01"),), "the force of couplings.m points out of the plane"),
+    "teeth that push along the axes": (scene, (gear(", helix: 0.01"),), "couplings.m points out of the plane"),
     "a rope's point beside it": (scene, (ROPE, "ball", "pin", "[0, 0, 1]", 1e-9), "a point of couplings.m is 1e-09"),
     "a turn that the plane has not": (
         scene, (RATIO, "pin", "pin", "[1, 0, 0]"), "couplings.m uses second.angle, an out-of-plane coordinate"

@@ -60,7 +60,7 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     "unknown type": ([*TWO, joint("j", "a", "b", kind="ball")], [(4, "import-joint", "three revolute")]),
     "axis of nothing": ([*TWO, joint("j", "a", "b", '<axis xyz="0 0 0"/>')], [(4, "import-joint", "axis is 0 0 0")]),
     "axis of two": ([*TWO, joint("j", "a", "b", '<axis xyz="0 1"/>')], [(4, "import-number", "found 2")]),
-    "comma": ([*TWO, joint("j", "a", "b", '<origin xyz="0,1,2"/>')], [(4, "import-number", "separate numbers by spaces")]),
+    "comma": ([*TWO, joint("j", "a", "b", '<origin xyz="0,1,2"/>')], [(4, "import-number", "numbers by spaces")]),
     "macro": ([*TWO, joint("j", "a", "b", '<origin xyz="${x} 0 0"/>')], [(4, "import-number", "xacro")]),
     "xacro": (["<xacro:arm/>"], [(2, "import-xacro", "<xacro:arm> is a xacro macro")]),
     "unknown part": ([*TWO, joint("j", "a", "b"), "<loop_joint/>"], [(5, "import-part", "<loop_joint>")]),
