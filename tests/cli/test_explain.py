@@ -233,7 +233,7 @@ def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> N
     assert "paged:" in on_a_terminal(["explain", "signs"], folder, env)
     assert "paged:" not in on_a_terminal(["explain", "signs", "--no-pager"], folder, env)
     assert on_a_terminal(["explain", "signs"], folder, env).startswith("paged:Sections of this page; heun explain ")
-    told = on_a_terminal(["run", "wrong.yaml"], folder, env).replace("", "")
+    told = on_a_terminal(["run", "wrong.yaml"], folder, env).replace("\r", "")
     assert "for details: heun explain unknown-key" in told
     piped = subprocess.run(
         [sys.executable, "-m", "heuncli", "run", "wrong.yaml"], cwd=folder, capture_output=True, text=True

@@ -91,7 +91,9 @@ NOT_FLAT = {  # and what is told
     "a spring beside it": (Arm(point=1e-9, tail=spring()), "a point of forces.f is 1e-09 m off the plane"),
     "a blow at 1 s": (Arm(tail="impulses: {h: {on: b.e, vector: [0, 1, 1.0e-9], time: 1}}"),
                       "impulses.h at t = 1 s has an out-of-plane component of 1e-09 N s"),
-    "a couple": (Arm(tail=load_of("[1.0e-6, 0, 1]", "couple")), "forces.f.vector has an out-of-plane component of 1e-06"),
+    "a couple": (
+        Arm(tail=load_of("[1.0e-6, 0, 1]", "couple")), "forces.f.vector has an out-of-plane component of 1e-06 N m"
+    ),
     "a force from 1 s on": (Arm(tail=load_of('[0, 0, "0 if t < 1 else 5"]')), "forces.f.vector varies along z"),
     "a table that begins at 0": (
         Arm(tail="tables: {w: {x: [0, 1, 2], y: [0, 0, 5]}}\n" + load_of('[0, 0, "table(w, t)"]')),
