@@ -1,4 +1,4 @@
-/** @file The machine on its canvas: what stands behind, bodies, what stands on top. */
+/** @file The machine on its canvas: objects behind, bodies, what stands on top. */
 
 import { cleared } from "./canvases.js";
 import { drawLoad, drawLoadScale } from "./loads.js";

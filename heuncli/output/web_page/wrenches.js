@@ -105,7 +105,7 @@ const turning = (row) => row.path.endsWith("moment");
  * @param {number} size by how much longer than usual they are drawn
  */
 export function drawArrows(pen, view, poses, choice, frame, colours, size, tell) {
-  if (choice.frame !== undefined && choice.frame !== frame) return; // a blow is at its own instant alone
+  if (choice.frame !== undefined && choice.frame !== frame) return; // an impulse is at its own instant alone
   const metres = scales(choice, view, size);
   for (const { row, at, name } of choice.rows) {
     const vector = vectorAt(row, frame);
