@@ -323,7 +323,7 @@ def test_text_for_a_pipe_counts_against_the_limit(heun: Heun, folder: Path, monk
     monkeypatch.setattr("heuncli.output.tables.export._format_json", rung)
     done = heun("run", "hanging.yaml", "--format", "json", "--time-limit", "60")
     assert (done.returncode, done.stdout) == (4, "")
-    assert "while the results were written down" in done.stderr
+    assert "while the results were written" in done.stderr
 
 
 def test_long_text_under_a_limit_is_the_same_text(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
