@@ -59,7 +59,7 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's no. 20: rotations from the start orientation; ends at 180 deg", "rodrigues.DOP853_GLOBAL",
+        "Heun's no. 20: rotations from the start; ends at 180 deg", "rodrigues.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",

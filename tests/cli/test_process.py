@@ -15,7 +15,7 @@ from tests.shared.shell import ENVIRONMENT, shell
 
 def test_the_module_runs_as_the_command_does(folder: Path) -> None:
     done = shell("heun run hanging.yaml --measure joints.pivot.force.z", folder)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr) == (0, "unit: N\n")
     assert float(done.stdout) == pytest.approx(9.81)
 
 

@@ -126,7 +126,7 @@ def test_at_an_instant_a_list_of_three_cuts_is_no_vector(count: tuple[int, int, 
         if not there.axes or (there.is_vector and len(there.axes) == 1):
             assert isinstance(measure_value(MeasureRequest("final", path), study_of(count)).value, float)
         else:
-            with pytest.raises(NotOneNumber, match="say which") as caught:
+            with pytest.raises(NotOneNumber, match="choose one") as caught:
                 measure_value(MeasureRequest("final", path), study_of(count))
             one = str(caught.value.problems[0].hint).rpartition(": ")[2]
             assert isinstance(measure_value(MeasureRequest("final", one), study_of(count)).value, float)
@@ -182,7 +182,7 @@ def test_an_attitude_has_no_extreme_and_no_limit(heun: Heun, path: str) -> None:
     assert independent_axes(find_values(study_of((1, 3, 3)).results, path).axes)
     scene = text(1, 3, 3)
     done = heun("run", "-", "--measure", f"max {path}", text=scene)
-    assert (done.returncode, "say which" in done.stderr) == (2, True)
+    assert (done.returncode, "choose one" in done.stderr) == (2, True)
     watched = scene.replace('e: "j0.angle > 0.01"', f"e: {{of: {path}, below: 0.5}}")
     done = heun("run", "-", text=watched)
     assert (done.returncode, "is several numbers [event-path]" in done.stderr) == (2, True)

@@ -150,7 +150,7 @@ def count_numbers(row: Quantity, setup: Setup) -> int:
         "FORCE": len(mechanism.loads),
         "CAUSE": len(mechanism.loads) + CAUSES_WITHOUT_LOAD,
     }
-    if row.meaning.startswith("of a bushing"):
+    if row.path.startswith("forces.") and row.shape:  # only a bushing has vectors
         names["FORCE"] = sum(isinstance(load, BushingLoad) for load in mechanism.loads)
     total = 1
     for axis in row.shape:
