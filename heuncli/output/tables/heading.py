@@ -18,6 +18,8 @@ MAX_SENTENCES = 5
 MAX_MOVED_BODIES = 3
 PLANAR_NOTE = "; planar model: out-of-plane components are 0"
 STIFF_PREFIXES = ("stiff: ", "stiff system: ")  # beginnings of the reason for a restart with an implicit method
+NO_METHOD = "none"  # how the name of a method begins that integrates nothing
+PRESCRIBED = "motion fully prescribed: solved at each instant, nothing integrated"
 
 
 def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[str, str]]:
@@ -135,10 +137,8 @@ def _describe_run(results: Results) -> str:
         method = f"{results.model['method']}, " if results.model.get("method") else ""
         if results.model.get("step"):
             method = f"{results.model['method']} in steps of {results.model['step']:.4g} s, "
-        parts.append(
-            f"{method}{format_count(int(work['steps']), 'step')}, "
-            f"{format_count(int(work['evaluations']), 'evaluation')}"
-        )
+        counts = [format_count(int(work[key]), key.removesuffix("s")) for key in ("steps", "evaluations")]
+        parts.append(PRESCRIBED if method.startswith(NO_METHOD) else f"{method}{', '.join(counts)}")
     elif len(times) == 1:
         parts.append("nothing integrated")
     return "; ".join(part for part in (*parts, kernel) if part)
