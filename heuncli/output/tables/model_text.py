@@ -18,7 +18,7 @@ LIST_TITLES = (
     ("not_reduced", "Not simplified"),
     ("cannot_tell", "Not covered by this model"),
     ("integrates", "Integrated variables"),
-    ("chosen", "Start values chosen by heun"),
+    ("chosen", "Initial values chosen by heun"),
     ("moved", "Moved from the given start position"),
     ("started", "Start of the motion"),
     ("notes", "Notes"),
