@@ -87,8 +87,8 @@ def test_within_lets_so_many_lie_outside(check: Callable[..., tuple[int, str, st
     [
         ("t,F\n0.1,1\n", "abs: 1", "bench.csv:2:1", "only one point"),
         ("t,F\n", "abs: 1", "bench.csv", ""),
-        ("t,F\n0.1,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
-        ("t,F\n0.2,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
+        ("t,F\n0.1,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must increase"),
+        ("t,F\n0.2,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must increase"),
         ("t,F\n0.1,1\n0.2,nan\n", "abs: 1", "bench.csv:3", ""),
         ("t,F\n0.1,1\n0.2,two\n", "abs: 1", "bench.csv:3", ""),
         ("t,F\n0.1,1\n2.5,2\n", "abs: 1", "bench.csv:3:1", "outside the run"),

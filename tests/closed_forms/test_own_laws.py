@@ -103,7 +103,7 @@ def test_beyond_its_table() -> None:
     with pytest.raises(SolveError) as refused:
         solved(block("{type: motor, joint: shaft, curve: short, ratio: 10}"))
     (problem,) = refused.value.problems
-    assert problem.code == "no-value" and "the table short covers x from 0 to 30" in problem.message
+    assert problem.code == "no-value" and "table short covers x from 0 to 30" in problem.message
 
 
 MOUNT = "type: bushing, from: ground.O, to: m.c"

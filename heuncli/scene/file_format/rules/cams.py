@@ -126,7 +126,9 @@ def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
         period = cam.lift.numbers[0]
         turns = math.tau / period if period > 0.0 else 0.0
         if not (period > 0.0 and abs(turns - round(turns)) <= tolerances.TABLE_ENDS and round(turns) >= 1):
-            message = f"a whole number of periods must make a revolution, but that of table {cam.lift.name} is {math.degrees(period):.6g} deg"
+            message = (
+                f"the period of table {cam.lift.name}, {math.degrees(period):.6g} deg, does not divide one revolution"
+            )
             yield Violation(
                 ("couplings", name, "lift"), message, "period: 360 deg, or 360 deg divided by a whole number"
             )

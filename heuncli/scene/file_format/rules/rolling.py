@@ -27,7 +27,7 @@ def check_wheel_form(draft: DraftDocument) -> Iterator[Violation]:
             and wheel.axle is None
             and not planar
         ):
-            hint = "add axis: the direction of its axle in body axes, for example [0, 1, 0]; for a ball write shape: sphere"
+            hint = "add axis: its axle in body axes, for example [0, 1, 0]; for a ball write shape: sphere"
             yield Violation(path, "a disc without an axle", hint, key=True)
         for key in ("axis", "slides") if wheel.shape == "sphere" else ():
             if getattr(wheel, key) is not None:
