@@ -224,8 +224,8 @@ def suggest_syntax_fix(text: str, line: int, parser_message: str) -> str:
 
 
 ALIAS_HINT = (
-    "define the value under parameters and refer to it by name; a program should write the spec as JSON, which heun reads, or "
-    "tell its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
+    "define the value under parameters and refer to it by name; a program should write the spec as JSON, which "
+    "heun reads, or tell its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
 )
 
 
