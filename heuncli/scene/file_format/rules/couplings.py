@@ -53,7 +53,9 @@ def check_coupling_count(draft: DraftDocument) -> Iterator[Violation]:
         counts, coupled_joints = COUNTS[coupling.type], coupling.of
         if len(coupled_joints) not in counts:
             counts_text = " or ".join(map(str, counts))
-            message = f"found {', '.join(coupled_joints) or 'no joint'}"
+            plural = "" if len(coupled_joints) == 1 else "s"
+            listed = f": {', '.join(coupled_joints)}" if coupled_joints else ""
+            message = f"found {len(coupled_joints)} joint{plural}{listed}"
             yield Violation(
                 ("couplings", name, "of"),
                 message,
@@ -148,7 +150,9 @@ def check_coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(coupling, RatioEntry):
             continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
-            message = f"each joint needs one factor, found {len(coupling.factors)} for {len(coupling.of)}"
+            joint_count, factor_count = len(coupling.of), len(coupling.factors)
+            joints, factors = ("" if n == 1 else "s" for n in (joint_count, factor_count))
+            message = f"found {joint_count} joint{joints} and {factor_count} factor{factors}"
             yield Violation(
                 ("couplings", name, "factors"), message, "give at least two joints, and one factor for each"
             )
