@@ -217,7 +217,7 @@ def test_model_is_a_note_or_json(heun: Heun) -> None:
     done = heun("model", "hanging.yaml")
     assert done.returncode == 0
     assert done.stdout.startswith("A bar hangs at rest\n")
-    assert row(done.stdout, "freedoms")[1] == "3"
+    assert row(done.stdout, "DOF")[1] == "3"
     assert json.loads(heun("model", "hanging.yaml", "--format", "json").stdout)["freedoms"] == 3
 
 
