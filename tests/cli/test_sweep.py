@@ -205,7 +205,7 @@ WRONG_TABLES = {
     "n,m\n1,2\n3\n": "table.csv:3:1: the row has 1 cells, the first row 2 [variants-table]",
     "n,m\n1,\n": "table.csv:2:3: an empty cell in the column 'm' [variants-table]",
     'n,m\n1,"2\n': "table.csv:2:1: a quote that is not closed in its cell [variants-table]",
-    "n,m\n1,2\n3,4 mm\n": "table.csv:3:3: m: at scene.yaml:7:15: bodies.bar.mass: m is a length (4 mm), expected a mass",
+    "n,m\n1,2\n3,4 mm\n": "table.csv:3:3: m: at scene.yaml:7:15: bodies.bar.mass: m is a length (4 mm), expected a",
     "n,case\n1,calm\n1,clam\n": "table.csv:3:3: case: there is no load case 'clam' [unknown-case]",
     "1,2\n3,4\n": "table.csv:1:1: '1' is not the name of a parameter [variants-table]",
     "n,m\n": "table.csv:1:1: there is no variant below the header [variants-table]",
