@@ -147,7 +147,7 @@ def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
         for key, value in iter_resistances(load):
             if isinstance(value, float) and value < 0.0:
                 hint = NEGATIVE_HINTS.get(
-                    key, "give a resistance as a positive number; for a driving load use a torque or force"
+                    key, "give a resistance as a positive number; to drive, use a torque, a force or a drive"
                 )
                 yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
     for i, item in draft.document.expect.items():
