@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 ACCEPTED = f"0, or {tolerances.LEAST_MAGNITUDE:.0e} to {tolerances.MOST_MAGNITUDE:.0e} in SI units".replace("+", "")
 TOO_SMALL = "check its unit; for zero write 0"
-TOO_LARGE = "check its unit; for no bound leave the entry out"
+TOO_LARGE = "check its unit; for no limit leave the entry out"
 
 
 def is_in_range(value: float) -> bool:

@@ -95,7 +95,7 @@ def test_a_golden_file_holds_all_cases(heun: Heun, scene: Path) -> None:
         (("m: 3 kg", "n: 3 kg"), "cases.heavy.set.n", "there is no parameter 'n' to set [no-such-key]"),
         (("bodies.bar.c", "bodies.bat.c"), "set.bodies.bat.center", "did you mean bar?"),
         (("case: heavy", "case: haevy"), "expect.1.case", "there is no load case 'haevy' [unknown-case]"),
-        (("m: 3 kg", "m: -3 kg"), "bodies.bar.mass", "in case heavy: mass must be more than 0"),
+        (("m: 3 kg", "m: -3 kg"), "bodies.bar.mass", "in case heavy: mass must be greater than 0"),
         (("m: 3 kg", "m: 3 m"), "bodies.bar.mass", "in case heavy: "),
         (("m: 3 kg", "cases.tilted.set.m: 2"), "cases.heavy.set", "in a load case [no-such-key]"),
         (("  heavy:", "  all:"), "cases.all", "[reserved-name]"),

@@ -209,7 +209,7 @@ def test_validate_tells_all_errors_of_all_files_at_once(heun: Heun) -> None:
 
 def test_validate_says_so_briefly_when_all_is_well(heun: Heun) -> None:
     done = heun("validate", "hanging.yaml", "swinging.yaml")
-    assert done == (0, "hanging.yaml: fine (1 body, 1 joint)\nswinging.yaml: fine (1 body, 1 joint)\n", "")
+    assert done == (0, "hanging.yaml: valid (1 body, 1 joint)\nswinging.yaml: valid (1 body, 1 joint)\n", "")
     assert heun("validate", "hanging.yaml", "--quiet") == (0, "", "")
 
 
@@ -377,7 +377,7 @@ def test_validate_cuts_the_sections(tmp_path: Path, capsys: pytest.CaptureFixtur
     out, err = capsys.readouterr()
     assert out == ""
     assert f"{path}:5:3: sections.c: joint w lies in the plane of the cut [needs-side]" in err
-    assert f"{path}:6:3: sections.d: the plane does not meet the body a [misses-body]" in err
+    assert f"{path}:6:3: sections.d: the plane does not intersect the body a [misses-body]" in err
 
 
 def test_a_rope_that_would_push_is_told_in_a_state(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -87,8 +87,8 @@ def test_within_lets_so_many_lie_outside(check: Callable[..., tuple[int, str, st
     [
         ("t,F\n0.1,1\n", "abs: 1", "bench.csv:2:1", "only one point"),
         ("t,F\n", "abs: 1", "bench.csv", ""),
-        ("t,F\n0.1,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
-        ("t,F\n0.2,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must ascend"),
+        ("t,F\n0.1,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must increase"),
+        ("t,F\n0.2,1\n0.1,2\n", "abs: 1", "bench.csv:3:1", "x must increase"),
         ("t,F\n0.1,1\n0.2,nan\n", "abs: 1", "bench.csv:3", ""),
         ("t,F\n0.1,1\n0.2,two\n", "abs: 1", "bench.csv:3", ""),
         ("t,F\n0.1,1\n2.5,2\n", "abs: 1", "bench.csv:3:1", "outside the run"),
@@ -96,7 +96,7 @@ def test_within_lets_so_many_lie_outside(check: Callable[..., tuple[int, str, st
         ("t,F\n0.1,1\n0.2,2\n", "y_unit: m, abs: 1", "expect.0.y_unit", "expected"),
         ("t,F\n0.1,1\n0.2,2\n", "x_unit: kN, abs: 1", "expect.0.x_unit", "expected"),
         ("t,F\n0.1,1\n0.2,2\n", "is: 3, abs: 1", "expect.0", "'is' given together with 'curve'"),
-        ("t,F\n0.1,1\n0.2,2\n", "within: 0, abs: 1", "expect.0.within", "not above 0"),
+        ("t,F\n0.1,1\n0.2,2\n", "within: 0, abs: 1", "expect.0.within", "must be above 0"),
     ],
 )
 def test_what_is_wrong_is_told_by_its_line(

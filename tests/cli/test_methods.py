@@ -51,7 +51,7 @@ def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
         (["--method", "RK4"], "[fixed-step]"),
         (["--step", "0.01"], "auto chooses its own steps and takes no step [fixed-step]"),
         (["--method", "DOP853", "--step", "0.01"], "[fixed-step]"),
-        (["--method", "ode45"], "it is called method: DOPRI5 here"),
+        (["--method", "ode45"], "write method: DOPRI5"),
         (["--method", "RK5"], "did you mean RK4? `heun methods` lists them"),
         (["--method", "gauss 4"], "did you mean Gauss4?"),
         (["--method", ""], "'' is not an integration method [unknown-method]"),
@@ -90,7 +90,7 @@ def test_words_of_other_programs_lead_to_methods() -> None:
     known = {row.name for row in METHODS} | {"auto"}
     for word, name in METHOD_WORDS.items():
         assert word == word.lower() and name in known, word
-        assert method_hint(word) == f"it is called method: {name} here"
+        assert method_hint(word) == f"write method: {name}"
         assert [one.code for one in iter_method_problems(word, None, 1.0)] == ["unknown-method"]
 
 
@@ -100,7 +100,7 @@ def test_words_of_other_programs_lead_to_methods() -> None:
         ("method: [RK4]", ["analysis.method: expected a text, found a list [wrong-kind]"]),
         ("method: 5", ["analysis.method: expected a text, found a number [wrong-kind]"]),
         ("method: ''", ["analysis.method: '' is not an integration method [unknown-method]"]),
-        ("method: RK4, step: 0", ["analysis.step: step must be more than 0, not 0 [not-positive]"]),
+        ("method: RK4, step: 0", ["analysis.step: step must be greater than 0, but is 0 [not-positive]"]),
         ("method: RK4, step: .nan", ["analysis.step: nan is not a finite number [not-finite]"]),
         ("method: RK4, step: 1 mm", ["analysis.step: '1 mm' is a length, expected a time [dimension]"]),
         ("method: auto, step: 0.1", ["analysis.step: auto chooses its own steps and takes no step [fixed-step]"]),

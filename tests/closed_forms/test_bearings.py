@@ -67,7 +67,7 @@ def test_it_is_measured_expected_and_shown(heun: Heun, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("bearing", "says"),
     [
-        ("{diameter: 0 mm, width: 1 mm}", "diameter must be more than 0"),
+        ("{diameter: 0 mm, width: 1 mm}", "diameter must be greater than 0"),
         ("{diameter: 1 mm}", "width"),
         ("{diameter: 1 kg, width: 1 mm}", "a mass"),
     ],

@@ -192,7 +192,7 @@ analysis: {duration: 1, samples: 3}
 """)
     (problem,) = refused.value.problems
     assert problem.code == "no-value"
-    assert "forces.mount.turn_z = 0.5: the table k covers x from -0.5 to 0.5" in problem.message
+    assert "forces.mount.turn_z = 0.5: table k covers x from -0.5 to 0.5" in problem.message
 
 
 def test_a_part_that_rests_at_a_knot_is_no_doubt() -> None:

@@ -237,7 +237,7 @@ def test_a_start_where_a_path_meets_itself() -> None:
 @pytest.mark.parametrize(("head", "message"), [
     ("forces: {f: {type: damper, joint: wire, force: '-3*rate'}}", "with a law in its rate acts in a pin or slide"),
     ("forces: {f: {type: friction, joint: wire, coefficient: 0.3, speed: 0.01}}", "with a coefficient acts in a pin"),
-    ("forces: {f: {type: torque, joint: wire, value: 3}}", "a torque acts about a pin or along a slide"),
+    ("forces: {f: {type: torque, joint: wire, value: 3}}", "type: torque acts about a pin or along a slide"),
     ("couplings: {c: {type: ratio, of: [wire, wire], factors: [1, 2]}}", "the travel of a curve cannot be coupled"),
 ])  # fmt: skip
 def test_what_does_not_act_along_a_path(head: str, message: str) -> None:
@@ -325,7 +325,7 @@ def test_a_roller_beside_a_circle(normal: str, radius: float) -> None:
     ("normal: [0, 1, 0]", "'normal' without 'radius'"),
     ("radius: 0.2, normal: [0, 1, 0.01]", "in a plane perpendicular to its normal"),
     ("radius: 0.2, normal: [0, 0, 0]", "which has no direction"),
-    ("radius: 0, normal: [0, 1, 0]", "radius must be more than 0"),
+    ("radius: 0, normal: [0, 1, 0]", "radius must be greater than 0"),
 ])  # fmt: skip
 def test_what_no_roller_follows(keys: str, message: str | None) -> None:
     """z = .15 x^2 curves with 1 / .3 m where it is lowest, toward what is above."""
@@ -376,7 +376,7 @@ def test_the_end_of_a_path(down: int, end: str, head: str) -> None:
     ("{x: [-1, 0, 1], y: [1, 0, 1], interpolation: cubic}", "0", "travel: 0.5", "no direction at travel 0"),
     ("{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}", "{x: [5, 6, 7], y: [0, 1, 2], interpolation: cubic}",
      "travel: 1", "no travel in common"),
-    ("{x: [0, 1, 2, 3], y: [0, 1, 0.5, 1], interpolation: cubic, period: 3}", "0", "travel: 1", "must agree"),
+    ("{x: [0, 1, 2, 3], y: [0, 1, 0.5, 1], interpolation: cubic, period: 3}", "0", "travel: 1", "must be equal"),
     ("nothing", "0", "travel: 1", "expected the name of a table"),
 ])  # fmt: skip
 def test_what_is_no_path(x: str, z: str, start: str, message: str) -> None:

@@ -103,7 +103,7 @@ def test_beyond_its_table() -> None:
     with pytest.raises(SolveError) as refused:
         solved(block("{type: motor, joint: shaft, curve: short, ratio: 10}"))
     (problem,) = refused.value.problems
-    assert problem.code == "no-value" and "the table short covers x from 0 to 30" in problem.message
+    assert problem.code == "no-value" and "table short covers x from 0 to 30" in problem.message
 
 
 MOUNT = "type: bushing, from: ground.O, to: m.c"
@@ -159,7 +159,7 @@ bodies: {m: {mass: 2, center: [0, 0, 0], inertia: 0.1, points: {c: [0, 0, 0]}}}
 forces: {f: {type: bushing, from: ground.O, to: m.c, stiffness: [1, 2, 3], turning: 3%s}}
 """
     solved(text % ", orientation: {axis: [0, 0, 1], angle: 1}, preload: [1, 2, 0]")
-    with pytest.raises(SpecError, match="in a planar scene"):
+    with pytest.raises(SpecError, match="in a planar model"):
         solved(text % f", {more}")
 
 

@@ -65,7 +65,7 @@ def test_a_joint_kind(tmp_path: Path) -> None:
         "final bodies.crate.angular_velocity.y": 0.0,
     }
     assert answers(folder, scene, list(wanted)) == pytest.approx(list(wanted.values()), abs=1e-9)
-    assert "a face is type: sled" in heun(folder, "validate", "-", text=SCENE.replace("TYPE", "face")).stderr
+    assert "for 'face' write type: sled" in heun(folder, "validate", "-", text=SCENE.replace("TYPE", "face")).stderr
 
 
 def test_its_list() -> None:

@@ -38,7 +38,7 @@ READING = {  # what is driven and held, the code, words of the refusal
     "jumps": (bars("angle: 0.3*step(t - 0.5)"), "drive-jumps",
               "drives.motor.angle: the drive jumps from 0 to 0.3 at t = 0.5"),
     "held angle": (bars("angle: 0.3 + t", initial="angle: 0.4"), "drive-contradicts",
-                   "angle starts at 0.4, but the drive motor prescribes 0.3 at t = 0"),
+                   "angle starts at 0.4, but drive motor prescribes 0.3 at t = 0"),
     "held rate": (bars("angle: 0.3 + t", initial="rate: 0.4"), "drive-contradicts", "prescribes 1 at t = 0"),
     "held travel": (bars("travel: 0.3 + t", "slide, axis: [1, 0, 0]", "travel: 0.4"), "drive-contradicts",
                     "travel starts at 0.4"),

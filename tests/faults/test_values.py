@@ -77,13 +77,13 @@ def test_a_pole_is_named(value: str, instant: float) -> None:
 def test_a_table_that_is_left_tells_its_range(load: str, value: str, instant: float, table: str) -> None:
     problem = told(load, value)
     assert at(problem) == pytest.approx(instant, abs=1e-6)
-    assert problem.message.endswith(f"the table {table} covers x from 0 to 1 (SI)")
+    assert problem.message.endswith(f"table {table} covers x from 0 to 1 (SI)")
     assert "period" in (problem.hint or "")
 
 
 def test_coordinates_are_those_of_the_pose() -> None:
     problem = told(FORCE, "table(g, p.angle)")
-    assert problem.message.endswith("s, p.angle = 1: the table g covers x from 0 to 1 (SI)")
+    assert problem.message.endswith("s, p.angle = 1: table g covers x from 0 to 1 (SI)")
     problem = told(FORCE, "sqrt(0.2 - p.angle)")
     assert re.search(r"s, p\.angle = 0\.2(0000\d*)?$", problem.message)
     assert at(problem) > 0.1
@@ -117,7 +117,7 @@ def test_a_constant_outside_its_table_is_told_when_read(value: str) -> None:
     with pytest.raises(SpecError) as raised:
         solved(SCENE.replace("LOAD", FORCE.replace("VALUE", value)))
     (problem,) = raised.value.problems
-    assert (problem.code, problem.message) == ("not-computable", "the table g covers x from 0 to 1 (SI), not 5")
+    assert (problem.code, problem.message) == ("not-computable", "table g covers x from 0 to 1 (SI), not 5")
     assert "period" in (problem.hint or "")
 
 

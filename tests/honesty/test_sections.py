@@ -110,7 +110,7 @@ def test_between_shapes_there_is_no_centroid() -> None:
     cut = found.sections["cut"]
     near(cut["stress"]["shear_torsion"][0], abs(cut["T"][0]) / (np.pi * 0.02**3 / 2), 1e6, 1e-13)
     assert cut["T"][0] != 0.0 and "stresses refer to the cut's point" in found.warnings[0]
-    with pytest.raises(SpecError, match="does not meet the body"):
+    with pytest.raises(SpecError, match="does not intersect the body"):
         beads("at: [5.1, 0, 0], normal: [1, 0, 0]")
 
 

@@ -81,7 +81,7 @@ def test_joints_their_forces_and_centres_of_mass(heun: Heun, spec: str, view: st
 
 def key_length(panel: PlottedPanel, words: list[str]) -> float:
     """How long one newton is drawn, by the key."""
-    (text,) = (word for word in words if word.endswith(": joint reactions, from on to"))
+    (text,) = (word for word in words if word.endswith(': joint reactions, "from" on "to"'))
     (line,), (tip,) = panel.lines(text), panel.areas(text)
     return float(tip[0, 0] - line[0, 0]) / float(text.partition(" N:")[0])
 

@@ -36,7 +36,7 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
         "Not simplified\n  - not in the plane: gravity leaves it\n",
         "Not covered by this model\n  - what is across the plane\n",
         "Integrated variables\n  - 14 numbers of state\n",
-        "Start values chosen by heun\n  - lower starts as drawn",
+        "Initial values chosen by heun\n  - lower starts as drawn",
         "Moved from the given start position\n  - lower was moved by up to 0.02 m\n",
     ):
         assert part in text

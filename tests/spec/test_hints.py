@@ -159,7 +159,7 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("from: ground.O", "from: world.O", "called ground: ground.O"),
         ("axis: [0, 1, 0]}", "axis: 90 deg}", "a direction such as [0, 0, 1]"),
         ("type: pin", "type: motor", "drives: {motor: {joint: NAME, rate: 1500 rpm}}"),
-        ("type: pin", "type: rzeppa", "a rzeppa is type: cv"),
+        ("type: pin", "type: rzeppa", "for 'rzeppa' write type: cv"),
         ("type: pin", "kind: pin", "'kind' is called type here"),
         ("density: 7850 kg/m^3", "density: 7.85 t/m3", "7.85 tonne/m^3"),
         ("points: {top: [0, 0, 0], end: [0, 0, -1]}", "points: [top, end]", "by name"),

@@ -101,7 +101,7 @@ stops: {s: {joint: shaft, angle: [-1, 1]}}
     (PIN.replace("axis", "limits: [0, 1], axis"), "stops: {"),
     (PIN.replace("axis", "restitution: 1, axis"), "rod with tension_only, or to a stop"),
     (PIN.replace("pin,", "contact,"), "stops: {"),
-    (PIN.replace("pin,", "rope,"), "a rope is type: rod, with tension_only: true"),
+    (PIN.replace("pin,", "rope,"), "for 'rope' write type: rod, with tension_only: true"),
     (PIN + "bumpers: {s: {joint: pivot, angle: [0, 1]}}\n", "called stops here"),
     (PIN + "stops: {s: {joint: pivot, angle: [0, 1], e: 1}}\n", "called restitution here"),
     (PIN + "stops: {s: {joint: pivot, angle: 1}}\n", "null means no limit"),
@@ -114,7 +114,7 @@ def test_hints(text: str, hint: str) -> None:
 def test_friction_at_a_strike_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     found = problems(PIN + "stops: {s: {joint: pivot, angle: [0, 1], friction: 0.3}}\n")
-    assert "not yet: friction at impacts" in [p.message for p in found]
+    assert "not available yet: friction at impacts" in [p.message for p in found]
 
 
 # ---- starts

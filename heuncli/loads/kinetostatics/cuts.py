@@ -263,7 +263,7 @@ def _plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> f
 def _missing_side_problem(names: list[str], location: SourceLocation) -> Problem:
     """Make the problem of a single cut with something in its plane and no side given."""
     what = " and ".join(names) if names else "a point mass or rod of the body"
-    hint = "add side: before (cut just before it, so that it belongs to the far side) or side: beyond"
+    hint = "add side: before (cut just before it: it is on the far side) or side: beyond (cut just past it)"
     return Problem(
         "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", location, hint
     )
@@ -345,8 +345,8 @@ def _require_body(
     outside = d[(d < min(low, reach[0])) | (d > max(high, reach[1]))]
     if len(outside):
         lies = float(outside[0])
-        hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane is at {lies:.6g} m"
-        raise SpecError(Problem("misses-body", f"{what} does not meet the body {section.body}", location, hint))
+        hint = f"along the normal the body extends from {low:.6g} to {high:.6g} m, the plane is at {lies:.6g} m"
+        raise SpecError(Problem("misses-body", f"{what} does not intersect the body {section.body}", location, hint))
     if len(d) and section.reduce_to == "centroid":
         message = f"{what} meets no material of the body {section.body}, so it has no centroid"
         raise SpecError(

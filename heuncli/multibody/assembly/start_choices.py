@@ -23,7 +23,7 @@ FORMS = {
     "velocity": "velocity of the centre of mass {} m/s",
     "angular velocity": "angular velocity {} rad/s",
 }
-FITTED, FROM_JOINT = "fitted to the joints", "from joint"
+FITTED, FROM_JOINT = "adjusted to satisfy the joints", "from joint"
 
 
 class StartChoice(NamedTuple):
@@ -144,7 +144,7 @@ def _choice_origin(mechanism: Mechanism, tree: PlacementTree, body: int, fitted_
 
 
 def _default_origin(near_value: Array | None) -> str:
-    return "same as the world frame (default)" if near_value is None else "as given by near"
+    return "same as the world frame (default)" if near_value is None else "as given under near"
 
 
 def _format_vector(a: Array, size: float) -> str:

@@ -33,7 +33,7 @@ BOLD_NOTE = (
     "value is rounding error, or all cases agree"
 )
 PARTLY_OPEN_MARK = "*"
-STEADY_NOTE = "no time given: constant over all {}, to the digits shown"
+STEADY_NOTE = "no time given: the same at all {}, to the digits shown"
 ERROR_NOTE = "±: stated error of the number, including rounding"
 HIDDEN_CASES_NOTE = "cases not shown with open or unknown numbers, which may be larger: {}"
 FEW_CASES_NOTE = "only the governing ones of {} load cases are shown; all: heun run SPEC --case all"

@@ -200,8 +200,8 @@ def _iter_open(data: ReportData) -> Iterator[Sentence]:
     paths = list(dict.fromkeys(path for run in data.runs for path in run.snapshot.open))
     if paths:
         text = (
-            f"Indeterminate: {format_count(len(paths), 'load component')} (open). The supports are redundant, so the "
-            "distribution depends on stiffness"
+            f"Indeterminate: {format_count(len(paths), 'load component')} (open). The constraints are redundant, so "
+            "the distribution depends on stiffness"
         )
         yield Sentence(f"{text} ({join_names(paths)}).", "unsure")
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))

@@ -13,23 +13,23 @@ from heuncli.results.results_schema import XYZ, error_kind_of_path
 from heuncli.study.quantities.digits import format_error
 
 INTEGRATED_NOTE = (
-    "Every motion is integrated a second time with a thirtieth of the allowed error. The stated errors are twice the "
-    "largest difference between the two up to that time, and at least the rounding error; each applies to all numbers "
-    "of one kind. They measure the solution of the model, not how well the model represents the machine."
+    "Every motion is integrated a second time with 1/30 of the tolerance. The stated errors are twice the largest "
+    "difference between the two solutions up to that time, and at least the rounding error, one for each kind of "
+    "quantity. They cover the numerical solution, not how well the model represents the machine."
 )
 DRIVEN_NOTE = (
     "Motion fully prescribed: solved at each instant, nothing integrated. The stated errors are rounding errors, found "
-    "by solving again with perturbed values. They measure the solution of the model, not how well the model represents "
-    "the machine."
+    "by solving again with perturbed values. They cover the numerical solution, not how well the model represents the "
+    "machine."
 )
 EQUILIBRIUM_NOTE = (
     "Nothing is integrated: the rest position is searched for, then again ten times finer. The stated errors are those "
-    "of the position, from the difference between the two finest searches, and of rounding. They measure the solution "
-    "of the model, not how well the model represents the machine."
+    "of the position, from the difference between the two finest searches, and of rounding. They cover the numerical "
+    "solution, not how well the model represents the machine."
 )
 ONE_INSTANT_NOTE = (
     "Nothing is integrated: the equations are solved at one instant, and the stated errors are rounding errors. They "
-    "measure the solution of the model, not how well the model represents the machine."
+    "cover the numerical solution, not how well the model represents the machine."
 )
 KIND_LABELS = {"reactions": "joints", "drives": "drives", "foundation": "foundation", "sections": "sections"}
 MOTION = ("positions of points", "m")

@@ -38,7 +38,7 @@ MAX_VALUES = 16  # with more arrows there are no values
 N_DISTRIBUTED_ARROWS = 9  # arrows of a distributed load
 DIGITS = 3  # of the values
 KINDS = (
-    (JOINTS_PEN, "joint reactions, from on to"),
+    (JOINTS_PEN, 'joint reactions, "from" on "to"'),
     (COUPLED_PEN, "couplings"),
     (APPLIED_PEN, "applied"),
 )
@@ -228,7 +228,7 @@ def draw_loads(loads: ActingLoads, view: SceneView, size: float, side: float, un
             items.append(_make_value_label(pull, place, *loads.find_unit(units, moments=True)))
     hidden_names = [pull.name for pull in moments if not any(pull is distributed for distributed in facing)]
     notes = (
-        [f"moments not drawn, as they do not act in the plane of the figure: {', '.join(hidden_names)}"]
+        [f"moments not drawn, as their axes are not along the line of sight: {', '.join(hidden_names)}"]
         if hidden_names
         else []
     )

@@ -18,7 +18,7 @@ LIST_TITLES = (
     ("not_reduced", "Not simplified"),
     ("cannot_tell", "Not covered by this model"),
     ("integrates", "Integrated variables"),
-    ("chosen", "Start values chosen by heun"),
+    ("chosen", "Initial values chosen by heun"),
     ("moved", "Moved from the given start position"),
     ("started", "Start of the motion"),
     ("notes", "Notes"),
@@ -46,9 +46,10 @@ def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     grubler = model.get("grubler")
     spins = int(model.get("undetermined", 0))
     among = f", including {format_count(spins, 'undetermined spin')}" if spins else ""
+    plane = "detected" if model.get("plane") == "found" else model.get("plane")
     grubler_text = f" (Grübler's count: {grubler}{among})" if grubler is not None else ""
     return [
-        ("space", str(model.get("space", "")) + (f" ({model['plane']})" if "plane" in model else "")),
+        ("space", str(model.get("space", "")) + (f" ({plane})" if plane else "")),
         ("bodies", _format_names(names.get("bodies", model.get("bodies")))),
         ("joints", _format_names(names.get("joints", model.get("joints")))),
         ("DOF", f"{freedoms}{grubler_text}" if freedoms is not None else ""),

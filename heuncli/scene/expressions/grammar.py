@@ -156,7 +156,7 @@ def describe_dimensions(text: str, scope: Scope) -> str | None:
 def too_deep_finding() -> Finding:
     """Make the error of an expression with too many nested parentheses."""
     message = f"an expression nested more than {MAX_DEPTH} levels deep"
-    return Finding("expression-limit", message, "define its inner parts under parameters, or write it as a sum")
+    return Finding("expression-limit", message, "define its inner parts under parameters, or simplify it")
 
 
 class _Parser:

@@ -219,7 +219,7 @@ class SmoothTable(ValueReader):
     def require_smooth(self, table: TableFunction) -> TableFunction:
         """Return the table. Raises Finding if it is not smooth or has other dimensions."""
         if table.interpolation not in ("cubic", "natural"):
-            message = f"the table {table.name} is {table.interpolation}, so it is not smooth"
+            message = f"table {table.name} has {table.interpolation} interpolation, so it is not smooth"
             raise Finding("table-curve", message, "write interpolation: cubic")
         if table.kind == HELD_TABLE:
             raise Finding("table-curve", f"the table {table.name} has a kink at its ends", "remove outside: hold")
@@ -345,7 +345,7 @@ def parse_end(value: Any, info: Any) -> Any:
         return value
     body, dot, point = value.partition(".")
     if not dot or not body or not point or "." in point:
-        raise Finding("end", f"'{value}' is not an end", end_hint(value, info.context.points))
+        raise Finding("end", f"'{value}' is not of the form body.point", end_hint(value, info.context.points))
     return {"body": body, "at": point}
 
 

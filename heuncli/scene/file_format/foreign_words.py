@@ -161,7 +161,7 @@ MOTOR_HINTS = {  # terms of a motor's data sheet, and how the format expresses t
 }  # fmt: skip
 BRAKE_HINTS = dict.fromkeys(
     ("ramp", "rise", "delay"), 'its size may vary in time: torque: "8*min(t/0.2, 1)"'
-) | dict.fromkeys(("size", "value"), "give its size as torque, in a slide as force")
+) | dict.fromkeys(("size", "value"), "give its magnitude as torque, in a slide as force")
 LATCH_HINTS = dict.fromkeys(
     ("until", "opens", "off"), "it releases when release becomes true: release: t > 1.5"
 ) | dict.fromkeys(

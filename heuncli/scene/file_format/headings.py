@@ -28,7 +28,7 @@ TWO_MEANINGS = {
     "g": "a gram, or the acceleration of gravity",
     "G": "the acceleration of gravity, or gauss",
     "t": "a tonne, or the time",
-    "lb": "a pound as a mass, or as a force (lbf)",
+    "lb": "pound mass (lb) or pound force (lbf)",
     **dict.fromkeys(("1/min", "min-1", "min^-1", "1/s", "s-1", "s^-1", "Hz"), "revolutions, or radians"),
 }
 # ... and these not after an underscore, a comma or a blank, where they may be part of the name.

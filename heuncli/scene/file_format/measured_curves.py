@@ -101,7 +101,7 @@ def check_curve_points(
     if is_falling.any():
         i = int(is_falling.argmax()) + 1
         value, previous = x[i] / sizes[0], x[i - 1] / sizes[0]
-        yield i, Finding("curve-points", f"x must ascend, but {value:.9g} follows {previous:.9g}", ASCENDING_HINT)
+        yield i, Finding("curve-points", f"x must increase, but {value:.9g} follows {previous:.9g}", ASCENDING_HINT)
     if run is not None:
         slack = tolerances.SAME_INSTANT * (run[1] - run[0])
         outside = (x < run[0] - slack) | (x > run[1] + slack)

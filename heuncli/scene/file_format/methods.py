@@ -76,7 +76,7 @@ def method_hint(method: str) -> str:
     """Return a hint on which method an unknown word may mean."""
     word = METHOD_WORDS.get(normalize_name(method))
     if word is not None and (word == AUTO or find_method(word) is not None):
-        return f"it is called method: {word} here"
+        return f"write method: {word}"
     same_name = next((name for name in NAMES if normalize_name(name) == normalize_name(method)), method)
     hint = suggest(same_name, NAMES, "methods") or ""
     return f"{hint}{'' if hint.endswith('?') else ';'} `heun methods` lists them"

@@ -86,7 +86,7 @@ def iter_si_warnings(
         except Finding:
             continue
         if size != 1.0:
-            message = f"{new:.9g} is read in {si_unit(dimension)}; the file gives it in {unit}"
+            message = f"{new:.9g} is taken to be in {si_unit(dimension)}; the file gives it in {unit}"
             yield Problem("set-in-si", message, location, f"give the unit: --set {location.path}='{new:.9g} {unit}'")
 
 

@@ -84,7 +84,7 @@ def evaluate_parameters(block: dict[str, Any], earlier: Parameters | None = None
                 if unknown.name in pending:
                     chain = list(pending)
                     cycle = [*chain[chain.index(unknown.name) :], unknown.name]
-                    message = f"parameters refer to each other in a circle: {' -> '.join(abbreviate_names(cycle))}"
+                    message = f"circular reference between parameters: {' -> '.join(abbreviate_names(cycle))}"
                     findings.append((unknown.name, Finding("parameter-circle", message, CIRCLE_HINT)))
                     values.update(dict.fromkeys(cycle))
                 else:

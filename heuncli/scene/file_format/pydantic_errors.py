@@ -138,7 +138,9 @@ def unknown_key_error(path: Path_, known_keys: list[str]) -> tuple[str, Violatio
     """Make the error for a key that means nothing here."""
     key = str(path[-1])
     if ("keys", key) in PLANNED_WORDS:
-        return "not-yet", Violation(path, f"not yet: {key}", "leave it out: planned for a later version", key=True)
+        return "not-yet", Violation(
+            path, f"not available yet: {key}", "leave it out: planned for a later version", key=True
+        )
     return "unknown-key", Violation(path, f"'{key}' is not known here", unknown_key_hint(key, known_keys), key=True)
 
 
@@ -163,11 +165,11 @@ def unknown_type_error(entry: Any, block: str, known_types: list[str]) -> tuple[
         )
     if (block, tag) in PLANNED_WORDS:
         return "not-yet", Violation(
-            ("type",), f"not yet: {description.removeprefix('a ')} {tag}", f"available: {listed}"
+            ("type",), f"not available yet: {description.removeprefix('a ')} {tag}", f"available: {listed}"
         )
     word = synonyms.get(tag.lower().replace("-", "_"))
     hint = (
-        f"{indefinite_article(tag)} {tag} is type: {word}"
+        f"for '{tag}' write type: {word}"
         if word
         else misplaced_word_hint(tag) or suggest(tag, [*known_types, *TYPE_ALIASES.get(block, ())], "types")
     )

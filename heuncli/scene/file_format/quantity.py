@@ -68,7 +68,7 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
     if dimension is not None and unit_dimension != dimension:
         hint = (
             product_hint(with_unit[1], with_unit[2].strip(), scope)
-            or f"a number without a unit is read in {si_unit(dimension)}"
+            or f"a number without a unit is taken to be in {si_unit(dimension)}"
         )
         raise Finding(
             "dimension", f"'{value.strip()}' is {describe(unit_dimension)}, expected {describe(dimension)}", hint

@@ -224,8 +224,8 @@ def suggest_syntax_fix(text: str, line: int, parser_message: str) -> str:
 
 
 ALIAS_HINT = (
-    "name the value once under parameters and use the name; a program should write the spec as JSON, which heun reads, "
-    "or tell its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
+    "define the value under parameters and refer to it by name; a program should write the spec as JSON, which "
+    "heun reads, or tell its YAML library to write no aliases (PyYAML: yaml.Dumper.ignore_aliases = lambda *_: True)"
 )
 
 
@@ -299,7 +299,7 @@ class SourceBuilder:
             )
         if event.tag is not None and event.tag != "!":
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            hint = "values are plain numbers and texts; put a value used often under parameters"
+            hint = "values are plain numbers or text; define a value used often under parameters"
             self.problems.append(self.problem("tag", f"tags ({tag}) are not allowed", event, hint=hint))
 
     def add_scalar(self, event: Any) -> None:

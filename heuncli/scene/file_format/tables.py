@@ -218,7 +218,7 @@ def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterato
     is_falling = points[1:] <= points[:-1]
     if is_falling.any():
         i = int(is_falling.argmax()) + 1
-        message = f"x must ascend, but {x[i]:.9g} follows {x[i - 1]:.9g} (SI)"
+        message = f"x must increase, but {x[i]:.9g} follows {x[i - 1]:.9g} (SI)"
         keys = ("x", i) if entry.file is None else file_path
         hint = "for a jump increase x slightly" if x[i] == x[i - 1] else "sort the points by x"
         yield TableProblem(keys, Finding("table-shape", message, hint))
@@ -238,7 +238,7 @@ def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterato
             Finding("table-period", message, unit or "the last point must repeat the first, one period later"),
         )
     elif abs(y[-1] - y[0]) > tolerances.TABLE_ENDS * (max(y) - min(y)):
-        message = f"the ends of a periodic table must agree, but y is {y[0]:.9g} and {y[-1]:.9g} (SI)"
+        message = f"with a period, the first and last y must be equal, but are {y[0]:.9g} and {y[-1]:.9g} (SI)"
         yield TableProblem(
             ("period",), Finding("table-period", message, "the last point must repeat the first, one period later")
         )

@@ -46,7 +46,7 @@ def read_closed_mesh(content: bytes | bytearray, name: str) -> TriangleMesh:
     require_no_crossing(*separate_fans(soup.corners, outward, edge_neighbours), coordinate_resolution(soup.corners))
     shells = find_shells(soup, edge_neighbours, V)
     if shells.is_reversed:
-        notes.append("its triangles point inward; they were reversed")
+        notes.append("its normals pointed inward; the triangles were reversed")
     return TriangleMesh(
         soup.corners, shells.triangles, len(shells.volumes), float(shells.volumes.sum()),
         soup.corners.min(axis=0), soup.corners.max(axis=0), tuple(notes),

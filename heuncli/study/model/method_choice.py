@@ -26,8 +26,8 @@ from heuncli.study.model.counts_and_lists import list_some
 FINE_METHOD = "Verner98"
 LONG_MOTION = 100.0  # turns or swings from which on a conservative motion is called long
 MAY_BE_STIFF = (
-    "monitored for stiffness: if {} should keep explicit steps short, the motion is restarted with an implicit "
-    "method, where that is faster"
+    "monitored for stiffness: if explicit steps are kept short by {}, the motion is restarted with an "
+    "implicit method where that is faster"
 )
 NOTHING_STIFF = "no stiffness expected: no spring, damper, friction or force law in coordinates"
 

@@ -122,7 +122,7 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     sentences = [f"{bodies} {where}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
-        sentences.append(f"loops closed at {list_some(cut)}; the other joints form the tree")
+        sentences.append(f"loops closed by {list_some(cut)}; the other joints form a tree")
     coupled = [f"{own.name} ({own.entry.type})" for own in mechanism.couplings if own.stretched_row is None]
     if coupled:
         sentences.append(f"coupled: {list_some(coupled)}")
@@ -186,11 +186,11 @@ def describe_self_stresses(layout: Layout, stress: SelfStress) -> list[str]:
         parts[3:] /= stress.length
         names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > tolerances.OPEN_SHARE]
         if names:
-            notes.append(f"constrained more than once: {joint.name} {', '.join(names)}")
+            notes.append(f"redundantly constrained: {joint.name} {', '.join(names)}")
     for r, owner in enumerate(layout.rows):
         size = np.where(stress.largest > 0.0, stress.largest, 1.0)
         unit = stress.length if layout.tables["closures"]["measure"][r] != 1.0 else 1.0
         share = np.abs(stress.multipliers[:, r] / size).max(initial=0.0) / unit
         if owner >= len(layout.mechanism.joints) and share > tolerances.OPEN_SHARE:
-            notes.append(f"constrained more than once: {layout.mechanism.owner_path(owner)}")
+            notes.append(f"redundantly constrained: {layout.mechanism.owner_path(owner)}")
     return notes

@@ -12,8 +12,8 @@ from heuncli.motion.integration.run.event_frequency import FEW_STAGES
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
 
 MESSAGE = (
-    "events: {cut} of the first {steps} steps end at an event; up to t = {t:.3g} s {name} takes {few} evaluations, "
-    "{method} {many}"
+    "events (contact, condition, jump, table point): {cut} of the first {steps} steps end at one; up to t = {t:.3g} s "
+    "{name} takes {few} evaluations, {method} {many}"
 )
 
 

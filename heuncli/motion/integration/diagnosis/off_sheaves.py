@@ -29,7 +29,7 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
             violations = np.flatnonzero(is_taut & (angle < -tolerances.OFF_SHEAVE))
             message, hint = (
                 "lifts off a sheave",
-                "end the run before; a rope that touches a sheave only at times cannot be modelled",
+                "end the run earlier; a rope that touches a sheave only at times cannot be modelled",
             )
         elif part.kind == "strand":
             violations = np.flatnonzero(

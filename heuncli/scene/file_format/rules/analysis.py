@@ -34,7 +34,7 @@ def check_times(draft: DraftDocument) -> Iterator[Violation]:
             if t < 0.0:
                 yield Violation((*path, "times", i), f"the run starts at 0; {t:g} s is before it", START_HINT)
             elif i and t <= analysis.times[i - 1]:
-                message = f"times must ascend, but {t:g} follows {analysis.times[i - 1]:g}"
+                message = f"times must increase, but {t:g} follows {analysis.times[i - 1]:g}"
                 yield Violation((*path, "times", i), message, ASCENDING_HINT)
         if analysis.times == [0.0] and analysis.type in (None, "motion"):
             yield Violation((*path, "times"), "the motion ends at its start",
@@ -88,13 +88,13 @@ def check_rest_start(draft: DraftDocument) -> Iterator[Violation]:
         initial = getattr(joint, "initial", None)
         for key in ("rate", "speed"):
             if name not in driven and getattr(initial, key, None):
-                yield Violation(("joints", name, "initial", key), f"type: rest takes no start {key}", hint, key=True)
+                yield Violation(("joints", name, "initial", key), f"type: rest takes no initial {key}", hint, key=True)
     for name, body in document.bodies.items():
         for key in ("velocity", "angular_velocity"):
             value = getattr(body, key)
             if value is not None and any(getattr(value, "vector", value)):
                 quantity = key.replace("_", " ")
-                yield Violation(("bodies", name, key), f"type: rest takes no start {quantity}", hint, key=True)
+                yield Violation(("bodies", name, key), f"type: rest takes no initial {quantity}", hint, key=True)
 
 
 @rule("tolerance")

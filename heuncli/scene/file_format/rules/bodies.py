@@ -18,7 +18,7 @@ SIZES_HINT = "give a value above 0, in SI or with its unit"
 EDGES_HINT = "its three edges, in m"
 FULL_FRICTION_HINT = "the rate at which friction is nearly full, small compared with those of the motion: 0.01"
 POSITIVE_HINTS = {
-    "mass": "a body needs a mass: for a massless bar use a joint of type rod, between points a spring",
+    "mass": "a body needs a mass; a massless bar is a joint of type rod, a massless spring a force of type spring",
     "duration": "for one instant leave duration and samples out", "step": "in s, or with a unit: 1 ms",
     "inner_radius": "a solid one has no inner_radius",
     "length": "leave it out for the length as assembled; for 0 use a ball",
@@ -26,8 +26,8 @@ POSITIVE_HINTS = {
     "strength": "in Pa, or with a unit: 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
 NEGATIVE_HINTS = {
-    "torque": "it resists in both directions: give its size",
-    "force": "it resists in both directions: give its size",
+    "torque": "it resists motion in both directions: give its magnitude",
+    "force": "it resists motion in both directions: give its magnitude",
 }
 
 
@@ -61,7 +61,11 @@ def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
                 )
         elif len(given_keys) < 3:
             missing = [key for key in ("mass", "center", "inertia") if key not in given_keys]
-            hint = "inertia: [0, 0, 0] makes a point mass" if missing == ["inertia"] else "or give shapes instead"
+            hint = (
+                "inertia: [0, 0, 0] makes a point mass"
+                if missing == ["inertia"]
+                else "give mass, center and inertia, or shapes"
+            )
             yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
 
 
@@ -83,7 +87,7 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation((*shape_path, "radius"), message, "to_radius: 0 is a tip")
             if isinstance(shape, fs.BoxShape) and min(shape.size) <= 0.0:
                 yield Violation(
-                    (*shape_path, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES_HINT
+                    (*shape_path, "size"), f"a size must be greater than 0, but is {min(shape.size):g}", EDGES_HINT
                 )
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
@@ -91,7 +95,7 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
         if isinstance(joint, f.Bearing) and joint.bearing is not None:
             yield from require_positive((*path, "bearing"), joint.bearing, "diameter", "width")
         if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
-            message = f"a stiffness must be more than 0, not {joint.stiffness:g}"
+            message = f"a stiffness must be greater than 0, but is {joint.stiffness:g}"
             yield Violation(
                 (*path, "stiffness"), message, "with {moment: 0} or {force: 0} the other joints carry the load"
             )
@@ -106,7 +110,7 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield from require_positive(path, load, "radius", "length")
         if isinstance(load, f.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
             yield Violation(
-                (*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL_FRICTION_HINT
+                (*path, "speed"), f"speed must be greater than 0, but is {load.speed.constant:g}", FULL_FRICTION_HINT
             )
     for name, section in draft.document.sections.items():
         path = ("sections", name)
@@ -132,7 +136,7 @@ def require_positive(path: Path_, owner: object, *keys: str) -> Iterator[Violati
         value = getattr(owner, key, None)
         if isinstance(value, float) and value <= 0.0:
             yield Violation(
-                (*path, key), f"{key} must be more than 0, not {value:g}", POSITIVE_HINTS.get(key, SIZES_HINT)
+                (*path, key), f"{key} must be greater than 0, but is {value:g}", POSITIVE_HINTS.get(key, SIZES_HINT)
             )
 
 
@@ -143,7 +147,7 @@ def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
         for key, value in iter_resistances(load):
             if isinstance(value, float) and value < 0.0:
                 hint = NEGATIVE_HINTS.get(
-                    key, "a resistance is a number above 0; to drive, use a torque, force or drive"
+                    key, "give a resistance as a positive number; to drive, use a torque, a force or a drive"
                 )
                 yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
     for i, item in draft.document.expect.items():
@@ -266,9 +270,11 @@ def check_inertia_physical(draft: DraftDocument) -> Iterator[Violation]:
     """No principal moment is negative, or greater than the sum of the others."""
     for path, moments, excess in iter_impossible_moments(draft):
         if excess > tolerances.INERTIA_REFUSED:
-            message = f"the principal moments {moments} are impossible: each is at most the sum of the other two"
+            message = f"the principal moments {moments} are impossible: each must be at most the sum of the other two"
             yield Violation(
-                path, message, "is it about the centre of mass? is the sign of the deviation right (element = -D)?"
+                path,
+                message,
+                "check that it is about the centre of mass, and the signs of the products of inertia (element = -D)",
             )
 
 
@@ -278,7 +284,7 @@ def check_inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
     for path, moments, excess in iter_impossible_moments(draft):
         if excess <= tolerances.INERTIA_REFUSED:
             yield Violation(
-                path, f"the principal moments {moments} break A1 + A2 >= A3 by {excess:.1e}; used as given",
+                path, f"the principal moments {moments} violate A1 + A2 >= A3 by {excess:.1e}; used as given",
                 "give them with more digits",
             )  # fmt: skip
 

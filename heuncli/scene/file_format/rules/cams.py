@@ -59,7 +59,7 @@ def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, f"disc and follower are both {shaft.to.body}", "the follower must be another body")
         elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
             relation = "parallel" if isinstance(follower, f.PinJoint) else "perpendicular"
-            message = f"the axis of {cam.of[1]} is not {relation} to that of {cam.of[0]}"
+            message = f"the axis of joint {cam.of[1]} is not {relation} to that of joint {cam.of[0]}"
             yield Violation(path, message, "a follower must move perpendicular to the disc's axis")
         if cam.at.body != follower.to.body:
             message = f"the point is on {cam.at.body}, but the follower is {follower.to.body}"
@@ -94,7 +94,7 @@ def check_cam_contact(draft: DraftDocument) -> Iterator[Violation]:
         if cam.radius is not None and cam.radius <= 0.0:
             yield Violation(
                 (*path, "radius"),
-                f"radius must be more than 0, not {cam.radius:g}",
+                f"radius must be greater than 0, but is {cam.radius:g}",
                 "without a roller write contact: point",
             )
         if cam.normal == (0.0, 0.0, 0.0):
@@ -108,7 +108,9 @@ def check_cam_contact(draft: DraftDocument) -> Iterator[Violation]:
         if cam.restitution is not None and cam.two_sided:
             hint = "leave out one of the two"
             yield Violation(
-                (*path, "restitution"), "restitution of a follower guided on both sides, which has no impacts", hint
+                (*path, "restitution"),
+                "restitution given, but this follower is guided on both sides: it has no impacts",
+                hint,
             )
 
 
@@ -125,7 +127,7 @@ def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
         turns = math.tau / period if period > 0.0 else 0.0
         if not (period > 0.0 and abs(turns - round(turns)) <= tolerances.TABLE_ENDS and round(turns) >= 1):
             message = (
-                f"the lift {cam.lift.name} does not fit a revolution: its period is {math.degrees(period):.6g} deg"
+                f"the period of table {cam.lift.name}, {math.degrees(period):.6g} deg, does not divide one revolution"
             )
             yield Violation(
                 ("couplings", name, "lift"), message, "period: 360 deg, or 360 deg divided by a whole number"
@@ -138,7 +140,7 @@ def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterat
     """
     first, last = cam.lift.x[0], cam.lift.x[-1]
     if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
-        message = f"the lift {cam.lift.name} covers {math.degrees(last - first):.6g} deg, more than one revolution"
+        message = f"table {cam.lift.name} covers {math.degrees(last - first):.6g} deg, more than one revolution"
         yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
         return
     shaft = draft.document.joints.get(cam.of[0]) if cam.of else None

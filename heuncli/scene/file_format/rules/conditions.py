@@ -44,10 +44,13 @@ def check_event_name(draft: DraftDocument) -> Iterator[Violation]:
         path = ("analysis", "events", name)
         if not is_name(name):
             yield Violation(
-                path, f"'{name}' is not a valid name", "a name is a letter, then letters, digits and _", key=True
+                path,
+                f"'{name}' is not a valid name",
+                "a name starts with a letter and contains only letters, digits and _",
+                key=True,
             )
         elif name == UNTIL:
-            message = f"'{name}' is reserved: results use it for what ended the motion"
+            message = f"'{name}' is reserved: in the results it is the event that ended the motion"
             yield Violation(path, message, f"call it {name}_1, for example", key=True)
 
 
@@ -59,7 +62,7 @@ def check_event_motion(draft: DraftDocument) -> Iterator[Violation]:
         return
     for path, _ in iter_conditions(draft):
         message = f"{path[-1]} needs a motion, but type: {kind} is one instant"
-        yield Violation(path, message, "give analysis a duration: the longest time to wait", key=True)
+        yield Violation(path, message, "give analysis a duration: the maximum length of the run", key=True)
 
 
 @rule("event-path")

@@ -53,7 +53,9 @@ def check_coupling_count(draft: DraftDocument) -> Iterator[Violation]:
         counts, coupled_joints = COUNTS[coupling.type], coupling.of
         if len(coupled_joints) not in counts:
             counts_text = " or ".join(map(str, counts))
-            message = f"of names {', '.join(coupled_joints) or 'no joint'}"
+            plural = "" if len(coupled_joints) == 1 else "s"
+            listed = f": {', '.join(coupled_joints)}" if coupled_joints else ""
+            message = f"found {len(coupled_joints)} joint{plural}{listed}"
             yield Violation(
                 ("couplings", name, "of"),
                 message,
@@ -73,9 +75,9 @@ def check_gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
         if gear.ratio == 0.0:
             yield Violation((*path, "ratio"), "a ratio of zero locks the first gear", "give another ratio")
         if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
-            hint = "give two numbers of teeth, first gear first; for a ring add internal: true"
+            hint = "give the teeth of both gears, first gear first; for a ring gear add internal: true"
             teeth_text = ", ".join(f"{z:g}" for z in gear.teeth)
-            yield Violation((*path, "teeth"), f"teeth {teeth_text} do not make a pair of gears", hint)
+            yield Violation((*path, "teeth"), f"teeth must be two numbers of at least 1, found {teeth_text}", hint)
         if gear.internal and gear.teeth is None and gear.ratio is None:
             yield Violation((*path, "internal"), "internal is given without teeth", "give teeth, too", key=True)
         for key, limit in (("pressure_angle", 60.0), ("helix", 80.0)):
@@ -95,7 +97,7 @@ def check_friction_with_teeth(draft: DraftDocument) -> Iterator[Violation]:
         return
     for name, gear in draft.document.couplings.items():
         if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
-            message = "friction with a coefficient does not yet include the separating force of teeth"
+            message = "friction by a coefficient does not yet account for the separating force of gear teeth"
             hint = "set pressure_angle: 0 to neglect this force, or give the friction as a torque"
             yield Violation(("couplings", name), message, hint, key=True)
 
@@ -108,7 +110,7 @@ def check_belt_name(draft: DraftDocument) -> Iterator[Violation]:
             continue
         if name in draft.names.entries["forces"]:
             message = (
-                f"{name} is also the name of a force, but the belt's pretension is listed under it among the loads"
+                f"{name} is also the name of a force; the belt's pretension is listed as a load under the same name"
             )
             yield Violation(("couplings", name), message, "give one of them another name", key=True)
         event = f"{name}_pushes"
@@ -128,7 +130,9 @@ def check_coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
             if len(coupling.radii) != 2 or any(r <= 0.0 for r in coupling.radii):
                 radii_text = ", ".join(f"{r:g}" for r in coupling.radii)
                 yield Violation(
-                    (*path, "radii"), f"{radii_text} m are not the radii of two pulleys", "give two lengths above 0"
+                    (*path, "radii"),
+                    f"radii must be two lengths above 0, found {radii_text} m",
+                    "give one for each pulley",
                 )
             if coupling.pretension < 0.0:
                 yield Violation(
@@ -146,7 +150,9 @@ def check_coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(coupling, RatioEntry):
             continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
-            message = f"number of joints {len(coupling.of)}, number of factors {len(coupling.factors)}"
+            joint_count, factor_count = len(coupling.of), len(coupling.factors)
+            joints, factors = ("" if n == 1 else "s" for n in (joint_count, factor_count))
+            message = f"found {joint_count} joint{joints} and {factor_count} factor{factors}"
             yield Violation(
                 ("couplings", name, "factors"), message, "give at least two joints, and one factor for each"
             )
@@ -175,11 +181,14 @@ def find_place_errors(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
     if (place.point is None) == (place.sheave is None):
         yield "neither a point nor a sheave, or both", "write body.point, or {sheave: body.point, radius: 0.3}"
     elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
-        yield "a sheave without a radius", "add radius: 0.3; to slide through a plain point write body.point"
+        yield "a sheave without a radius", "add radius: 0.3; for a point the rope slides through write body.point"
     elif place.point is not None:
         keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
         if keys:
-            yield f"{keys[0]} given for a plain point", "for a sheave write {sheave: body.point, radius: 0.3}"
+            yield (
+                f"{keys[0]} given for a point without a sheave",
+                "for a sheave write {sheave: body.point, radius: 0.3}",
+            )
 
 
 @rule("rope-bounds")
@@ -198,7 +207,7 @@ def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
         if length is not None and not length > 0.0:
             yield Violation(
                 (*path, "length"),
-                f"length must be more than 0, not {length:g} m",
+                f"length must be greater than 0, but is {length:g} m",
                 "leave it out for the length as assembled",
             )
         if rope.length is not None and any(place.slip == "none" for place in rope.through):
@@ -215,7 +224,7 @@ def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
             message = f"restitution {rope.restitution:g} is not between 0 and 1"
             yield Violation((*path, "restitution"), message, "0: it stays taut, 1: full rebound")
         if not rope.tension_only:
-            message = "restitution of a rope that also pushes, which has no impacts"
+            message = "restitution given, but this rope never goes slack: it has no impacts"
             yield Violation((*path, "restitution"), message, "add tension_only: true")
 
 
@@ -227,7 +236,7 @@ def check_rope_elasticity(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
             yield Violation((*path, "damping"), "damping of an inextensible rope", "add stiffness: 4e5 N/m")
         return
     if not rope.stiffness > 0.0:
-        message = f"stiffness must be more than 0, not {rope.stiffness:g} N/m"
+        message = f"stiffness must be greater than 0, but is {rope.stiffness:g} N/m"
         yield Violation(
             (*path, "stiffness"), message, "EA/length of the whole rope; leave it out for an inextensible rope"
         )

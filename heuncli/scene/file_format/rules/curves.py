@@ -35,8 +35,8 @@ def check_expected_curve(draft: DraftDocument) -> Iterator[Violation]:
                 hint = "the curve gives the expected values over time; write a separate expectation for this"
                 yield Violation((*path, key), f"'{key}' given together with 'curve'", hint, key=True)
         if item.within is not None and not 0.0 < item.within <= 1.0:
-            hint = "it is the fraction of the points that must lie within rel and abs: within: 0.95"
-            yield Violation((*path, "within"), f"within {item.within:g} is not above 0 and at most 1", hint)
+            hint = "the fraction of the points that must lie within rel and abs, for example 0.95"
+            yield Violation((*path, "within"), f"within must be above 0 and at most 1, but is {item.within:g}", hint)
         if (kind := find_analysis_type(draft.document)) != "motion" and "analysis" not in draft.unread:
             message = f"a curve needs a motion, but type: {kind} is one instant"
             yield Violation(

@@ -108,7 +108,7 @@ def check_dimensions(path: Path_, value: Any, allowed: tuple[u.Dimension, ...]) 
         expected = " or ".join(u.describe(dimension) for dimension in allowed)
         message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {expected}"
         units = " or ".join(u.si_unit(dimension) for dimension in allowed)
-        yield Violation(path, message, f"a number without a unit is read in {units}")
+        yield Violation(path, message, f"a number without a unit is taken to be in {units}")
 
 
 @rule("expect-instants", for_check=True)
@@ -136,7 +136,7 @@ def check_expected_instants(draft: DraftDocument) -> Iterator[Violation]:
             if not may_end_before and abs(nearest_instant - item.at) > tolerances.SAME_INSTANT * max(
                 instants[-1], abs(item.at)
             ):
-                message = f"{item.at:.10g} s is not an instant of the output; the nearest is {nearest_instant:.10g} s"
+                message = f"{item.at:.10g} s is not an output time; the nearest is {nearest_instant:.10g} s"
                 yield Violation((*path, "at"), message, "add it to analysis.times, or change samples")
                 continue
         if item.is_ is not None and not item.is_bounded:

@@ -86,7 +86,7 @@ def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
             and (end_point := find_point(body, load.to.at))
             and end_point == find_point(body, load.from_.at)
         ):
-            yield Violation(path, "from and to are the same point", "its force has no direction")
+            yield Violation(path, "from and to are the same point", "give two points: the force acts along their line")
 
 
 def make_end_key(end: EndEntry) -> tuple[str, object]:
@@ -101,7 +101,7 @@ def check_duplicate_joint(draft: DraftDocument) -> Iterator[Violation]:
         ends = frozenset((make_end_key(joint.from_), make_end_key(joint.to)))
         key = joint.type, ends, getattr(joint, "axis", None), getattr(joint, "normal", None)
         if key in seen:
-            message = f"same joint as {seen[key]}: their reactions are open (indeterminate)"
+            message = f"identical to joint {seen[key]}: their reactions are open (indeterminate)"
             yield Violation(("joints", name), message, "keep one of them", key=True)
         seen.setdefault(key, name)
 
@@ -176,7 +176,7 @@ def check_drive_contradiction(draft: DraftDocument) -> Iterator[Violation]:
             if start_value is None or expected is None:
                 continue
             if abs(start_value - expected) > tolerances.SAME_VALUE * max(abs(start_value), abs(expected), 1.0):
-                message = f"{key} starts at {start_value:g}, but the drive {name} prescribes {expected:g} at t = 0"
+                message = f"{key} starts at {start_value:g}, but drive {name} prescribes {expected:g} at t = 0"
                 yield Violation(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
@@ -200,7 +200,7 @@ def check_drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
             continue
         for _, t, before, after in find_jumps(value, duration)[:1] if not by_rate else ():
             message = f"the {key} jumps from {before:g} to {after:g} at t = {t:g} s"
-            yield Violation(path, message, "a body cannot jump: change the value over a short time")
+            yield Violation(path, message, "a step would need an infinite force: change the value over a short time")
 
 
 @rule("drive-length")
@@ -214,5 +214,5 @@ def check_drive_length(draft: DraftDocument) -> Iterator[Violation]:
             continue
         vanishing_time = find_first_not_positive(value, duration)
         if vanishing_time is not None:
-            message = f"the length of the {owner} reaches 0 at t = {vanishing_time:.4g} s"
-            yield Violation(path, message, "end the run before, or keep the length above 0")
+            message = f"the length of {owner} reaches 0 at t = {vanishing_time:.4g} s"
+            yield Violation(path, message, "end the run earlier, or keep the length above 0")

@@ -103,7 +103,7 @@ def check_latch_joint(draft: DraftDocument) -> Iterator[Violation]:
         coordinate_path = f"{coordinate.joint}.{coordinate.quantity}"
         if (coordinate.joint, coordinate.quantity) in driven:
             drive_name = driven[coordinate.joint, coordinate.quantity]
-            hint = "keep the drive constant there, or hold another coordinate"
+            hint = "keep the drive constant instead, or latch another coordinate"
             yield Violation(where, f"{coordinate_path} is driven by {drive_name}: no latch can hold it", hint)
         rod = draft.document.joints.get(coordinate.joint)
         fixing_keys = [key for key in ("length", "tension_only") if getattr(rod, key, None)]

@@ -40,7 +40,7 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             if not kind.accepts_load("torque"):
                 where = " or ".join(f"{TORQUE_WORDS[k.motions[0]]} {k.name}" for k in kinds_accepting_load("torque"))
                 hint = "between two points use an actuator, on a body a couple"
-                yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
+                yield Violation((*path, "joint"), f"type: torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, fe.MotorEntry):
             if kind.coordinates != ("angle",):
                 hint = "in a slide use a force of type torque, with a value in guide.speed"
@@ -128,7 +128,7 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, extra_keys[0]),
                 message,
-                f"include all of it in {law_keys[0]}, or leave {law_keys[0]} out",
+                f"put the whole law in {law_keys[0]}, or leave {law_keys[0]} out",
                 key=True,
             )
         if isinstance(load, fe.BushingEntry) and all(
@@ -166,13 +166,13 @@ def check_brake(draft: DraftDocument) -> Iterator[Violation]:
                 continue
             path = ("forces", name, key)
             if value.uses:
-                message = f"the size of friction may depend on time alone, not on {'.'.join(value.uses[0])}"
+                message = f"the magnitude of friction may depend on time alone, not on {'.'.join(value.uses[0])}"
                 yield Violation(
                     path, message, "for one that depends on a coordinate use a torque: -size*tanh(shaft.rate/0.01)"
                 )
             elif (t := find_first_negative(value, duration)) is not None:
                 message = f"{key} must not be negative, but is {value.value(t):g} at t = {t:.4g} s"
-                yield Violation(path, message, "it resists in both directions: give its size")
+                yield Violation(path, message, "it resists motion in both directions: give its magnitude")
 
 
 @rule("bushing-table")
@@ -198,7 +198,7 @@ def check_friction_coefficient(name: str, load: f.FrictionEntry, kind: JointKind
         yield Violation((*path, "joint"), message, hint)
     elif kind.follows_path:
         message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
-        yield Violation((*path, "joint"), message, "along a path give its size as force")
+        yield Violation((*path, "joint"), message, "along a path give its magnitude as force")
     elif kind.motions == ("turning",):
         if load.radius is None:
             hint = "add the radius of the journal, for example radius: 20 mm"
@@ -229,7 +229,7 @@ def check_load_dimension(draft: DraftDocument) -> Iterator[Violation]:
         for key, value, dimension in checks:
             if value.dimension is not None and value.dimension != dimension:
                 message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"
-                hint = f"a number without a unit is read in {u.si_unit(dimension)}"
+                hint = f"a number without a unit is taken to be in {u.si_unit(dimension)}"
                 yield Violation(("forces", name, key), message, hint)
 
 
@@ -305,7 +305,7 @@ def check_impulse_when(draft: DraftDocument) -> Iterator[Violation]:
                 hint = "add when: a condition such as shaft.angle < 0; for known instants write one entry each"
                 yield Violation((*path, "every"), "'every' without 'when'", hint, key=True)
         elif "time" in impulse.model_fields_set:
-            hint = "leave one of them out; to act only after an instant: when: t > 0.1 and shaft.angle < 0"
+            hint = "leave one of them out; to act only after a given time: when: t > 0.1 and shaft.angle < 0"
             yield Violation((*path, "when"), "'time' and 'when' are both given", hint, key=True)
         elif kind != "motion" and "analysis" not in draft.unread:
             message = f"when needs a motion, but type: {kind} is one instant"

@@ -52,7 +52,7 @@ def check_smooth_for_scipy(draft: DraftDocument) -> Iterator[Violation]:
     if row is None or row.kind != "SciPy" or find_analysis_type(draft.document) != "motion":
         return
     for path, obstacle in iter_nonsmooth_parts(draft):
-        yield Violation(path, f"{row.name} cannot solve {obstacle}", SMOOTH_ONLY, key=True)
+        yield Violation(path, f"{row.name} cannot handle {obstacle}", SMOOTH_ONLY, key=True)
 
 
 def iter_nonsmooth_parts(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:

@@ -36,7 +36,7 @@ def check_motor_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "limit"), "limit must not be 0", "give the limit of its torque in both directions")
         for key in ("mass", "inertia") if motor.rotor is not None else ():
             if not getattr(motor.rotor, key) > 0.0:
-                message = f"{key} of the rotor must be more than 0, not {getattr(motor.rotor, key):g}"
+                message = f"{key} of the rotor must be greater than 0, but is {getattr(motor.rotor, key):g}"
                 yield Violation((*path, "rotor", key), message, "give a positive value, or leave the rotor out")
 
 
@@ -47,5 +47,5 @@ def check_motor_rotor(draft: DraftDocument) -> Iterator[Violation]:
         name = rotor_name(motor)
         for block in ("bodies", "joints", "couplings"):
             if name in getattr(draft.document, block):
-                message = f"'{name}' is reserved for the body of the rotor of {motor}"
+                message = f"'{name}' is reserved for the rotor of forces.{motor}"
                 yield Violation((block, name), message, "give one of them another name", key=True)

@@ -11,7 +11,7 @@ from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, r
 @rule("bad-name")
 def check_name_form(draft: DraftDocument) -> Iterator[Violation]:
     """A name is a letter, then letters, digits and _."""
-    hint = "a name is a letter, then letters, digits and _"
+    hint = "a name starts with a letter and contains only letters, digits and _"
     for block in NAMED_BLOCKS:
         for name in draft.names.entries[block]:
             if not is_name(name):
@@ -32,7 +32,7 @@ def check_reserved_name(draft: DraftDocument) -> Iterator[Violation]:
                 meaning = (
                     "the ground"
                     if name == "ground"
-                    else "a word of expressions"
+                    else "a built-in name of expressions"
                     if block != "forces"
                     else "a cause in the results"
                 )

@@ -28,5 +28,8 @@ def check_not_yet(draft: DraftDocument) -> Iterator[Violation]:
     for feature, find_paths in NOT_YET:
         for path in find_paths(draft):
             yield Violation(
-                path, f"not yet: {feature}", "leave it out: planned for a later version", key=path[-1] != "type"
+                path,
+                f"not available yet: {feature}",
+                "leave it out: planned for a later version",
+                key=path[-1] != "type",
             )

@@ -120,7 +120,7 @@ def check_path_restitution(draft: DraftDocument) -> Iterator[Violation]:
             continue
         path = ("joints", name, "restitution")
         if not joint.one_sided:
-            message = "restitution of a path that holds in both directions, which has no impacts"
+            message = "restitution given, but this path guides on both sides: it has no impacts"
             yield Violation(path, message, "add one_sided: true", key=True)
         if not 0.0 <= joint.restitution <= 1.0:
             hint = "0: no rebound, 1: full rebound"

@@ -94,7 +94,9 @@ def _check_joints(draft: DraftDocument) -> Iterator[Violation]:
             x, y, z = unit_vector(direction)
             if (math.hypot(x, y) if along_z else abs(z)) > tolerances.PARALLEL:
                 requirement = "must be the z axis" if along_z else "must lie in the xy plane"
-                yield Violation((*path, key), f"in a planar model {key} of a {joint.type} {requirement}", SPATIAL_HINT)
+                yield Violation(
+                    (*path, key), f"in a planar model the {key} of a {joint.type} {requirement}", SPATIAL_HINT
+                )
 
 
 def z_axis_cosine(orientation: fs.Orientation) -> float:

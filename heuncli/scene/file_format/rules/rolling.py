@@ -27,7 +27,7 @@ def check_wheel_form(draft: DraftDocument) -> Iterator[Violation]:
             and wheel.axle is None
             and not planar
         ):
-            hint = "add axis: of its axle, in its own axes, for example [0, 1, 0]; for a ball write shape: sphere"
+            hint = "add axis: its axle in body axes, for example [0, 1, 0]; for a ball write shape: sphere"
             yield Violation(path, "a disc without an axle", hint, key=True)
         for key in ("axis", "slides") if wheel.shape == "sphere" else ():
             if getattr(wheel, key) is not None:
@@ -101,7 +101,7 @@ def check_wheel_planar(path: tuple[str, str], wheel: RollingEntry) -> Iterator[V
         if (math.hypot(x, y) if is_along_z else abs(z)) > tolerances.PARALLEL:
             requirement = "must be the z axis" if is_along_z else "must lie in the xy plane"
             hint = "or declare space: spatial"
-            yield Violation((*path, key), f"in a planar model {key} of a wheel {requirement}", hint)
+            yield Violation((*path, key), f"in a planar model the {key} of a wheel {requirement}", hint)
     if wheel.slides is not None:
         message = "in a planar model a wheel that slides along its track only keeps its distance"
         yield Violation((*path, "slides"), message, "use a joint of type plane instead", key=True)

@@ -72,7 +72,11 @@ def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) 
     if body is not None:
         ends = [find_point(body, end) for end in (section.from_, section.to)]
         if ends[0] is not None and ends[0] == ends[1]:
-            yield Violation((*path, "to"), "from and to are the same point", "the normal points from one to the other")
+            yield Violation(
+                (*path, "to"),
+                "from and to are the same point",
+                "give two points: the normal points from one to the other",
+            )
     if section.side is not None:
         yield Violation(
             (*path, "side"), "side given for a run of cuts, which shows both sides", "leave it out", key=True
@@ -91,7 +95,7 @@ def check_section_matter(draft: DraftDocument) -> Iterator[Violation]:
         if body is None or body.shapes is not None or section.piece is not None:
             continue
         if body.piece is None or is_run(section):
-            message = f"{section.body} has no shapes: the part beyond the cut is not known"
+            message = f"{section.body} has no shapes: the mass beyond the cut is not known"
             hint = "give the body shapes, for example [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]" + (
                 "" if is_run(section) else ", or give the section a piece: {mass, center, inertia}"
             )
@@ -111,7 +115,7 @@ def check_first_axis(draft: DraftDocument) -> Iterator[Violation]:
         if section.first_axis is None or normal is None or not any(normal) or not any(section.first_axis):
             continue
         if vector_length(cross_product(unit_vector(section.first_axis), unit_vector(normal))) < tolerances.PARALLEL:
-            hint = "give a direction across the normal: only its part perpendicular to the normal is used"
+            hint = "give one not parallel to the normal: only its component perpendicular to the normal is used"
             yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
 
 

@@ -135,7 +135,7 @@ def check_restitution(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(joint, f.RodJoint) or joint.restitution is None:
             continue
         if not joint.tension_only:
-            message = "restitution of a rod that holds in both directions, which has no impacts"
+            message = "restitution given, but this rod carries tension and compression: it has no impacts"
             yield Violation(path, message, "for a rope add tension_only: true; for limits use stops", key=True)
         if not 0.0 <= joint.restitution <= 1.0:
             yield Violation(path, f"restitution {joint.restitution:g} is not between 0 and 1", hint)

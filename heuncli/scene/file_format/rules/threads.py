@@ -32,9 +32,9 @@ def find_friction_errors(friction: ThreadFrictionEntry) -> Iterator[tuple[str, s
         what = (
             "neither coefficient nor efficiency is"
             if friction.coefficient is None
-            else "coefficient and efficiency are"
+            else "both coefficient and efficiency are"
         )
-        yield "", f"{what} given", "give coefficient: 0.12 of the flanks, or efficiency: 0.4 from rotation to thrust"
+        yield "", f"{what} given", "give coefficient: 0.12 (of the flanks) or efficiency: 0.4 (rotation to thrust)"
     if friction.coefficient is not None and friction.coefficient < 0.0:
         yield "coefficient", f"coefficient must not be negative, but is {friction.coefficient:g}", "for example 0.12"
     if friction.efficiency is not None and not 0.0 < friction.efficiency <= 1.0:
@@ -42,7 +42,11 @@ def find_friction_errors(friction: ThreadFrictionEntry) -> Iterator[tuple[str, s
     if friction.efficiency is not None and friction.flank_angle != 0.0:
         yield "flank_angle", "flank_angle given with an efficiency, which already includes all losses", "leave it out"
     if not friction.radius > 0.0:
-        yield "radius", f"radius must be more than 0, not {friction.radius:g} m", "half the mean diameter of the thread"
+        yield (
+            "radius",
+            f"radius must be greater than 0, but is {friction.radius:g} m",
+            "half the mean diameter of the thread",
+        )
     if not 0.0 <= friction.flank_angle <= math.radians(60.0):
         angle_text = f"{math.degrees(friction.flank_angle):.4g} deg"
         yield (
@@ -51,4 +55,4 @@ def find_friction_errors(friction: ThreadFrictionEntry) -> Iterator[tuple[str, s
             "half the thread angle: 15 deg for Tr, 30 deg for M",
         )
     if not friction.speed > 0.0:
-        yield "speed", f"speed must be more than 0, not {friction.speed:g}", FULL_FRICTION_HINT
+        yield "speed", f"speed must be greater than 0, but is {friction.speed:g}", FULL_FRICTION_HINT
