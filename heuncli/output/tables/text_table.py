@@ -48,8 +48,13 @@ class TextTable(NamedTuple):
 
 
 def format_head(label: str, unit: str) -> str:
-    """Format the head of a column of numbers."""
-    return f"{label} [{unit}]" if unit != "1" else label
+    """Format the head of a column of numbers; a plain number has no unit, or "1"."""
+    return label if unit in ("", "1") else f"{label} [{unit}]"
+
+
+def append_unit(text: str, unit: str) -> str:
+    """Append the unit to a number, unless it is a plain one."""
+    return text if unit in ("", "1") else f"{text} {unit}"
 
 
 def format_plain(table: TextTable, width: int | None = None) -> str:
