@@ -14,6 +14,7 @@ EPS = 2.0**-52
 # -- rank: which conditions of the joints hold what others hold already
 RANK = 1e-9  # of a row scaled to 1, what is left of it by the others: nine digits, what a closed pose gives
 NEARLY_DEPENDENT = 1e-12  # the same: what is less is rounding of coordinates; between this and RANK dependence is told
+NO_SINGULAR_VALUE = EPS  # of the largest, times the longer side of a matrix known to all its digits: below is rounding
 RANK_OF_GAP = 100.0  # times the gap: a pose is known to its gap only, and singular values amplify it by some tens
 NEIGHBOUR = 1e-3  # [rad] or of the size: an accident of the start is left by 1e-3, far above RANK, the machine hardly
 MOVES = 1e-6  # of rates drawn between -1 and 1: less, after projection on the closures, is rounding
@@ -73,6 +74,7 @@ STEADY_CHANGE = (
 # -- orders
 CANCELS = 1e-9  # of the sum of the bodies' own amplitudes: drawings typed with ten digits balance that well
 SAME_PERIOD = 1e-2  # of the largest force or moment: two periods that differ more have no order to two digits
+SAME_WEIGHT = 1e-10  # of the largest singular value: places of weights that differ by less in effect serve alike
 ORDERS_SETTLED = (
     1e-12  # of the largest order: what the highest may be for all below them to be told; some FFT's roundings
 )
