@@ -1,4 +1,4 @@
-"""The figure of a chart: each run where its time and error say, the front, failures with notes, nothing from outside."""
+"""The figure of a chart: runs where their time and error say, the front, failures with notes, nothing from outside."""
 
 from __future__ import annotations
 
