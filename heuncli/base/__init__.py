@@ -2,5 +2,6 @@
 
 Neighbours use: `errors` (Problem, HeunError and its kinds), `tolerances` (every threshold), `joint_kinds.TYPES` and
 `method_rows.ROWS` (a row a joint kind, a row a method), `records.record` and `named_tuples.NamedTuple` (records),
-`files.write` (a file is written whole or not at all), `text_safety.escape` (text from outside), `spelling` (typos).
+`linear_algebra` (null spaces, least squares), `files.write` (a file is written whole or not at all),
+`text_safety.escape` (text from outside), `spelling` (typos).
 """

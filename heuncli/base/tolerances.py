@@ -16,6 +16,7 @@ EPS = 2.0**-52
 RANK = 1e-9
 # likewise: anything smaller is rounding of coordinates; between this and RANK the dependence is reported
 NEARLY_DEPENDENT = 1e-12
+NO_SINGULAR_VALUE = EPS  # relative to the largest, times the longer side of an exactly known matrix: below is rounding
 # factor on the constraint error: positions are known only to that error, singular values amplify it by some tens
 RANK_OF_GAP = 100.0
 # [rad] or relative to the size: a displacement that leaves an accidental start position, far above RANK
@@ -91,6 +92,8 @@ STEADY_CHANGE = (
 CANCELS = 1e-9  # relative to the sum of the bodies' own amplitudes: models typed with ten digits balance that well
 # relative to the largest force or moment: if two periods differ more, orders are not known to two digits
 SAME_PERIOD = 1e-2
+# relative to the largest singular value: places of weights that differ by less in effect serve alike
+SAME_WEIGHT = 1e-10
 ORDERS_SETTLED = (
     1e-12  # relative to the largest order: limit on the highest orders for all lower ones to be reported; FFT roundings
 )

@@ -61,7 +61,7 @@ def _unit_in_metres(word: str, unit: str) -> float:
         size, dimension = u.parse_unit(unit)
     except Finding:
         raise cut_error(f"'{word}': '{unit}' is not a unit", ACCEPTED) from None
-    if dimension != u.parse_unit("m")[1]:
+    if dimension != u.LENGTH:
         raise cut_error(f"'{word}': {unit} is {u.describe(dimension)}, not a length", ACCEPTED)
     return size
 

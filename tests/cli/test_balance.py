@@ -120,9 +120,10 @@ def test_a_flywheel(heun: Heun, folder: Path) -> None:
 def test_the_table_draws_the_orders_in_letters(heun: Heun, crank: str) -> None:
     lines = heun("balance", crank).stdout.splitlines()
     begin = next(k for k, line in enumerate(lines) if line.startswith("ORDERS"))
-    first = lines[begin + 1]
-    assert first.startswith("      1 |") and first.rstrip().endswith("+")  # force and moment are largest there
-    assert any("T" in line for line in lines[begin + 2 : begin + 5])
+    first = lines[begin + 1].partition("│")
+    assert first[0].strip() == "1" and first[2].endswith("MF•")  # force and moment are largest there
+    assert any("•T" in line for line in lines[begin + 2 : begin + 5])
+    assert lines[-1] == "F force, M moment, T torque"
 
 
 def test_a_picture_is_saved(heun: Heun, crank: str, folder: Path) -> None:

@@ -16,7 +16,7 @@ import pytest
 import heuncli
 from tests.shared.folders import SPECS
 
-HOSTILE = "</h4><script>alert(1)</script>&lt;\" onload='x' \u202e"
+HOSTILE = "</h3><script>alert(1)</script>&lt;\" onload='x' \u202e"
 SCENE: dict[str, Any] = {
     "heun": 1,
     "title": HOSTILE,
@@ -26,7 +26,7 @@ SCENE: dict[str, Any] = {
     "joints": {"pivot": {"type": "pin", "axis": [1, 0, 0], "from": "ground.O", "to": "bar.t", "initial": {"angle": 1}}},
     "analysis": {"duration": 1, "samples": 11},
 }
-TAGS = {"div", "style", "h4", "small", "p", "table", "tr", "th", "td"}
+TAGS = {"div", "style", "h3", "small", "p", "ul", "li", "table", "thead", "tbody", "tr", "th", "td"}
 
 
 class Fragment(HTMLParser):
@@ -58,7 +58,7 @@ def study() -> heuncli.Solved:
 def test_a_hostile_title_is_text(study: heuncli.Solved) -> None:
     shown = Fragment(study._repr_html_())
     assert not shown.open and {tag for tag, _ in shown.tags} <= TAGS
-    assert {name for _, attrs in shown.tags for name in attrs} <= {"class", "colspan"}
+    assert {name for _, attrs in shown.tags for name in attrs} <= {"class", "colspan", "scope", "aria-label"}
     assert HOSTILE.replace("\u202e", "\\u202e") in shown.texts
     drawn = study.plot("joints.pivot.force")._repr_svg_()
     assert "<script" not in drawn and "\u202e" not in drawn

@@ -18,6 +18,7 @@ from heuncli.analyses.balancing.harmonics import make_plane_directions
 from heuncli.analyses.balancing.least_squares import solve_products
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import Body, Mechanism
 from heuncli.results.results import Array
@@ -171,10 +172,10 @@ def find_fixed_point(cycle: Cycle, body: int) -> Array | None:
     cross_matrices[:, 0, 1], cross_matrices[:, 0, 2], cross_matrices[:, 1, 2] = -local[:, 2], local[:, 1], -local[:, 0]
     cross_matrices -= np.swapaxes(cross_matrices, 1, 2)
     v = np.einsum("tji,tj->ti", R, states.v[:, body])
-    point = np.linalg.lstsq(cross_matrices.reshape(-1, 3), -v.ravel(), rcond=tolerances.PARALLEL)[0]
+    point = solve_least_squares(cross_matrices.reshape(-1, 3), -v.ravel(), tolerances.PARALLEL)
     residual = np.abs(v + cross_matrices @ point).max()
     scale = np.abs(states.v).max() + np.abs(v).max()
-    return np.asarray(point) if residual <= tolerances.SAME_VALUE * scale else None
+    return point if residual <= tolerances.SAME_VALUE * scale else None
 
 
 def find_default_radius(mechanism: Mechanism, weight_place: WeightPlace, axis: Array) -> float:

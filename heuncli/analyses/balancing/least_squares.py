@@ -15,9 +15,10 @@ from itertools import product
 import numpy as np
 
 from heuncli.analyses.balancing.candidates import NO_EFFECT, Candidate
+from heuncli.base import tolerances
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.results.results import Array
 
-DEPENDENCE_TOLERANCE = 1e-10  # of the largest singular value: below, places are equivalent
 MAX_STARTS = 1000  # combinations of directions of all weights
 MIN_DIRECTIONS = 6
 MAX_STEPS, MAX_HALVINGS = 200, 40
@@ -55,7 +56,7 @@ def solve_linear(A: Array, constant: Array, size: float) -> tuple[Array, bool]:
     x = np.zeros(A.shape[1])
     if not is_active.any():
         return x, True
-    solution, _, rank, _ = np.linalg.lstsq(A[:, is_active] / size, -constant / size, rcond=DEPENDENCE_TOLERANCE)
+    solution, _, rank, _ = np.linalg.lstsq(A[:, is_active] / size, -constant / size, rcond=tolerances.SAME_WEIGHT)
     x[is_active] = solution
     return x, int(rank) < A.shape[1]
 
@@ -149,7 +150,7 @@ def hessian(gradient: Callable[[Array], Array], x: Array) -> Array:
 def find_descent_step(H: Array, gauss: Array, g: Array) -> Array:
     """Return Newton's step; if it leads uphill the Gauss-Newton step, else the negative gradient."""
     for matrix in (H, gauss):
-        step = -np.linalg.lstsq(matrix, g, rcond=None)[0]
+        step = -solve_least_squares(matrix, g)
         if step @ g < 0.0:
             return np.asarray(step)
     return -g

@@ -9,6 +9,7 @@ import numpy as np
 
 from heuncli.analyses.lagrange.coordinates import CoordinateChoice, make_candidate_rows
 from heuncli.analyses.lagrange.instant import Instant
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
 from heuncli.results.results import Array
 
@@ -23,7 +24,7 @@ class DriveRows:
 
     def project_on_drives(self, remainder: Array) -> Array:
         """Return Q (f,): the part of the equations' remainder that drives can exert."""
-        return np.asarray(self.rows.T @ np.linalg.lstsq(self.rows.T, remainder, rcond=None)[0])
+        return np.asarray(self.rows.T @ solve_least_squares(self.rows.T, remainder))
 
 
 def make_drive_rows(instant: Instant, choice: CoordinateChoice) -> DriveRows:

@@ -24,6 +24,7 @@ from heuncli.analyses.lagrange.results import StateSpace
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, RATES
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.actions import collect_applied_loads
@@ -193,7 +194,7 @@ def compute_drift(linear_equations: LinearisedEquations, choice: CoordinateChoic
     """Return the change of the rates that closed chains require for a displacement, (n, f), without a part along the
     coordinates.
     """
-    drift = linear_equations.drift @ np.linalg.lstsq(linear_equations.tangent, choice.S, rcond=None)[0]
+    drift = linear_equations.drift @ solve_least_squares(linear_equations.tangent, choice.S)
     return np.asarray(drift - choice.S @ (choice.rows @ drift))
 
 

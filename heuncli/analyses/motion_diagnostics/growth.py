@@ -11,6 +11,7 @@ from heuncli.analyses.motion_diagnostics.numerics.lyapunov import DisturbanceGro
 from heuncli.analyses.motion_diagnostics.numerics.twists import compute_twists
 from heuncli.analyses.motion_diagnostics.results import GrowthResults
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import null_space
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.methods.method import QUATERNION, Method
 from heuncli.motion.integration.run.runner import Runner
@@ -101,8 +102,7 @@ def find_out_of_plane_directions(disturbed_runs: DisturbedRuns) -> Array | None:
     T = disturbed_runs.find_directions()[: disturbed_runs.scale.n]
     T = T[:, : T.shape[1] // 2]
     in_plane_rows = in_plane_motion.swapaxes(1, 2).reshape(-1, disturbed_runs.scale.n) / weights
-    _, s, V = np.linalg.svd(in_plane_rows @ T, full_matrices=True)
-    T = T @ V[int(np.sum(s > tolerances.FLAT * max(float(s.max(initial=0.0)), 1.0))) :].T
+    T = T @ null_space(in_plane_rows @ T, tolerances.FLAT)
     return np.block([[T, np.zeros_like(T)], [np.zeros_like(T), T]])
 
 

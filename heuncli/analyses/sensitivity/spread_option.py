@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread
-from heuncli.analyses.variants.axes import AxisError, parse_number_with_unit, split_at_commas, split_name
+from heuncli.analyses.variants.axes import AxisError, split_at_commas, split_name
 from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumbers
 from heuncli.base.errors import Finding
 from heuncli.base.units import describe, parse_unit
+from heuncli.scene.file_format.quantity import parse_number_with_unit
 
 FORM = "expected NAME=VALUE,..., the tolerance of each parameter"
 HINT = "such as --spread L=0.1mm,e=0.02mm"

@@ -9,9 +9,9 @@ import math
 from collections.abc import Mapping, Sequence
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.axes import parse_number_with_unit
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.scene.file_format.quantity import parse_number_with_unit
 from heuncli.study.quantities.digits import OPEN, UNKNOWN
 
 NUMBER = "number"

@@ -11,7 +11,6 @@ A unit after the last figure applies to all of them; or each has its own.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Sequence
 from typing import Literal, get_args
@@ -21,12 +20,11 @@ import numpy as np
 from heuncli.base.errors import Finding, HeunError, Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
-from heuncli.scene.file_format.quantity import FIGURE
+from heuncli.scene.file_format.quantity import NumberWithUnit, parse_number_with_unit
 
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 MAX_VALUES = 10_000_000  # of one axis, which are stored as numbers
 
-QUANTITY = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 EVEN_AXIS = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 RANDOM_AXIS = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)
 FORMS = "NAME=a:b/count, NAME=a:b/count log, NAME=v1,v2,..., or NAME=normal(mean,deviation), uniform(a,b), lhs, sobol"
@@ -41,13 +39,6 @@ class AxisError(HeunError):
 
     def __init__(self, word: str, message: str, hint: str = HINT, code: str = "bad-option") -> None:
         super().__init__(Problem(code, f"{word}: {message}", hint=hint))
-
-
-class NumberWithUnit(NamedTuple):
-    """A number as it is written, and its unit (empty: none)."""
-
-    value: float
-    unit: str
 
 
 class ParameterAxis(NamedTuple):
@@ -141,15 +132,6 @@ def split_at_commas(text: str) -> list[str]:
     return [*parts, text[start:]]
 
 
-def parse_number_with_unit(text: str) -> NumberWithUnit | None:
-    """Parse a number with or without a unit, such as `20 mm`; None for any other text."""
-    found = QUANTITY.match(text)
-    if found is None:
-        return None
-    value = float(found[1].replace(" ", ""))
-    return NumberWithUnit(value, (found[2] or "").strip()) if math.isfinite(value) else None
-
-
 def _parse_list(word: str, values: str) -> tuple[str, ...]:
     """Parse the values of a list; the unit of the last applies to all, where these are plain numbers."""
     texts = [text.strip() for text in split_at_commas(values)]
@@ -222,6 +204,6 @@ def _require_number_with_unit(word: str, text: str, hint: str) -> NumberWithUnit
 
 def _require_unit(word: str, unit: str) -> tuple[float, tuple[int, int, int]]:
     try:
-        return parse_unit(unit) if unit else (1.0, (0, 0, 0))
+        return parse_unit(unit or "1")
     except Finding as finding:
         raise AxisError(word, finding.message, finding.hint or HINT) from None

@@ -9,12 +9,12 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
-from heuncli.analyses.variants.axes import AxisError, parse_number_with_unit
+from heuncli.analyses.variants.axes import AxisError
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.quantity import Scope, read_number
+from heuncli.scene.file_format.quantity import Scope, parse_number_with_unit, read_number
 
 Relation = Literal["=", "<", ">", "<=", ">="]
 SPELLINGS: dict[str, Relation] = {

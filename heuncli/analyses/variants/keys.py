@@ -176,7 +176,7 @@ def _format_canonical_text(text: str) -> str:
     found = match_quantity(text)
     if found is not None:
         with suppress(Finding):
-            value, dimension = evaluate_quantity(found[1], found[2].strip(), NO_NAMES)
+            value, dimension = evaluate_quantity(found, NO_NAMES)
             return f"({value!r}, {dimension})"
     return json.dumps(" ".join(text.split()))
 

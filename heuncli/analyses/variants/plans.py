@@ -14,10 +14,10 @@ from heuncli.analyses.variants.axes import (
     ParameterAxis,
     RandomVariable,
     format_quantity,
-    parse_number_with_unit,
 )
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
+from heuncli.scene.file_format.quantity import parse_number_with_unit
 
 MAX_VARIANTS = 10_000_000
 

@@ -66,8 +66,7 @@ class WrittenNumbers:
 
     def _parse(self, name: str, entry: Any) -> WrittenNumber:
         value = read_number(entry, None, Scope(self._spec.parameters))
-        unit_match = match_quantity(entry) if type(entry) is str else None
-        if unit_match is None:
+        with_unit = match_quantity(entry) if type(entry) is str else None
+        if with_unit is None:
             return WrittenNumber(name, value, "", 1.0)
-        unit = unit_match[2].strip()
-        return WrittenNumber(name, float(unit_match[1].replace(" ", "")), unit, parse_unit(unit)[0])
+        return WrittenNumber(name, with_unit.value, with_unit.unit, parse_unit(with_unit.unit)[0])

@@ -163,3 +163,30 @@ def compute_merit(run: ChartRun) -> tuple[float, float, int]:
 def round_as_shown(value: float) -> float:
     """Round a number to the digits that tables show."""
     return float(f"{value:.{SHOWN_DIGITS - 1}e}")
+
+
+def format_setting(row: ChartRow) -> str:
+    """Format the tolerance of a run, or its step with the unit; one of a single digit as 1e-6."""
+    if row.local == 0.0:
+        return "-"
+    if row.has_fixed_step:
+        return f"{row.local:g} s"
+    power = f"{row.local:.0e}"
+    is_round = float(power) == row.local
+    return power.replace("e-0", "e-").replace("e+0", "e").replace("e0", "") if is_round else f"{row.local:g}"
+
+
+def remove_instant(run: ChartRun) -> str:
+    """Return the reason of a run without the instant that it may begin with."""
+    prefix, colon, reason = run.reason.partition(": ")
+    return reason if colon and prefix.startswith("at t = ") else run.reason
+
+
+def make_remark(run: ChartRun) -> str:
+    """Return why a run did not end."""
+    if run.status == COMPLETED:
+        return ""
+    if run.status == FAILED:
+        instant_text = f" at t = {run.failure_time:.6g} s" if run.failure_time is not None else ""
+        return f"fails{instant_text}: {remove_instant(run)}"
+    return run.reason if run.code == UNFINISHED else f"not run: {run.reason}"

@@ -21,7 +21,7 @@ from heuncli.base.text_safety import escape_all, escape_lines
 DESCRIPTOR = 1  # of standard output
 ESCAPED = "heun.escaped"
 BLOCK = 1 << 18  # characters that are written together
-MEMORY = 1 << 24  # bytes of output that are kept in memory while a time limit runs
+MEMORY = 1 << 24  # bytes of output that stay in memory while a time limit runs
 
 
 def emit(text: str | Iterable[str], target: str | None = None, *, late: bool = False) -> None:
@@ -51,7 +51,7 @@ def _disarm_after(content: Iterable[bytes], late: bool) -> Iterator[bytes]:
 def _end_limit(pieces: Iterable[str], late: bool) -> Iterable[str]:
     """End the time limit and return the pieces; while a limit runs, all pieces are made first.
 
-    Raises LimitError if the limit has passed, unless `late`; OutputError if the pieces cannot be kept.
+    Raises LimitError if the limit has passed, unless `late`; OutputError if the pieces cannot be stored.
     """
     if timeout.remaining_time() is not None and not isinstance(pieces, list):
         pieces = _collect(pieces)
@@ -63,23 +63,23 @@ def _collect(pieces: Iterable[str]) -> Iterator[str]:
     """Make all pieces, keep them in memory or, if they are long, in a temporary file, and return them in blocks."""
     import tempfile  # 4 ms that only long output under a time limit needs
 
-    kept = tempfile.SpooledTemporaryFile(MEMORY, "w+", encoding="utf-8", errors="surrogatepass", newline="")  # noqa: SIM115 - _read_blocks closes it
+    store = tempfile.SpooledTemporaryFile(MEMORY, "w+", encoding="utf-8", errors="surrogatepass", newline="")  # noqa: SIM115 - _read_blocks closes it
     try:
         for block in _join_blocks(pieces):
-            kept.write(block)
-        kept.seek(0)
+            store.write(block)
+        store.seek(0)
     except OSError as reason:
-        kept.close()
+        store.close()
         raise OutputError(files.write_problem("temporary file", reason)) from None
     except BaseException:
-        kept.close()
+        store.close()
         raise
-    return _read_blocks(kept)
+    return _read_blocks(store)
 
 
-def _read_blocks(kept: IO[str]) -> Iterator[str]:
-    with kept:
-        while block := kept.read(BLOCK):
+def _read_blocks(store: IO[str]) -> Iterator[str]:
+    with store:
+        while block := store.read(BLOCK):
             yield block
 
 

@@ -21,7 +21,14 @@ def require_width(width: int | None) -> None:
         raise UsageError(Problem("bad-option", message, hint=f"such as --width {WIDTH}"))
 
 
-def render_text(figure: Figure, width: int | None, output: str | None = None) -> str:
+def render_panels(figure: Figure, output: str | None = None) -> str:
+    """Render the panels of a figure below a table: without its sentences, and in letters, not in colours."""
+    if not figure.panels:
+        return ""
+    return render_text(figure._replace(title="", words=(), notes=()), None, output, allows_colours=False)
+
+
+def render_text(figure: Figure, width: int | None, output: str | None = None, *, allows_colours: bool = True) -> str:
     """Render the figure as text, for the terminal or for a file."""
     from heuncli.output.drawing.canvas import make_terminal_style
     from heuncli.output.drawing.letters import draw_text
@@ -30,6 +37,5 @@ def render_text(figure: Figure, width: int | None, output: str | None = None) ->
     columns = width or (terminal.find_width() - 1 if to_terminal else WIDTH)
     plain = to_terminal and os.environ.get("TERM", "") in terminal.PLAIN_TERMINALS
     encoding = "ascii" if plain else sys.stdout.encoding if to_terminal else None
-    return draw_text(
-        figure, make_terminal_style(columns, encoding, has_colours=to_terminal and terminal.supports_styles())
-    )
+    has_colours = allows_colours and to_terminal and terminal.supports_styles()
+    return draw_text(figure, make_terminal_style(columns, encoding, has_colours=has_colours))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from heuncli.base.errors import Problem, UsageError
+from heuncli.output.tables.text_table import format_head
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,7 +40,7 @@ def make_frame(run: LockedRun, signals: Sequence[Signal], units: bool, *, is_exp
         flat = signal.values.reshape(len(times), -1)
         for component, column in zip(signal.components, flat.T, strict=True):
             path = f"{signal.path}.{component}" if component else signal.path
-            name = f"{path} [{signal.unit}]" if units and signal.unit not in ("", "1") else path
+            name = format_head(path, signal.unit) if units else path
             columns[name], unit_names[name], errors[name] = column.copy(), signal.unit, signal.error
     frame = pd.DataFrame(columns, index=pd.Index(times, name="time [s]" if units else "time"))
     frame.attrs = {"units": unit_names, "errors": errors, "title": run.results.title}

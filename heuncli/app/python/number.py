@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from heuncli.output.snapshots import measure
+from heuncli.output.tables.text_table import append_unit
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
 from heuncli.study.queries.study import Study
 
@@ -32,7 +33,7 @@ class Number(float):
     is_open: bool = False
 
     def __repr__(self) -> str:
-        words = f"{self} {self.unit}" if self.unit not in ("", "1") else str(self)
+        words = append_unit(str(self), self.unit)
         words += f" at t = {self.at:.6g} s" if self.at is not None else ""
         words += f", s = {self.s:.6g} m" if self.s is not None else ""
         words += f" (error {self.error:.2g})" if math.isfinite(self.error) else ""

@@ -10,7 +10,8 @@ from typing import Any
 
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.records import replace
-from heuncli.output.client_report.as_html import escape_text, make_element
+from heuncli.output.client_report.as_html import escape_text, make_element, render_table
+from heuncli.output.client_report.parts import to_report_table
 from heuncli.output.snapshots.display_units import read_display_units
 from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.snapshots.tables import TablesQuery, make_tables
@@ -30,8 +31,9 @@ STYLE = (
     ".heun-run td,.heun-run th{padding:.1em .6em;text-align:right;white-space:nowrap;font-weight:normal}"
     ".heun-run th{border-bottom:1px solid currentColor;vertical-align:bottom}"
     ".heun-run .left{text-align:left}.heun-run .wide{overflow-x:auto}"
-    ".heun-run h4{margin:.9em 0 .2em}.heun-run h4 small{font-weight:normal}"
-    ".heun-run p{margin:.1em 0}.heun-run td.across{text-align:left;padding-top:.5em;font-style:italic}"
+    ".heun-run h3{font-size:1em;margin:.9em 0 .2em}.heun-run h3 small{font-weight:normal}"
+    ".heun-run p{margin:.1em 0}.heun-run ul{margin:.1em 0;padding:0;list-style:none}"
+    ".heun-run .across th{text-align:left;padding-top:.5em;font-style:italic;border-bottom:none}"
 )
 
 
@@ -88,34 +90,10 @@ def _narrow_study(study: Study, what: Selection) -> Study:
 def render_html(study: Study, instants: Array | None) -> str:
     """Render heading and tables as an HTML fragment without scripts; all text from the spec is escaped."""
     _, *lines = make_heading(study.results)  # the first is version and title
-    body = [make_element("style", STYLE), make_element("h4", escape_text(study.results.title))]
+    body = [make_element("style", STYLE), make_element("h3", escape_text(study.results.title))]
     body += [make_element("p", escape_text(f"{label}: {text}" if label else text)) for label, text in lines]
-    body += [_render_table(table) for table in _make_tables(study, instants, Units())]
+    body += [render_table(to_report_table(table)) for table in _make_tables(study, instants, Units())]
     return make_element("div", "\n".join(body), class_="heun-run")
-
-
-def _render_table(table: TextTable) -> str:
-    name, _, rest = table.heading.partition("  ")
-    caption = (
-        make_element("h4", escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else ""))
-        if name
-        else ""
-    )
-    grid = ""
-    if table.columns:
-        kinds = ["left" if column.align == "left" else "" for column in table.columns]
-        named = zip(table.columns, kinds, strict=True)
-        heads = (make_element("th", escape_text(column.head), class_=kind) for column, kind in named)
-        rows = [make_element("tr", "".join(heads)), *(_render_row(row, kinds) for row in table.rows)]
-        grid = make_element("div", make_element("table", "\n".join(rows)), class_="wide")
-    return "\n".join([caption, grid, *(make_element("p", escape_text(note)) for note in table.notes)])
-
-
-def _render_row(row: tuple[str, ...] | str, kinds: Sequence[str]) -> str:
-    if isinstance(row, str):
-        return make_element("tr", make_element("td", escape_text(row), colspan=str(len(kinds)), class_="across"))
-    cells = (make_element("td", escape_text(cell), class_=kind) for cell, kind in zip(row, kinds, strict=True))
-    return make_element("tr", "".join(cells))
 
 
 def write_results(file: str | os.PathLike[str], forms: Mapping[str, Callable[[], str]]) -> None:

@@ -16,6 +16,7 @@ from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.measure_units import SUMS, find_sum_unit
+from heuncli.output.tables.text_table import format_head
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
@@ -118,7 +119,7 @@ class Signal(NDArrayOperatorsMixin):
     @property
     def label(self) -> str:
         """The path and the unit, for an axis: "joints.main.force [N]"."""
-        return self.path if self.unit in ("", "1") else f"{self.path} [{self.unit}]"
+        return format_head(self.path, self.unit)
 
     @property
     def times(self) -> Array | None:

@@ -15,6 +15,7 @@ from math import factorial
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
 from heuncli.results.results import Array, Mask
 
@@ -163,7 +164,7 @@ def decompose_with_null_space(
     free = right_null / np.sqrt(np.sum(right_null**2, axis=0))
     if np.linalg.svd(np.hstack([rest_basis, free]), compute_uv=False)[-1] <= tolerances.NEARLY_DEFECTIVE:
         return None
-    rest = decompose(np.linalg.lstsq(rest_basis, A @ rest_basis, rcond=None)[0], rest_basis.T @ mass @ rest_basis)
+    rest = decompose(solve_least_squares(rest_basis, A @ rest_basis), rest_basis.T @ mass @ rest_basis)
     X = rest_basis @ rest.X
     single_count = rest.single_count
     X = np.hstack([X[:, :single_count], free, X[:, single_count:]])

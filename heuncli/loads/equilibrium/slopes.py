@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, rounding_displacement
@@ -173,7 +174,7 @@ def is_massless(displacements: Array, massive: Array) -> Mask:
     """
     if not massive.shape[1]:
         return np.ones(displacements.shape[1], dtype=bool)
-    remainder = displacements - massive @ np.linalg.lstsq(massive, displacements, rcond=None)[0]
+    remainder = displacements - massive @ solve_least_squares(massive, displacements)
     return np.asarray(np.sum(np.abs(remainder) ** 2, axis=0) > 0.5 * np.sum(np.abs(displacements) ** 2, axis=0))
 
 

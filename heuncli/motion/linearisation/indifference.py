@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.motion.linearisation.displacements import displace
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
@@ -146,11 +147,11 @@ def reduce_indifference(system: ReducedEquations, indifference: Indifference) ->
         for basis in (indifference.elimination.right_null, indifference.elimination.left_null)
     )
     # x by those displacements
-    to_pivots: Array = np.linalg.lstsq(indifference.T, system.tangent, rcond=None)[0].astype(float)
-    forces: Array = np.linalg.lstsq(to_pivots, np.eye(len(to_pivots)), rcond=None)[0].astype(float)
+    to_pivots = solve_least_squares(indifference.T, system.tangent)
+    forces = solve_least_squares(to_pivots, np.eye(len(to_pivots)))
     compliance = projection @ indifference.T @ indifference.elimination.solve(forces.T)
     basis = (
-        np.linalg.lstsq(projection @ indifference.T @ indifference.elimination.right_null, right_null, rcond=None)[0]
+        solve_least_squares(projection @ indifference.T @ indifference.elimination.right_null, right_null)
         if right_null.shape[1]
         else np.zeros((0, 0))
     )

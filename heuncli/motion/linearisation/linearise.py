@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
 from heuncli.multibody.response import compute_motions, make_workspace, settle_state
 from heuncli.multibody.tree.held_speeds import find_speed_rows
@@ -168,7 +169,7 @@ def find_pose_directions(
         return None
     tangent, _, _ = find_admitted(J[~holds_speeds], rate_changes[~holds_speeds], weights)
     tangent = tangent[:, : len(weights) - int(np.sum(~holds_speeds))]
-    needed = np.linalg.lstsq(J / weights, -rate_changes @ tangent, rcond=None)[0]
+    needed = solve_least_squares(J / weights, -rate_changes @ tangent)
     return PoseDirections(tangent, needed / weights[:, None])
 
 

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import split_null_space
 from heuncli.base.records import record
 from heuncli.motion.linearisation.indifference import IndifferentMotions
 from heuncli.motion.linearisation.reduced_equations import ReducedEquations
@@ -258,13 +259,6 @@ def eigenvalues_with_condition(A: Array) -> tuple[Array, Array, Array]:
     left_vectors = np.linalg.pinv(vectors)
     lengths = np.sqrt(np.sum(np.abs(left_vectors) ** 2, axis=1))
     return values, vectors, lengths * np.sqrt(np.sum(np.abs(vectors) ** 2, axis=0))
-
-
-def split_null_space(A: Array, rounding: float) -> tuple[Array, Array]:
-    """Return orthonormal bases of the null space of A, and of its complement."""
-    _, s, V = np.linalg.svd(A)
-    rank = int(np.sum(s > rounding))
-    return V[rank:].T, V[:rank].T
 
 
 def spectral_norm(A: Array) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.linear_algebra import solve_least_squares, split_null_space
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.linearisation.linearise import LinearisedEquations
@@ -194,7 +195,7 @@ def find_massless_spins(scene: PreparedScene, linear: LinearisedEquations) -> li
         for axis in spin.axes:
             single_spin = np.zeros(linear.twists.shape[:2])
             single_spin[k, :3] = linear.attitudes[k] @ axis
-            solution: Array = np.linalg.lstsq(twists, single_spin.ravel(), rcond=None)[0].astype(float)
+            solution = solve_least_squares(twists, single_spin.ravel())
             if np.abs(twists @ solution - single_spin.ravel()).max() <= tolerances.RANK:  # else a closure holds it
                 spins.append(MasslessSpin(k, single_spin[k, :3], solution))
     return spins
@@ -204,5 +205,4 @@ def orthogonal_complement(rows: Array, f: int) -> Array:
     """Return an orthonormal basis of the complement of some rows (k, f), (f, f - rank)."""
     if not len(rows):
         return np.eye(f)
-    _, s, V = np.linalg.svd(rows / np.sqrt(np.sum(rows**2, axis=1, keepdims=True)), full_matrices=True)
-    return np.asarray(V[int(np.sum(s > tolerances.RANK)) :].T)
+    return split_null_space(rows / np.sqrt(np.sum(rows**2, axis=1, keepdims=True)), tolerances.RANK)[0]

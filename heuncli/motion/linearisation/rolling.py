@@ -13,6 +13,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.linear_algebra import split_null_space
 from heuncli.base.records import record
 from heuncli.motion.linearisation.linearise import LinearisedEquations, PoseDirections
 from heuncli.motion.linearisation.oscillations import (
@@ -20,7 +21,6 @@ from heuncli.motion.linearisation.oscillations import (
     classify_mode,
     eigenvalues_with_condition,
     spectral_norm,
-    split_null_space,
 )
 from heuncli.motion.linearisation.reduced_equations import ball_rates, ball_rotations
 from heuncli.motion.linearisation.steady_motion import (

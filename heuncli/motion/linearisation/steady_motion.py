@@ -11,6 +11,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.integration.run.runner import Runner
@@ -118,7 +119,7 @@ def rest_displacement(linear_state: LinearisedState, push: Array) -> float:
     system = linear_state.system
     K = system.stiffness
     _, rest = complete_basis(linear_state.indifferent.right_null)
-    x = rest @ np.linalg.lstsq(K @ rest, push, rcond=None)[0]
+    x = rest @ solve_least_squares(K @ rest, push)
     if spectral_norm((push - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.load_scale:
         return np.inf
     return float(np.abs(linear_state.weights * (system.tangent @ x)).max(initial=0.0))

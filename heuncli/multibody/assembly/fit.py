@@ -20,10 +20,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import count_rank
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.continuation import iter_continuation
 from heuncli.multibody.assembly.islands import AssemblyIsland
-from heuncli.multibody.assembly.row_reduction import ReducedIsland, count_rank, least_motion
+from heuncli.multibody.assembly.row_reduction import ReducedIsland, least_motion
 from heuncli.multibody.assembly.rows import Rows, pose_rows
 from heuncli.multibody.assembly.walk import AssemblyPoses, place_body
 from heuncli.results.results import Array

@@ -16,11 +16,12 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import solve_with_null_space
 from heuncli.base.records import record, replace
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.errors import rates_do_not_fit, singular_pose, too_many
 from heuncli.multibody.assembly.islands import MAX_BODIES, AssemblyIsland, Islands, settle_islands
-from heuncli.multibody.assembly.row_reduction import ReducedIsland, least_motion, least_squares
+from heuncli.multibody.assembly.row_reduction import ReducedIsland, least_motion
 from heuncli.multibody.assembly.rows import Rows, acceleration_rows, rate_residuals, rate_rows
 from heuncli.multibody.assembly.walk import AssemblyPoses, find_placement_tree
 from heuncli.multibody.mechanism.model import GROUND, Directed, Mechanism
@@ -219,7 +220,7 @@ class RateAssembly:
             reduced = ReducedIsland(island, self.conditions, rows, [(True, True)] * len(island.members), self.size)
             rounding = tolerances.NO_ACCELERATION * r.scale(self.size) ** 2 / self.size
             if (
-                self.size * _norm(least_squares(reduced.orthonormalize()[1], reduced.e)[2])
+                self.size * _norm(solve_with_null_space(reduced.orthonormalize()[1], reduced.e)[2])
                 > tolerances.SOLVABLE * required + rounding
             ):
                 raise singular_pose(self.mechanism, island.closures[0], joints)

@@ -14,7 +14,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from heuncli.base import tolerances
+from heuncli.base.linear_algebra import count_rank, solve_with_null_space
 from heuncli.base.records import record
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.islands import AssemblyIsland
@@ -159,30 +159,13 @@ def least_motion(r: ReducedIsland, displacements: Array, shift_weight: float = 0
     Only motions that are free count.
     """
     Q, A = r.orthonormalize()
-    v, N, lack = least_squares(A, r.e)
+    v, N, lack = solve_with_null_space(A, r.e)
     is_free = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1).ravel()
     turns = np.arange(is_free.size) % 6 < 3
     weight = np.where(turns, 1.0, shift_weight or 1.0)
     for mask in (is_free,) if shift_weight else (is_free & turns, is_free & ~turns):
         W = weight[mask, None] * Q[mask]
-        step, null, _ = least_squares(W @ N, -(weight * (r.t + displacements))[mask] - W @ v)
+        step, null, _ = solve_with_null_space(W @ N, -(weight * (r.t + displacements))[mask] - W @ v)
         v = v + N @ step
         N = N @ null
     return r.t + Q @ v, lack
-
-
-def count_rank(S: Array) -> int:
-    """Return the number of independent rows by their singular values, the largest first; rows have lengths of about
-    1.
-    """
-    return int(np.count_nonzero(S > tolerances.RANK * max(1.0, S[0]))) if len(S) else 0
-
-
-def least_squares(A: Array, b: Array) -> tuple[Array, Array, Array]:
-    """Return the shortest x of least |A x − b|, a basis of the null space of A (n, n−r), and b − A x."""
-    if not A.size:
-        return np.zeros(A.shape[1]), np.eye(A.shape[1]), b
-    U, S, V = np.linalg.svd(A, full_matrices=A.shape[0] < A.shape[1])
-    rank = count_rank(S)
-    x = V[:rank].T @ ((U[:, :rank].T @ b) / S[:rank])
-    return x, V[rank:].T, b - A @ x

@@ -14,8 +14,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import solve_with_null_space
 from heuncli.base.records import record
-from heuncli.multibody.assembly.row_reduction import least_squares
 from heuncli.multibody.coupled_start.freedoms import FreedomMotion, Freedoms
 from heuncli.multibody.coupled_start.held_values import Rows, held_poses, held_rates
 from heuncli.multibody.mechanism.model import Assembly
@@ -104,7 +104,7 @@ class CoupledFit:
         _, R = np.linalg.qr(spread)
         J = np.linalg.solve(R.T, np.concatenate([hard[0], soft[0], body_rows]).T).T
         e = np.concatenate([hard[1], soft[1], np.zeros(len(body_rows))])
-        residual = least_squares(J, e)[2]
+        residual = solve_with_null_space(J, e)[2]
         return bool(np.abs(residual).max(initial=0.0) <= tolerances.RANK * np.abs(e).max(initial=0.0))
 
     def _rate_conditions(self) -> tuple[Array, Rows, Rows]:
@@ -215,12 +215,12 @@ def _least_step(B: Array, hard: Rows, soft: Rows, change: Array | None) -> tuple
     v, N = np.zeros(Q.shape[1]), np.eye(Q.shape[1])
     for J, e in (hard, soft):
         A = np.linalg.solve(R.T, J.T).T
-        step, null, _ = least_squares(A @ N, e - A @ v)
+        step, null, _ = solve_with_null_space(A @ N, e - A @ v)
         v, N = v + N @ step, N @ null
     so_far = np.zeros(len(B)) if change is None else change
     half = len(B) // 2
     for part in (slice(0, half), slice(half, None)):
-        step, null, _ = least_squares(Q[part] @ N, -so_far[part] - Q[part] @ v)
+        step, null, _ = solve_with_null_space(Q[part] @ N, -so_far[part] - Q[part] @ v)
         v, N = v + N @ step, N @ null
     turns = (Q[:half] @ v).reshape(-1, 3)
     return np.linalg.solve(R, v), float(np.sqrt(np.max(np.sum(turns * turns, axis=1), initial=0.0)))

@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import null_space
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import GROUND, Joint
 from heuncli.multibody.reduction.model import Reduction
@@ -246,7 +247,7 @@ def motion_basis(search: ImmobilitySearch, bodies: dict[int, list[int]]) -> Arra
         if i in search.spins and search.layout.bodies["ball"][i]:
             axes = np.zeros((len(search.spins[i]), len(free)))
             axes[:, :3] = search.spins[i]
-            block = np.linalg.svd(axes, full_matrices=True)[2][len(axes) :].T
+            block = null_space(axes)
         blocks.append(block)
     n = [block.shape for block in blocks]
     basis = np.zeros((sum(rows for rows, _ in n), sum(columns for _, columns in n)))

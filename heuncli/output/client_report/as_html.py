@@ -96,27 +96,34 @@ def _render_listing(part: Listing) -> str:
     return title + make_element("ul", "".join(make_element("li", escape_text(item)) for item in part.items))
 
 
-def _render_table(part: ReportTable) -> str:
-    """Render a table; its head is repeated on every printed page that it extends over."""
+def render_table(part: ReportTable) -> str:
+    """Render a table under its caption, if it has one; its head is repeated on every printed page that it extends
+    over.
+    """
     kinds = ["left" if column.align == "left" else "" for column in part.columns]
     heads = [make_element("th", escape_text(column.head), scope="col", class_=kind)
              for column, kind in zip(part.columns, kinds, strict=True)]  # fmt: skip
-    name, _, rest = part.caption.partition("  ")
     table = ""
     if part.columns:
         body = "\n".join(_render_row(row, kinds) for row in part.rows)
         table = make_element("thead", make_element("tr", "".join(heads))) + "\n" + make_element("tbody", body)
-        table = make_element("div", make_element("table", table, aria_label=name), class_="wide")
-    caption = make_element("h3", escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else ""))
+        label = part.caption.partition("  ")[0]
+        table = make_element("div", make_element("table", table, aria_label=label), class_="wide")
+    caption = make_element("h3", _render_heading(part.caption)) if part.caption else ""
     notes = "".join(make_element("li", escape_text(note)) for note in part.notes)
     return make_element("div", caption + "\n" + table + (make_element("ul", notes, class_="notes") if notes else ""))
 
 
+def _render_heading(text: str) -> str:
+    """Render a heading; what stands after two blanks is smaller."""
+    name, _, rest = text.partition("  ")
+    return escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else "")
+
+
 def _render_row(row: Sequence[ReportCell] | str, kinds: Sequence[str]) -> str:
     if isinstance(row, str):
-        name, _, rest = row.partition("  ")
-        text = escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else "")
-        return make_element("tr", make_element("th", text, colspan=str(len(kinds)), scope="colgroup"), class_="across")
+        title = make_element("th", _render_heading(row), colspan=str(len(kinds)), scope="colgroup")
+        return make_element("tr", title, class_="across")
     cells = (_render_cell(cell, kind) for cell, kind in zip(row, kinds, strict=True))
     return make_element("tr", "".join(cells), class_="begins" if row[0].text else "")
 
@@ -143,7 +150,7 @@ RENDERERS: dict[type[Part], Callable[[Any], str]] = {
     Sentence: _render_sentence,
     Facts: _render_facts,
     Listing: _render_listing,
-    ReportTable: _render_table,
+    ReportTable: render_table,
     Drawing: _render_drawing,
     Verbatim: _render_verbatim,
 }

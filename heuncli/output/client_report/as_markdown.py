@@ -22,6 +22,7 @@ from heuncli.output.client_report.parts import (
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.letters import draw_text
 from heuncli.output.tables.markdown_text import escape_line, escape_markdown, fence_text
+from heuncli.output.tables.text_table import TextColumn, embolden, format_markdown_rows
 
 LOOK = TerminalStyle(100, has_braille=True, has_colours=False)
 MOOD_SIGNS = {"plain": "", "good": "**✓** ", "bad": "**✗** ", "unsure": "**!** "}
@@ -45,9 +46,7 @@ def _render_sentence(part: Sentence) -> str:
 
 
 def _render_facts(part: Facts) -> str:
-    return _format_rows(
-        ["", ""], ["---", "---"], [[escape_markdown(label), escape_markdown(text)] for label, text in part.rows]
-    )
+    return format_markdown_rows([TextColumn("", "left")] * 2, [tuple(map(escape_markdown, row)) for row in part.rows])
 
 
 def _render_listing(part: Listing) -> str:
@@ -60,29 +59,16 @@ def _render_table(part: ReportTable) -> str:
     name, _, rest = part.caption.partition("  ")
     blocks = [f"### {escape_line(name)}", *([escape_line(rest)] if rest else [])]
     if part.columns:
-        blank = [""] * (len(part.columns) - 1)
-        rows = [
-            [f"**{escape_markdown(row)}**", *blank] if isinstance(row, str) else list(map(_format_cell, row))
-            for row in part.rows
-        ]
-        rules = ["---" if column.align == "left" else "---:" for column in part.columns]
-        blocks.append(_format_rows([escape_markdown(column.head) for column in part.columns], rules, rows))
+        rows = [row if isinstance(row, str) else tuple(map(_format_cell, row)) for row in part.rows]
+        blocks.append(format_markdown_rows(part.columns, rows))
     if part.notes:
         blocks.append("\n".join(f"- {escape_line(note)}" for note in part.notes))
     return "\n\n".join(blocks)
 
 
-def _format_group_heading(row: str) -> str:
-    name, _, rest = row.partition("  ")
-    return f"**{escape_markdown(name)}**" + (f" {escape_markdown(rest)}" if rest else "")
-
-
 def _format_cell(cell: ReportCell) -> str:
-    return f"**{escape_markdown(cell.text)}**" if cell.is_governing and cell.text else escape_markdown(cell.text)
-
-
-def _format_rows(heads: Sequence[str], alignments: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in (heads, alignments, *rows))
+    text = escape_markdown(cell.text)
+    return embolden(text) if cell.is_governing else text
 
 
 def _render_drawing(part: Drawing) -> str:

@@ -11,6 +11,7 @@ from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.snapshots.columns import format_place
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
+from heuncli.output.tables.text_table import append_unit
 from heuncli.results.results import Array, CutPosition
 from heuncli.study.quantities.digits import OPEN, UNKNOWN, Style, choose_style, format_error, write_times
 from heuncli.study.quantities.table_units import Units
@@ -184,11 +185,8 @@ class GreatestOfCases(NamedTuple):
 
     def format_value(self) -> str:
         """Format the largest value with its unit and its error."""
-        unit = f" {self.unit}" if self.unit != "1" else ""
-        return (
-            f"{self.number_style.write(self.high.value * self.size)}{unit} (± "
-            f"{format_error(self.error * self.size)}{unit})"
-        )
+        value, error = self.number_style.write(self.high.value * self.size), format_error(self.error * self.size)
+        return f"{append_unit(value, self.unit)} (± {append_unit(error, self.unit)})"
 
     @property
     def position_text(self) -> str:

@@ -5,6 +5,8 @@ The colours are dark enough on white; with dashes and letters a figure is readab
 
 from __future__ import annotations
 
+from string import ascii_lowercase
+
 from heuncli.base.named_tuples import NamedTuple
 
 BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6", "#ffffff"
@@ -32,8 +34,12 @@ PENS = (
 
 
 def find_pen(number: int) -> Pen:
-    """Return the pen of a number; after the last pen they start again."""
-    return PENS[number % len(PENS)]
+    """Return the pen of a number; after the last pen the colours start again, with other dashes and letters."""
+    turn, k = divmod(number, len(PENS))
+    if not turn:
+        return PENS[k]
+    letter = ascii_lowercase[number % len(ascii_lowercase)]
+    return PENS[k]._replace(dash=PENS[(k + turn) % len(PENS)].dash, letter=letter)
 
 
 def find_colour(number: int | None) -> str:

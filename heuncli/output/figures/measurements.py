@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.number_range import are_in_range, range_error
-from heuncli.base.units import NUMBER, Dimension, describe, parse_unit
+from heuncli.base.units import Dimension, describe, parse_unit
 from heuncli.output.figures.measured_points import MeasuredPoints
 from heuncli.results.results import Array
 from heuncli.results.results_schema import parse_index
@@ -123,7 +123,7 @@ def _to_si(query: PointsQuery, name: str, column_unit: str, values: Array, units
 
 def _find_dimension(unit: str) -> Dimension:
     """Return the dimension of a unit of the results; without a unit that of numbers."""
-    return NUMBER if unit in ("", "1") else parse_unit(unit)[1]
+    return parse_unit(unit or "1")[1]
 
 
 def _require_in_range(query: PointsQuery, values: Array, text: str) -> None:

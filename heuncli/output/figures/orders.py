@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.analyses.balancing.balance_labels import format_cycle, format_reference_point, get_unit
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, Scaling, Spot
+from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot
 from heuncli.output.drawing.ticks import choose_ends
 from heuncli.study.quantities.table_units import Units
 
@@ -21,6 +21,11 @@ BARS_SENTENCE = "bars: largest magnitude of each order over a revolution"
 MIN_LABELLED = 1e-3  # of the largest bar: smaller bars have no label
 COUNTERBALANCED = "with counterweights"
 PEN, COUNTERBALANCED_PEN = 0, 1
+LETTERS = {"force": "F", "moment": "M", "torque": "T"}  # of quantities whose orders are compared by their sizes
+SIZES_TITLE = "ORDERS  by their sizes"
+SIZES_LABEL = "of the largest order of its kind"
+LEAST_SIZE = 1e-4  # of the largest of its kind: smaller orders are not compared
+ROW_HEIGHT = 14.2  # pixels of an order, which are a line of a terminal
 
 
 class BalancedScene(NamedTuple):
@@ -49,6 +54,26 @@ def make_orders_figure(sources: Sequence[BalancedScene], units: Units) -> Figure
     notes = [note for source in sources for note in source.results.notes]
     titles = dict.fromkeys(source.results.title for source in sources if source.results.title)
     return Figure(" · ".join(titles) or "Balance", words, panels, legend, notes)
+
+
+def make_order_sizes_figure(results: BalanceResults) -> Figure:
+    """Make the figure of the shown orders, a line each: their sizes relative to the largest of their kind,
+    logarithmic. Without panels if no order is shown.
+    """
+    places = {order: float(-k) for k, order in enumerate(results.shown_orders)}
+    items: list[Item] = []
+    for quantity, letter in LETTERS.items():
+        rows = results.orders.get(quantity, ())
+        largest = max((row.peak for row in rows), default=0.0)
+        for row in rows:
+            if row.order in places and row.peak > LEAST_SIZE * largest:
+                x, y = row.peak / largest, places[row.order]
+                items += [Spot(x, y), PlaceLabel(x, y, quantity, letter)]
+    ticks = tuple((place, f"{order:g}") for order, place in places.items())
+    x_axis = Scaling(SIZES_LABEL, LEAST_SIZE, 1.0, is_logarithmic=True)
+    y_axis = Scaling("", 0.5 - len(places), 0.5, tick_texts=ticks)
+    panel = Panel(x_axis, y_axis, tuple(items), ROW_HEIGHT * len(places), title=SIZES_TITLE)
+    return Figure("", (), [panel] if places else [])
 
 
 def _find_largest(results: BalanceResults, quantity: str) -> float:

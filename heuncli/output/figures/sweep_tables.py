@@ -11,13 +11,13 @@ from itertools import compress
 
 import numpy as np
 
-from heuncli.analyses.variants.axes import parse_number_with_unit
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.base.text_safety import escape
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array, Mask
+from heuncli.scene.file_format.quantity import parse_number_with_unit
 
 MIN_DISTINCT_SHARE = 0.8  # of the rows: two variables with more distinct values form no grid
 MIN_ROWS = 4  # fewer rows form a grid

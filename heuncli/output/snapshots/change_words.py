@@ -6,6 +6,7 @@ import math
 
 from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.golden_file import Value
+from heuncli.output.tables.text_table import append_unit
 
 
 def format_value(value: Value | str | None, unit: str) -> str:
@@ -14,7 +15,7 @@ def format_value(value: Value | str | None, unit: str) -> str:
         return ""
     if isinstance(value, str):
         return value
-    return f"{value:.9g} {unit}".rstrip() if unit != "1" else f"{value:.9g}"
+    return append_unit(f"{value:.9g}", unit)
 
 
 def format_difference(change: Change) -> str:
@@ -22,7 +23,7 @@ def format_difference(change: Change) -> str:
     difference = change.difference
     if difference is None or not difference:
         return ""
-    return f"{difference:+.3g} {change.unit if change.unit != '1' else ''}".rstrip() + f" ({format_percent(change)})"
+    return f"{append_unit(f'{difference:+.3g}', change.unit)} ({format_percent(change)})"
 
 
 def format_percent(change: Change) -> str:

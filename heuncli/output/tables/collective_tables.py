@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
+from heuncli.output.tables.text_table import TextColumn, TextTable, append_unit, format_head
 from heuncli.results.results import Array
 from heuncli.study.load_cycles.collective import REFERENCE, Collective
 from heuncli.study.quantities.digits import Style, choose_style, format_error, write_numbers, write_times
@@ -82,10 +82,9 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         np.array([collective.history.values.min(), collective.history.values.max()]) * size,
         collective.history.error * size,
     )
-    unit_suffix = f" {unit}" if unit != "1" else ""
     yield (
         f"{format_cycles(collective.total_cycles)} of {collective.points} turning points between {low} "
-        f"and {high}{unit_suffix}"
+        f"and {append_unit(high, unit)}"
     )
     if not collective.total_cycles:
         yield NO_CYCLES
@@ -93,7 +92,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         small = format_error(collective.below_error.range * size)
         yield (
             f"below the error: {format_cycles(collective.below_error.cycles)} of at most "
-            f"{small}{unit_suffix}, not in any class or sum"
+            f"{append_unit(small, unit)}; not in any class or sum"
         )
     if collective.history.is_magnitude:
         yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE

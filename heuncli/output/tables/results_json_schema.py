@@ -8,6 +8,7 @@ import re
 from typing import Any
 
 from heuncli.output.tables.collective_schema import make_collectives_schema
+from heuncli.output.tables.text_table import format_head
 from heuncli.results.results_schema import IMPULSES, NAMES, TREE, Node, Quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -61,7 +62,7 @@ def _make_member_schema(member: Node | Quantity, is_timed: bool) -> dict[str, An
         return _make_block_schema(member, is_timed)
     meaning = LINK.sub(r"\1", member.meaning).replace("`", "").replace("\\|", "|")
     unit = " or ".join(member.units)
-    schema = {"description": f"{meaning} [{unit}]" if unit and unit != "1" else meaning}
+    schema = {"description": format_head(meaning, unit)}
     if member.has_own_form:
         return schema
     if member.is_words:

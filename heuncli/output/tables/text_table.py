@@ -48,8 +48,13 @@ class TextTable(NamedTuple):
 
 
 def format_head(label: str, unit: str) -> str:
-    """Format the head of a column of numbers."""
-    return f"{label} [{unit}]" if unit != "1" else label
+    """Format the head of a column of numbers; a plain number has no unit, or "1"."""
+    return label if unit in ("", "1") else f"{label} [{unit}]"
+
+
+def append_unit(text: str, unit: str) -> str:
+    """Append the unit to a number, unless it is a plain one."""
+    return text if unit in ("", "1") else f"{text} {unit}"
 
 
 def format_plain(table: TextTable, width: int | None = None) -> str:
@@ -87,14 +92,8 @@ def format_markdown(table: TextTable) -> str:
         return ""
     lines = [f"### {escape_line(table.heading)}", ""] if table.heading else []
     if table.columns:
-        lines.append(_format_markdown_row(column.head for column in table.columns))
-        lines.append(_format_markdown_row("---" if column.align == "left" else "---:" for column in table.columns))
-        blank = [""] * (len(table.columns) - 1)
-        for row in table.rows:
-            lines.append(
-                _format_markdown_row([row, *blank], bold=True) if isinstance(row, str) else _format_markdown_row(row)
-            )
-        lines.append("")
+        rows = [row if isinstance(row, str) else tuple(map(escape_markdown, row)) for row in table.rows]
+        lines += [format_markdown_rows(table.columns, rows), ""]
     for note in table.notes:
         lines += [escape_line(note), ""]
     return "\n".join(lines)
@@ -138,6 +137,17 @@ def _format_row(cells: Sequence[str], widths: Sequence[int], columns: Sequence[T
     return (indent + GAP.join(padded)).rstrip()
 
 
-def _format_markdown_row(cells: Iterable[str], *, bold: bool = False) -> str:
-    texts = map(escape_markdown, cells)
-    return "| " + " | ".join(f"**{text}**" if bold and text else text for text in texts) + " |"
+def format_markdown_rows(columns: Sequence[TextColumn], rows: Iterable[Sequence[str] | str]) -> str:
+    """Format the rows of a table below their heads. Cells are Markdown already; a row that is a single string is a
+    title, still to be escaped.
+    """
+    heads = [escape_markdown(column.head) for column in columns]
+    rules = ["---" if column.align == "left" else "---:" for column in columns]
+    blank = [""] * (len(columns) - 1)
+    cells = ([embolden(escape_markdown(row)), *blank] if isinstance(row, str) else row for row in rows)
+    return "\n".join("| " + " | ".join(row) + " |" for row in (heads, rules, *cells))
+
+
+def embolden(text: str) -> str:
+    """Make Markdown bold, unless it is empty."""
+    return f"**{text}**" if text else text

@@ -80,7 +80,7 @@ def iter_si_warnings(
         old_quantity = match_quantity(old) if type(old) is str and type(new) in (int, float) and new != 0 else None
         if old_quantity is None:
             continue
-        unit = old_quantity[2].strip()
+        unit = old_quantity.unit
         try:
             size, dimension = parse_unit(unit)
         except Finding:

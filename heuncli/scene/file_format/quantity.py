@@ -7,6 +7,7 @@ import re
 from typing import Any
 
 from heuncli.base.errors import Finding
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.number_range import is_in_range, range_error
 from heuncli.base.records import replace
 from heuncli.base.units import Dimension, correct_unit, describe, parse_unit, si_expression_hint, si_unit
@@ -27,10 +28,23 @@ from heuncli.scene.expressions.programs import Expression
 FIGURE = r"\s*+([+-]?\s*+(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+"
 WITH_UNIT = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|(?<=\s)1/)[^,]*+)\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
+PLAIN_OR_WITH_UNIT = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
 USES_TIME = re.compile(r"(?<![\w.])t(?![\w.])")
 CONDITIONS_HINT = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
+
+
+class NumberWithUnit(NamedTuple):
+    """A number as it is written, and its unit (empty: none)."""
+
+    figure: str
+    unit: str
+
+    @property
+    def value(self) -> float:
+        """The number, in its unit."""
+        return float(self.figure.replace(" ", ""))
 
 
 def read_number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
@@ -64,12 +78,9 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
     with_unit = match_quantity(value)
     if with_unit is None:
         return require_dimension(compile_text(value, scope), dimension, scope)
-    size, unit_dimension = evaluate_quantity(with_unit[1], with_unit[2].strip(), scope)
+    size, unit_dimension = evaluate_quantity(with_unit, scope)
     if dimension is not None and unit_dimension != dimension:
-        hint = (
-            product_hint(with_unit[1], with_unit[2].strip(), scope)
-            or f"a number without a unit is taken to be in {si_unit(dimension)}"
-        )
+        hint = product_hint(with_unit, scope) or f"a number without a unit is taken to be in {si_unit(dimension)}"
         raise Finding(
             "dimension", f"'{value.strip()}' is {describe(unit_dimension)}, expected {describe(dimension)}", hint
         )
@@ -92,10 +103,21 @@ def compile_text(text: str, scope: Scope) -> Expression:
         raise Finding(finding.code, finding.message, f"give it with a unit: {division[1].strip()} {unit}") from None
 
 
-def match_quantity(text: str) -> re.Match[str] | None:
-    """Match figure and unit of a text that is a number with a unit."""
+def match_quantity(text: str) -> NumberWithUnit | None:
+    """Return figure and unit of a value of a spec that is a number with a unit; None for any other."""
     found = WITH_UNIT.match(text)
-    return found if found is not None and re.split(r"\W", found[2], maxsplit=1)[0] not in WORDS else None
+    if found is None or re.split(r"\W", found[2], maxsplit=1)[0] in WORDS:
+        return None
+    return NumberWithUnit(found[1], found[2].strip())
+
+
+def parse_number_with_unit(text: str) -> NumberWithUnit | None:
+    """Parse a number with or without a unit, such as `20 mm`, of a command line or a table; None for any other text."""
+    found = PLAIN_OR_WITH_UNIT.match(text)
+    if found is None:
+        return None
+    number = NumberWithUnit(found[1], (found[2] or "").strip())
+    return number if math.isfinite(number.value) else None
 
 
 def require_dimension(expression: Expression, dimension: Dimension | None, scope: Scope) -> Expression:
@@ -136,35 +158,36 @@ def read_condition(value: Any, scope: Scope) -> Expression:
     return expression
 
 
-def evaluate_quantity(figure: str, unit: str, scope: Scope) -> tuple[float, Dimension]:
-    """Return SI value and dimension of a figure with a unit. Raises Finding."""
+def evaluate_quantity(number: NumberWithUnit, scope: Scope) -> tuple[float, Dimension]:
+    """Return SI value and dimension of a number with a unit. Raises Finding."""
     try:
-        size, dimension = parse_unit(unit)
+        size, dimension = parse_unit(number.unit)
     except Finding as finding:
-        usual_spelling = correct_unit(unit)
-        hint = f"write {figure.strip()} {usual_spelling}" if usual_spelling else product_hint(figure, unit, scope)
-        hint = hint or expression_hint(figure, unit) or finding.hint
+        usual_spelling = correct_unit(number.unit)
+        hint = f"write {number.figure.strip()} {usual_spelling}" if usual_spelling else product_hint(number, scope)
+        hint = hint or expression_hint(number) or finding.hint
         raise Finding(finding.code, finding.message, hint) from None
-    return require_finite(float(figure.replace(" ", "")) * size), dimension
+    return require_finite(number.value * size), dimension
 
 
-def product_hint(figure: str, unit: str, scope: Scope) -> str | None:
+def product_hint(number: NumberWithUnit, scope: Scope) -> str | None:
     """Return a hint for '2 L' with a parameter L, or '2 t': a product was meant."""
+    figure, unit = number.figure.strip(), number.unit
     name = re.split(r"\W", unit, maxsplit=1)[0]
     if name == "t" and re.fullmatch(r"t\s*/\s*m(\^|\*\*)?[3³]", unit):
         unit_text = f"tonne{unit[1:]}"
-        return f"t is the time; for 1000 kg write tonne: {figure.strip()} {correct_unit(unit_text) or unit_text}"
+        return f"t is the time; for 1000 kg write tonne: {figure} {correct_unit(unit_text) or unit_text}"
     if re.search(r"[+-]\s*+(?:\d++\s*+)?[^\W\d]", unit):
         return "units are not allowed inside expressions: name the quantity under parameters, or write it in SI"
     if name in scope.parameters or name in RESERVED:
-        return f"for a product write {figure.strip()}*{unit}"
+        return f"for a product write {figure}*{unit}"
     return None
 
 
-def expression_hint(figure: str, unit: str) -> str | None:
+def expression_hint(number: NumberWithUnit) -> str | None:
     """Return a hint for '40 mm * 2': text after the unit makes it an expression, and expressions contain no units."""
-    parts = re.match(r"([^\W\d]+)(\s*[-+*/].*)", unit)
-    return si_expression_hint(figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None
+    parts = re.match(r"([^\W\d]+)(\s*[-+*/].*)", number.unit)
+    return si_expression_hint(number.figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None
 
 
 def require_finite(value: float) -> float:

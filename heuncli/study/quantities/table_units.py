@@ -20,6 +20,7 @@ DERIVED: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
     "N·m": ("{}·{}", ("N", "m")), "N·s": ("{}·s", ("N",)), "N·m·s": ("{}·{}·s", ("N", "m")),
     "m/s": ("{}/s", ("m",)), "m/s²": ("{}/s²", ("m",)), "rad/s": ("{}/s", ("rad",)), "rad/s²": ("{}/s²", ("rad",)),
 })  # fmt: skip
+SHOWN = {"m", "rad", "N", "Pa", "W", *DERIVED}  # SI units of what tables show
 SPELLINGS = {"Nm": "N·m", "kNm": "kN·m", "Nmm": "N·mm", "Ns": "N·s", "Nms": "N·m·s"}
 HINT = (
     "such as --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain format "
@@ -74,16 +75,14 @@ def find_si_unit(word: str) -> tuple[str, float]:
     if not word:
         raise Finding("bad-option", "expected units, with commas between them", HINT)
     size, dimension = units.parse_unit(word)
-    unit_by_dimension = {
-        units.LENGTH: "m", units.NUMBER: "rad", units.RATE: "rad/s", units.VELOCITY: "m/s", units.ACCELERATION: "m/s²",
-        (0, 0, -2): "rad/s²", units.FORCE: "N", units.MOMENT: "J" if set("JW") & set(word) else "N·m",
-        units.IMPULSE: "N·s", units.ANGULAR_IMPULSE: "N·m·s", units.PRESSURE: "Pa", units.POWER: "W",
-    }  # fmt: skip
     if dimension == units.TIME:
         raise Finding("bad-option", f"{word}: times stay in s", "as for --at")
-    if dimension not in unit_by_dimension:
+    if dimension == units.MOMENT and set("JW") & set(word):
+        return "J", 1.0 / size
+    unit = spell_unit(units.si_unit(dimension))
+    if unit not in SHOWN:
         raise Finding("bad-option", f"{word}: tables show no {units.describe(dimension).partition(' ')[2]}", HINT)
-    return unit_by_dimension[dimension], 1.0 / size
+    return unit, 1.0 / size
 
 
 def describe_unit(unit: str) -> str:

@@ -76,6 +76,7 @@ PART = Part(
         Row("UNKNOWN_NEAR_SINGULAR", moved_by, "told", "not known"),
     ),
     exempt={
+        "NO_SINGULAR_VALUE": "which solution of least squares is taken, of those that rounding alone tells apart",
         "KERNEL.preference": "which of the rows alike carry the motion",
         "KERNEL.pivot_drop": "when rows are chosen anew: costs digits, which the estimate shows",
         "KERNEL.near_singular": "which stages are settled: costs digits, which the estimate shows",

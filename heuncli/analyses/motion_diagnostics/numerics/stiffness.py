@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli.analyses.motion_diagnostics.numerics.lyapunov import DisturbanceScale
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import null_space
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.integration.methods.method import Method
 from heuncli.multibody.response import jacobian, tangent
@@ -105,8 +106,7 @@ def find_admitted_motions(evaluator: Evaluator, scale: DisturbanceScale, recover
     layout, n, state = evaluator.layout, scale.n, recovered.states[0]
     J = jacobian(evaluator.workspace, layout, recovered.times, recovered.states)
     rows = J.block(np.arange(len(layout.rows)), scale.coordinates.result_indices)[0] / scale.weights[:n]
-    _, s, V = np.linalg.svd(rows[recovered.rows["closed"][0] > 0.0])
-    T = V[int(np.sum(s > tolerances.RANK * s.max(initial=0.0))) :].T
+    T = null_space(rows[recovered.rows["closed"][0] > 0.0], least_scale=0.0)
     step = math.sqrt(tolerances.EPS)
     displaced = scale.disturb_state(state, np.concatenate([step * T.T, np.zeros_like(T.T)], axis=1))
     times = np.full(len(displaced), float(recovered.times[0]))

@@ -38,8 +38,13 @@ def main(request: BalanceRequest) -> int:
         )
     if form == "json":
         text = dump_json(report.to_block(results))
+    elif form == "csv":
+        text = report.to_csv(results)
     else:
-        text = report.to_csv(results) if form == "csv" else report.render_page(results)
+        from heuncli.app.cli.text_figures import render_panels
+        from heuncli.output.figures.orders import make_order_sizes_figure
+
+        text = report.render_page(results) + render_panels(make_order_sizes_figure(results), request.output)
     emit(text, request.output)
     print_warnings(spec, None, request.quiet)
     return 0

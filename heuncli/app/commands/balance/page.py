@@ -12,7 +12,6 @@ from heuncli.analyses.balancing.balance_labels import format_cycle, format_refer
 from heuncli.analyses.balancing.results import BalanceResults, Counterbalance, CycleLoad, OrderRow, Period
 from heuncli.analyses.balancing.summary import select_largest
 from heuncli.app.commands.balance.remedies_page import make_remedy_tables
-from heuncli.app.commands.balance.text_chart import draw_orders
 from heuncli.base.records import replace
 from heuncli.base.tolerances import WRITTEN
 from heuncli.output.tables.export import FORMAT
@@ -59,7 +58,7 @@ def render_page(results: BalanceResults) -> str:
     parts = [format_labelled_lines(format_heading(results))]
     for table in (*make_tables(results), *make_remedy_tables(results)):
         parts += [format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH)]
-    return "\n".join([*parts, *(part for part in [draw_orders(results, DEFAULT_WIDTH)] if part)])
+    return "\n".join(parts)
 
 
 def make_tables(results: BalanceResults) -> Iterator[TextTable]:

@@ -48,9 +48,10 @@ def main(request: ChartRequest) -> int:
     with show_progress(request.quiet) as report:
         results = chart(spec, replace(options, time_limit=timeout.remaining_time()), report)
     if figure_form is not None and request.save is not None:
-        from heuncli.app.commands.chart.figure import draw_figure
+        from heuncli.output.drawing.layout import lay_out
+        from heuncli.output.figures.work_precision import make_work_precision_figure
 
-        save(encode_drawing(draw_figure(results), figure_form), request.save)
+        save(encode_drawing(lay_out(make_work_precision_figure(results)), figure_form), request.save)
     emit(render_text(results, form, request.output), request.output, late=True)
     print_warnings(spec, None, request.quiet)
     return 0
@@ -63,8 +64,8 @@ def render_text(results: ChartResults, form: str, output: str | None) -> str:
     if form == "csv":
         return report.to_csv(results)
     from heuncli.app.cli import terminal
-    from heuncli.app.commands.chart.text_chart import WIDTH as FIELD
-    from heuncli.app.commands.chart.text_chart import draw_text_chart
+    from heuncli.app.cli.text_figures import render_panels
+    from heuncli.output.figures.work_precision import make_work_precision_figure
 
     run_table = report.make_table(results)
     if output is None and terminal.is_terminal():
@@ -73,7 +74,8 @@ def render_text(results: ChartResults, form: str, output: str | None) -> str:
     else:
         width = DEFAULT_WIDTH
         rows = "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(run_table, DEFAULT_WIDTH))
-    return f"{report.render_heading(results, width)}\n{rows}\n{draw_text_chart(results, min(width, FIELD))}"
+    panels = render_panels(make_work_precision_figure(results), output)
+    return f"{report.render_heading(results, width)}\n{rows}\n{panels}"
 
 
 def parse_methods(words: str | None) -> tuple[str, ...] | None:

@@ -12,12 +12,12 @@ from heuncli.analyses.work_precision.results import (
     COMPLETED,
     FAILED,
     KINDS,
-    UNFINISHED,
     ChartResults,
-    ChartRow,
     ChartRun,
+    format_setting,
+    make_remark,
+    remove_instant,
 )
-from heuncli.app.commands.chart.scale import format_power
 from heuncli.base.method_rows import find_method
 from heuncli.output.tables.export import FORMAT
 from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines
@@ -118,22 +118,6 @@ def format_milliseconds(seconds: float) -> str:
     return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
-def format_setting(row: ChartRow) -> str:
-    """Format the tolerance of a run, or its step with the unit."""
-    if row.local == 0.0:
-        return "-"
-    return (
-        f"{row.local:g} s"
-        if row.has_fixed_step
-        else f"{format_power(row.local) if is_round(row.local) else f'{row.local:g}'}"
-    )
-
-
-def is_round(value: float) -> bool:
-    """Return whether a number has a single significant digit."""
-    return float(f"{value:.0e}") == value
-
-
 def format_error(run: ChartRun, kind: str) -> str:
     """Format an error to two digits, or its bound."""
     value = run.error[kind]
@@ -157,22 +141,6 @@ def list_reasons(chart: ChartResults) -> list[str]:
         if run.status == FAILED:
             reasons_by_run.setdefault((run.row.method, run.code), remove_instant(run))
     return [f"[{code}] {method}: {reason}" for (method, code), reason in reasons_by_run.items()]
-
-
-def remove_instant(run: ChartRun) -> str:
-    """Return the reason of a run without the instant that it may begin with."""
-    prefix, colon, reason = run.reason.partition(": ")
-    return reason if colon and prefix.startswith("at t = ") else run.reason
-
-
-def make_remark(run: ChartRun) -> str:
-    """Return why a run did not end."""
-    if run.status == COMPLETED:
-        return ""
-    if run.status == FAILED:
-        instant_text = f" at t = {run.failure_time:.6g} s" if run.failure_time is not None else ""
-        return f"fails{instant_text}: {remove_instant(run)}"
-    return run.reason if run.code == UNFINISHED else f"not run: {run.reason}"
 
 
 def to_block(chart: ChartResults) -> dict[str, Any]:

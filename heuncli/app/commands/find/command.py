@@ -123,7 +123,7 @@ def use_condition_unit(units_shown: Units, condition: FindCondition) -> Units:
     """Return the display units with the measure in the unit in which its value was given."""
     if not condition.given_unit or not condition.unit:
         return units_shown
-    size, of_si = parse_unit(condition.given_unit)[0], parse_unit(condition.unit)[0] if condition.unit != "1" else 1.0
+    size, of_si = parse_unit(condition.given_unit)[0], parse_unit(condition.unit)[0]
     return Units({**units_shown.display_units, condition.unit: (condition.given_unit, of_si / size)})
 
 

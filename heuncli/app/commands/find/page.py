@@ -30,6 +30,7 @@ from heuncli.output.tables.text_table import (
     DEFAULT_WIDTH,
     TextColumn,
     TextTable,
+    append_unit,
     format_head,
     format_labelled_lines,
     format_plain,
@@ -72,8 +73,7 @@ class FindPage(NamedTuple):
     def format_measure(self, gap: float, error: float) -> str:
         """Format the measure in its unit; `gap` is its distance above the value of the condition."""
         unit, size = self.units.find(self.condition.unit)
-        text = format_with_error((gap + self.condition.value) * size, error * size)
-        return f"{text} {unit}".rstrip() if unit != "1" else text
+        return append_unit(format_with_error((gap + self.condition.value) * size, error * size), unit)
 
 
 def render_table(page: FindPage) -> str:
@@ -320,7 +320,7 @@ def _make_crossing_block(page: FindPage, each: Crossing) -> dict[str, Any]:
 
 def _make_place_block(page: FindPage, sample: Sample) -> dict[str, Any]:
     """Return a value of the unknown and the measure there, as the JSON has it."""
-    size = parse_unit(page.interval.unit)[0] if page.interval.unit else 1.0
+    size = parse_unit(page.interval.unit or "1")[0]
     block = {"x": sample.x, "si": sample.x * size}
     if sample.gap is None:
         return {**block, "measure": None, "code": sample.why[0]}

@@ -13,7 +13,7 @@ from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.files import STDOUT
 from heuncli.base.spelling import reset_effort, suggest
 from heuncli.base.text_safety import escape
-from heuncli.base.units import parse_unit
+from heuncli.base.units import DENSITY
 from heuncli.scene.file_format.digest import digest
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.quantity import Scope, read_number
@@ -113,7 +113,7 @@ def _parse_density(text: str) -> float:
     """Parse a density [kg/m^3]. Raises UsageError."""
     hint = "such as --density 2700, in kg/m^3, or '2.7 g/cm^3'"
     try:
-        value = read_number(text, parse_unit("kg/m^3")[1], Scope({}))
+        value = read_number(text, DENSITY, Scope({}))
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--density: {finding.message}", hint=hint)) from None
     if not (math.isfinite(value) and value > 0.0):

@@ -13,7 +13,15 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.export import dump_json
 from heuncli.output.tables.page_width import split_to_width
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines, format_plain
+from heuncli.output.tables.text_table import (
+    DEFAULT_WIDTH,
+    TextColumn,
+    TextTable,
+    append_unit,
+    format_head,
+    format_labelled_lines,
+    format_plain,
+)
 from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
@@ -108,7 +116,7 @@ def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings
     display_unit, size = page.units.find(unit)
     base = findings.base
     value = (
-        f" = {_append_unit(format_with_error(base.value * size, base.error * size), display_unit)}"
+        f" = {append_unit(format_with_error(base.value * size, base.error * size), display_unit)}"
         if base.value is not None
         else ""
     )
@@ -150,10 +158,6 @@ def _format_denominator(unit: str) -> str:
     return f"({unit})" if set("*/· ") & set(unit) else unit or "1"
 
 
-def _append_unit(text: str, unit: str) -> str:
-    return f"{text} {unit}".rstrip() if unit != "1" else text
-
-
 def _make_spread_table(
     page: SensitivityPage, text: str, unit: str, findings: MeasureFindings, total: SpreadSum
 ) -> TextTable:
@@ -161,7 +165,7 @@ def _make_spread_table(
     largest = sorted(total.contributions, key=lambda one: -(one.size or 0.0))
     rows = tuple(_make_contribution_row(one, size) for one in largest)
     return TextTable(
-        f"SPREAD  of {text}{f' [{display_unit}]' if display_unit not in ('', '1') else ''}",
+        format_head(f"SPREAD  of {text}", display_unit),
         SPREAD_COLUMNS,
         rows,
         tuple(_describe_sums(total, findings.base, display_unit, size)),
@@ -207,7 +211,7 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
     found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
     words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
     for word, (value, error), remark in words:
-        text = _append_unit(format_with_error(value * size, error * size), unit)
+        text = append_unit(format_with_error(value * size, error * size), unit)
         yield f"{word}: ± {text} (error {format_error(error * size)}){remark}"
     low, high = total.corners
     if base.value is None or low.value is None or high.value is None:

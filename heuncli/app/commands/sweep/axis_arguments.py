@@ -11,10 +11,10 @@ from heuncli.analyses.variants.axes import (
     RandomVariable,
     format_quantity,
     parse_axis_values,
-    parse_number_with_unit,
 )
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.scene.file_format.quantity import parse_number_with_unit
 
 MAX_SAMPLES = 1000  # of an axis; each is read twice before the first variant runs
 

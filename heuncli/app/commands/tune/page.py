@@ -14,6 +14,7 @@ from heuncli.output.tables.text_table import (
     Align,
     TextColumn,
     TextTable,
+    format_head,
     format_labelled_lines,
     format_plain,
 )
@@ -178,7 +179,7 @@ def _make_measure_row(
     """Make the cells of a measure, with as many digits as its error allows."""
     assert results.best is not None
     unit, size = units.find(own_unit)
-    label = f"{text} [{unit}]" if unit and unit != "1" else text
+    label = format_head(text, unit)
     base = results.spec_outcome.readings[index] if results.spec_outcome.readings else MeasureReading(None)
     best = results.best.outcome.readings[index]
     error = format_error(size * best.error) if best.error is not None else ""

@@ -102,8 +102,8 @@ def make_task(request: TuneRequest, options: TuningOptions, evaluator: VariantEv
 def make_variable(interval: Interval, spec: Spec) -> DesignVariable:
     """Make a design variable, with its value in the spec if it is a parameter."""
     base_value = spec.parameters.get(interval.name)
-    if base_value is not None and interval.unit:
-        base_value = base_value / parse_unit(interval.unit)[0]
+    if base_value is not None:
+        base_value = base_value / parse_unit(interval.unit or "1")[0]
     return DesignVariable(interval.name, interval.low, interval.high, interval.unit, base_value)
 
 

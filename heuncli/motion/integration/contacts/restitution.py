@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import fields, record
 from heuncli.motion.integration.contacts.complementarity import ComplementaritySolution, solve_complementarity
 from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts, is_coupled, strike_in_sequence
@@ -158,9 +159,8 @@ def bring_plastic_to_rest(A: Array, total: Array, v: Array, moves: Mask, is_plas
     """
     if (is_plastic & (v > 0.0)).any():
         contacts = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | is_plastic & (v > 0.0))
-        total[contacts] -= np.linalg.lstsq(
-            A[np.ix_(contacts, contacts)], v[contacts], rcond=tolerances.CONTACT_DEPENDS
-        )[0]
+        answers = A[np.ix_(contacts, contacts)]
+        total[contacts] -= solve_least_squares(answers, v[contacts], tolerances.CONTACT_DEPENDS)
         v[contacts] = 0.0
     return total, v
 

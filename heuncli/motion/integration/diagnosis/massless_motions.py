@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.linear_algebra import count_rank, null_space
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
@@ -85,7 +86,7 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
     own_resistances = (
         rest_conditions(layout, i, axes, poses) @ freedom_directions(layout, i, poses).T for i, axes in lacking.items()
     )
-    if not any(null_space(resisted, tolerances.RANK).size for resisted in own_resistances):
+    if not any(null_space(resisted).size for resisted in own_resistances):
         return scene
     if not find_massless_motions(scene, lacking, poses).count:
         return scene
@@ -210,7 +211,7 @@ def find_massless_motions(scene: PreparedScene, lacking: Mapping[int, Array], po
     for i in reversed(bodies):
         A, S = np.concatenate(conditions[i]), freedom_directions(layout, i, poses).T
         U, sigma, Vt = np.linalg.svd(A @ S, full_matrices=True)
-        rank = count_singular_values(sigma, tolerances.RANK)
+        rank = count_rank(sigma)
         free_motions[i] = S @ Vt[rank:].T
         inverse[i] = S @ (Vt[:rank].T / sigma[:rank]) @ U[:, :rank].T @ A
         if parents[i] in lacking:
@@ -234,7 +235,7 @@ def rest_conditions(layout: Layout, i: int, axes: Array | None, poses: TreePoses
     inertia alone.
     """
     R, c = poses.R[i], layout.mechanism.bodies[layout.spanning.links[i].body].center - layout.reference[i]
-    across = np.eye(3) if axes is None else np.linalg.svd(axes, full_matrices=True)[2][len(axes) :]
+    across = np.eye(3) if axes is None else null_space(axes).T
     conditions = np.zeros((3 + len(across), 6))
     conditions[:3, :3], conditions[:3, 3:], conditions[3:, :3] = (
         cross_matrix(R @ c / layout.size),
@@ -343,21 +344,10 @@ def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> li
     return [{"body": place, "root": math.sqrt(inertia), "axis": axis} for axis in axes]
 
 
-def count_singular_values(sigma: Array, threshold: float) -> int:
-    """Count the singular values above the threshold, which is relative to the largest, or to 1."""
-    return int(np.sum(sigma > threshold * max(1.0, float(sigma.max(initial=0.0)))))
-
-
-def null_space(A: Array, threshold: float) -> Array:
-    """Return the null space of A, orthonormal columns."""
-    _, sigma, Vt = np.linalg.svd(A, full_matrices=True)
-    return Vt[count_singular_values(sigma, threshold) :].T
-
-
 def independent_rows(rows: Array) -> Array:
     """Return as many rows as are independent, with the same null space."""
     _, sigma, Vt = np.linalg.svd(rows, full_matrices=False)
-    rank = count_singular_values(sigma, tolerances.RANK)
+    rank = count_rank(sigma)
     return np.asarray(sigma[:rank, None] * Vt[:rank])
 
 

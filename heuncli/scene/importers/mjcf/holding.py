@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.base.linear_algebra import count_rank
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.loop_closures import JointEquality, LoopClosures
@@ -106,7 +107,7 @@ def _iter_independent(J: Any, dofs: Iterable[int]) -> Iterator[int]:
     sizes = np.linalg.norm(J, axis=1)
     rows = J[sizes > 0.0] / sizes[sizes > 0.0, None]
     _, s, V = np.linalg.svd(rows, full_matrices=False) if len(rows) else (0, np.zeros(0), rows)
-    base = V[s > INDEPENDENCE_THRESHOLDS[-1] * max(1.0, s.max(initial=0.0))]
+    base = V[: count_rank(s, INDEPENDENCE_THRESHOLDS[-1])]
     remaining = dict(enumerate(dofs))
     for threshold in INDEPENDENCE_THRESHOLDS:
         for index, dof in list(remaining.items()):
