@@ -44,7 +44,7 @@ def test_it_is_xml_with_its_text_as_text() -> None:
     texts = [e.text or "" for e in root.iter(f"{SVG}text")]
     assert root.findtext(f"{SVG}title") == "A scene: speed against accuracy" == texts[0]
     assert set(METHODS) <= set(texts) and any("agree: motion to 1e-13" in t for t in texts)
-    assert "1e-6" in texts and "10" in texts and "processor time of the integration alone [ms]" in texts
+    assert "1e-6" in texts and "10" in texts and "processor time of the integration only [ms]" in texts
 
 
 def test_nothing_comes_from_outside() -> None:
@@ -104,7 +104,7 @@ def test_the_front_is_filled_and_joined_from_fast_to_accurate() -> None:
 def test_what_is_lost_stands_at_the_border(error: float) -> None:
     figure = make_work_precision_figure(chart(run("A", 1e-3, error), run("A", 1e-2, 1e-8)))
     assert figure.panels[-1].y.high == LOST == spots(figure.panels[-1])[0].y
-    assert any(note.startswith("At the upper border") for note in figure.notes)
+    assert any(note.startswith("At the upper edge") for note in figure.notes)
 
 
 def test_charts_of_failures_alone_and_without_an_error_of_the_reference_can_be_drawn() -> None:

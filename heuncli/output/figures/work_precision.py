@@ -29,13 +29,13 @@ MARGIN = 0.08  # decades left of the fastest run and right of the slowest
 MIN_SPAN = 0.3  # decades of time
 MILLISECONDS = 1e3  # in a second
 MAX_NOTES = 12
-TIME_LABEL = "processor time of the integration alone [ms]"
-ERROR_LABEL = "largest error of any point, of the scene's size"
+TIME_LABEL = "processor time of the integration only [ms]"
+ERROR_LABEL = "largest error of any point, relative to the model size"
 FAILURES_TITLE = "failed, or not run"
-REFERENCE_LABEL = "the reference's own error"
-FRONT_NOTE = "Filled, and joined by a grey line: the front, which no other run beats in both."
-REFERENCE_NOTE = "Grey and level: the reference's own error, below which errors cannot be told."
-LOST_NOTE = f"At the upper border: errors of {LOST:g} and more."
+REFERENCE_LABEL = "error of the reference"
+FRONT_NOTE = "Filled marks on a grey line: Pareto front; no other run is better in both."
+REFERENCE_NOTE = "Horizontal grey line: error of the reference; smaller errors are not significant."
+LOST_NOTE = f"At the upper edge: errors of {LOST:g} or more."
 
 
 class FailedRuns(NamedTuple):
@@ -55,7 +55,7 @@ def make_work_precision_figure(chart: ChartResults) -> Figure:
     panels.append(Panel(times, errors, tuple(_iter_items(chart, pens, times, errors)), HEIGHT))
     reference = chart.reference
     words = (
-        f"Judged up to t = {reference.last_time:.6g} s against a reference: {reference.description}",
+        f"Compared up to t = {reference.last_time:.6g} s with a reference: {reference.description}",
         *reference.notes,
     )
     return Figure(
