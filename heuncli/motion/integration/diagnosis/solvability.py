@@ -9,7 +9,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.number_range import range_error
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad, load_path
+from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
@@ -99,7 +99,7 @@ def find_too_large(scene: PreparedScene, evaluation: Evaluation, instant: int) -
     values = [(float(sizes[rows].max()), load) for load, rows in mechanism.iter_load_rows()]
     value, load = max(values, key=lambda pair: pair[0], default=(0.0, None))
     if load is not None and value > tolerances.MOST_MAGNITUDE:
-        what = f"at t = {t:.9g} s the value of {load_path(load)}"
+        what = f"at t = {t:.9g} s the value of {load.path}"
     else:
         bodies = evaluation.bodies[instant]
         largest = {name: np.abs(bodies[name]).max(axis=-1) for name in QUANTITIES}
