@@ -119,11 +119,17 @@ def require_start(scene: PreparedScene, evaluation: Evaluation, wording: ErrorWo
 
 def require_directions(scene: PreparedScene, evaluation: Evaluation, is_motion_start: bool = False) -> None:
     """Raise SolveError for actuators and springs that push between coincident points; is_motion_start: or will push."""
-    if any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
-        from heuncli.motion.integration.diagnosis.coincident_points import find_undirected_loads  # few scenes have them
+    if problems := find_undirected(scene, evaluation, is_motion_start):
+        raise SolveError(*problems)
 
-        if problems := find_undirected_loads(scene.layout, evaluation, is_motion_start):
-            raise SolveError(*problems)
+
+def find_undirected(scene: PreparedScene, evaluation: Evaluation, is_motion_start: bool = False) -> list[Problem]:
+    """Return the problems of loads that push between coincident points, or will."""
+    if not any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
+        return []
+    from heuncli.motion.integration.diagnosis.coincident_points import find_undirected_loads  # few scenes have them
+
+    return find_undirected_loads(scene.layout, evaluation, is_motion_start)
 
 
 def unmet_rows_problem(scene: PreparedScene, evaluation: Evaluation, instant: int, wording: ErrorWording) -> Problem:
@@ -145,7 +151,9 @@ def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) 
     )
 
     t, length = float(evaluation.times[instant]), float(evaluation.times[-1])
-    problems = find_without_value(scene.mechanism, t, length, evaluate_coordinates(scene.layout, evaluation, instant))
+    problems = find_undirected(scene, evaluation) or find_without_value(
+        scene.mechanism, t, length, evaluate_coordinates(scene.layout, evaluation, instant)
+    )
     if not problems and any(isinstance(load, BushingLoad) for load in scene.mechanism.loads):
         from heuncli.motion.integration.diagnosis.turned_bushings import find_half_turned
 

@@ -64,34 +64,37 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             if load.sliding is not None and kind not in two_motion_kinds:
                 message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
-        elif not isinstance(load, f.FrictionEntry):
-            if not kind.accepts_load(load.type):
-                allowed = format_kind_names(kinds_accepting_load(load.type), "or")
-                yield Violation((*path, "joint"), f"a {load.type} has no effect in a {kind.name}", f"use a {allowed}")
-        else:
-            given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
-            allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
-            if not kind.accepts_load("friction"):
-                allowed = format_kind_names(kinds_accepting_load("friction"), "or")
-                message = f"friction acts in a {allowed}, not in a {kind.name}"
-                yield Violation((*path, "joint"), message, "between two points use a spring with damping")
-            elif len(given_keys) != 1:
-                description = (
-                    f"both {' and '.join(given_keys[-2:])}"
-                    if given_keys
-                    else "neither torque nor force nor coefficient"
-                )
-                hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
-                yield Violation(path, f"friction with {description}", hint, key=True)
-            elif given_keys[0] == "coefficient":
-                yield from check_friction_coefficient(name, load, kind)
-            elif load.radius is not None or load.length is not None:
-                key = "radius" if load.radius is not None else "length"
-                message = f"{key} is for friction with a coefficient, not with a {given_keys[0]}"
-                yield Violation((*path, key), message, "leave it out, or write coefficient", key=True)
-            elif given_keys[0] not in allowed_keys:
-                message = f"friction of a {kind.name} is a {allowed_keys[0]}"
-                yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
+        elif isinstance(load, f.FrictionEntry):
+            yield from check_friction_form(name, load, kind)
+        elif not kind.accepts_load(load.type):
+            allowed = format_kind_names(kinds_accepting_load(load.type), "or")
+            yield Violation((*path, "joint"), f"a {load.type} has no effect in a {kind.name}", f"use a {allowed}")
+
+
+def check_friction_form(name: str, load: f.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
+    """Friction has a size that fits its joint, or a coefficient."""
+    path = ("forces", name)
+    given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
+    allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
+    if not kind.accepts_load("friction"):
+        allowed = format_kind_names(kinds_accepting_load("friction"), "or")
+        message = f"friction acts in a {allowed}, not in a {kind.name}"
+        yield Violation((*path, "joint"), message, "between two points use a spring with damping")
+    elif len(given_keys) != 1:
+        description = (
+            f"both {' and '.join(given_keys[-2:])}" if given_keys else "neither torque nor force nor coefficient"
+        )
+        hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
+        yield Violation(path, f"friction with {description}", hint, key=True)
+    elif given_keys[0] == "coefficient":
+        yield from check_friction_coefficient(name, load, kind)
+    elif load.radius is not None or load.length is not None:
+        key = "radius" if load.radius is not None else "length"
+        message = f"{key} is for friction with a coefficient, not with a {given_keys[0]}"
+        yield Violation((*path, key), message, "leave it out, or write coefficient", key=True)
+    elif given_keys[0] not in allowed_keys:
+        message = f"friction of a {kind.name} is a {allowed_keys[0]}"
+        yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
 
 
 def check_damper_law(name: str, load: f.DamperEntry, kind: JointKind) -> Iterator[Violation]:
