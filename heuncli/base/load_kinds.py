@@ -35,6 +35,7 @@ class LoadKind(NamedTuple):
     not_negative: keys whose numbers say how strongly it resists
     symbols: between two points: the symbol, and the one where it is damped, if that is another; in a joint: about an
     axis towards the eye, about one away from it, and along an axis
+    synonyms: what it is called elsewhere
     sample: the keys that are numbers alone, with ranges from which random scenes of the tests draw
     """
 
@@ -51,6 +52,7 @@ class LoadKind(NamedTuple):
     required_keys: tuple[str, ...] = ()
     not_negative: tuple[str, ...] = ()
     symbols: tuple[str, ...] = ()
+    synonyms: tuple[str, ...] = ()
     sample: Mapping[str, tuple[float, float]] = NO_SAMPLE
 
     @property
@@ -77,48 +79,57 @@ class LoadKind(NamedTuple):
 LOAD_KINDS: dict[str, LoadKind] = {
     kind.name: kind
     for kind in (
-        LoadKind("force", "point", ("FORCE",), "a force at a point of a body"),
-        LoadKind("couple", "point", ("COUPLE",), "a couple on a body", "N·m"),
+        LoadKind("force", "point", ("FORCE",), "a force at a point of a body", synonyms=("load",)),
+        LoadKind("couple", "point", ("COUPLE",), "a couple on a body", "N·m", synonyms=("moment",)),
         LoadKind(
             "torque", "joint", ("TORQUE", "THRUST"), "a torque about a pin's axis, or a thrust along a slide's axis",
-            None, symbols=("turning", "turning back", "sliding"),
+            None, symbols=("turning", "turning back", "sliding"), synonyms=("thrust",),
         ),
         LoadKind(
             "actuator", "points", ("ACTUATOR",), "a given force along the line between two points",
-            symbols=("actuator",),
+            symbols=("actuator",), synonyms=("cylinder",),
         ),
         LoadKind(
             "spring", "points", ("SPRING",), "a spring and damper along the line between two points",
             has_potential=True, law_keys=("force",), number_keys=("stiffness", "length", "damping"),
             required_keys=("stiffness", "length"), not_negative=("stiffness", "length", "damping"),
-            symbols=("spring", "damped spring"),
+            symbols=("spring", "damped spring"), synonyms=("springdamper", "spring_damper"),
             sample={"stiffness": (1, 10), "length": (0.1, 1), "damping": (0, 1)},
         ),
         LoadKind(
             "turn_spring", "joint", ("TURN_SPRING",), "a torsion spring and damper in a joint", "N·m",
             has_potential=True, law_keys=("torque",), number_keys=("stiffness", "angle", "damping"),
             required_keys=("stiffness",), not_negative=("stiffness", "damping"), symbols=("coil", "coil", "coil"),
+            synonyms=(
+                "torsion_spring", "torsional_spring", "rotational_spring", "rotary_spring", "angular_spring",
+                "spiral_spring",
+            ),
             sample={"stiffness": (1, 10), "angle": (-2, 2), "damping": (0, 1)},
         ),
-        LoadKind("distributed", "line", ("FORCE",), "a load along a line on a body"),
+        LoadKind(
+            "distributed", "line", ("FORCE",), "a load along a line on a body",
+            synonyms=("line_load", "udl", "uniform", "distributed_load", "line_force"),
+        ),
         LoadKind(
             "damper", "joint", ("TURN_DAMPER", "SHIFT_DAMPER"), "resists the motion that a joint leaves free", None,
             resists="the rate of its joint", law_keys=("torque", "force"), number_keys=("coefficient", "sliding"),
             not_negative=("sliding", "coefficient"), symbols=("damping", "damping", "damping"),
+            synonyms=("dashpot",),
         ),
         LoadKind(
             "friction", "joint", ("TURN_FRICTION", "SHIFT_FRICTION"), "Coulomb's friction in a joint, smoothed", None,
             resists="the rate of its joint", is_friction=True,
             not_negative=("length", "coefficient", "torque", "force"), symbols=("brake", "brake", "brake along"),
+            synonyms=("brake", "coulomb"),
         ),
         LoadKind(
             "motor", "joint", ("TORQUE",), "a motor in a pin: torque over speed, through a gear", "N·m",
-            not_negative=("limit",), symbols=("turning", "turning back", "sliding"),
+            not_negative=("limit",), symbols=("turning", "turning back", "sliding"), synonyms=("engine",),
         ),
         LoadKind(
             "bushing", "bodies", ("BUSHING_SHIFT", "BUSHING_TURN"), "six springs and dampers between two bodies",
             has_potential=True, not_negative=("stiffness", "damping", "turning", "turning_damping"),
-            symbols=("bushing",),
+            symbols=("bushing",), synonyms=("bush", "mount"),
         ),
         # of couplings
         LoadKind("rope", "rope", ("ROPE",), "an elastic rope", has_potential=True),
@@ -128,3 +139,4 @@ LOAD_KINDS: dict[str, LoadKind] = {
         ),
     )
 }  # fmt: skip
+LOAD_SYNONYMS = {word: kind.name for kind in LOAD_KINDS.values() for word in kind.synonyms}

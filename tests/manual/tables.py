@@ -17,12 +17,13 @@ from heuncli.app.cli.registry import COMMANDS, Command
 from heuncli.app.commands.explain.command import PAGES, read_summary
 from heuncli.base import units as u
 from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
+from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
 from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.foreign_words import FORCE_WORDS, SHAPE_WORDS
+from heuncli.scene.file_format.foreign_words import SHAPE_WORDS
 from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations
@@ -152,7 +153,7 @@ def types() -> Iterator[tuple[str, str]]:
     """What `type` may be, with the words of others for it, and where each is described."""
     blocks = (
         ("a joint", f.JOINTS, SYNONYMS, "Joints"),
-        ("a load", f.LOADS, FORCE_WORDS, None),
+        ("a load", f.LOADS, LOAD_SYNONYMS, None),
         ("a shape", fs.SHAPES, SHAPE_WORDS, "Shapes"),
     )
     for what, models, meant, heading in blocks:
@@ -198,6 +199,11 @@ def pages() -> Iterator[tuple[str, str]]:
         yield f"[{name}](heuncli/manual/{name}.md)", read_summary(name)
 
 
+def loads() -> Iterator[tuple[str, str]]:
+    """The kinds of loads that users write."""
+    return ((f"`{name}`", LOAD_KINDS[name].does) for name in f.LOADS)
+
+
 def groups_of_equations() -> Iterator[tuple[str, str, str]]:
     """The headings of the page on equations with their numbers, and the first words by which users see them."""
     for heading, rows in equations().items():
@@ -218,6 +224,7 @@ TABLES = (
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
     Table("format", "Joints", ("type", "conditions", "may be driven", "takes", "also called"), list(joints())),
+    Table("format", "Forces", ("type", "what it is"), list(loads())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "stands in"), list(keys())),

@@ -20,7 +20,7 @@ from tests.oracle.turns import Array, about, across, cross, random_rotation, ran
 from tests.oracle.values import Harmonic
 
 ALL_KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
-LOADS = ("force", "couple", "spring", "actuator", "torque", "damper", "friction")
+LOADS = ("force", "couple", "spring", "actuator", "torque", "damper", "friction")  # each has a law in loads.py
 SPREAD = ("force", "distributed", "turn_spring", "spring")
 ELASTIC = ("force", "bushing", "spring")
 DRIVEN = {"pin": "angle", "slide": "travel", "cylinder": "travel", "rod": "length"}

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.load_kinds import LOAD_KINDS, LoadKind
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.records import record
+from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
@@ -58,6 +58,14 @@ class TriangularDistribution:
     def center(self) -> Array:
         """The point where the resultant acts."""
         return np.asarray((2.0 * self.start + self.end) / 3.0)
+
+
+class Placement(NamedTuple):
+    """Where an end of a load is put: its body, its point there, and the axes (3, 3) of the former body in the new."""
+
+    body: int
+    point: Array
+    axes: Array
 
 
 class AnyLoad:
@@ -166,8 +174,26 @@ class ValuedLoad(AnyLoad):
         return self.value is not None
 
 
+class TwoPointLoad(AnyLoad):
+    """A load between points p and q of the bodies a and b."""
+
+    a: int
+    p: Array
+    b: int
+    q: Array
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return (self.a, self.p), (self.b, self.q)
+
+    def move(self, a: Placement, b: Placement) -> Self:
+        """Return it between other points, whose bodies may have other axes."""
+        return replace(self, a=a.body, p=a.point, b=b.body, q=b.point)
+
+
 @record
-class PairLoad(ValuedLoad):
+class PairLoad(ValuedLoad, TwoPointLoad):
     """A load along the line between two points.
 
     p, q: the points on the bodies a and b, body axes [m]
@@ -195,11 +221,6 @@ class PairLoad(ValuedLoad):
     def is_linear(self) -> bool:
         """Whether its force is proportional to the vector between its points."""
         return self.value is None and self.length == 0.0 and self.damping == 0.0
-
-    @property
-    def points(self) -> tuple[tuple[int, Array], ...]:
-        """Bodies with the points at which it acts on them, body axes."""
-        return (self.a, self.p), (self.b, self.q)
 
 
 @record
@@ -230,7 +251,7 @@ class JointLoad(ValuedLoad):
 
 
 @record
-class BushingLoad(AnyLoad):
+class BushingLoad(TwoPointLoad):
     """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
 
     p, q: the points on the bodies a and b, their axes [m]
@@ -259,10 +280,9 @@ class BushingLoad(AnyLoad):
         """Whether some motion is."""
         return bool(np.any(self.shift.damping) or np.any(self.turn.damping))
 
-    @property
-    def points(self) -> tuple[tuple[int, Array], ...]:
-        """Bodies with the points at which it acts on them, body axes."""
-        return (self.a, self.p), (self.b, self.q)
+    def move(self, a: Placement, b: Placement) -> BushingLoad:
+        """Return it between other points, its axes turned with those of their bodies."""
+        return replace(super().move(a, b), frame=a.axes @ self.frame, to_frame=b.axes @ self.to_frame)
 
 
 @record
