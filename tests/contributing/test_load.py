@@ -11,6 +11,7 @@ import pytest
 
 from heuncli.base import load_kinds
 from heuncli.base.errors import SolveError, SpecError
+from heuncli.base.joint_kinds import TYPES
 from heuncli.base.load_kinds import LOAD_KINDS, LoadKind
 from heuncli.kernel.choose import scene as kernel
 from heuncli.output.drawing import symbols
@@ -21,8 +22,8 @@ from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format import resolve_loads
 from heuncli.scene.file_format.entries import keys_of
-from heuncli.scene.file_format.fields import SiNumber
-from heuncli.scene.file_format.format_elastic import PairEntry
+from heuncli.scene.file_format.fields import Moment, SiNumber
+from heuncli.scene.file_format.format_elastic import JointLoadEntry, PairEntry
 from heuncli.scene.file_format.resolve_couplings import ReferenceResolver
 from tests.contributing.addition import cited
 from tests.oracle.loads import KINDS_OF_LOAD, between, pushes
@@ -117,6 +118,35 @@ def test_its_pictures(tmp_path: Path) -> None:
     (line,) = data_of(page.read_text(encoding="utf-8"))["scene"]["lines"]
     assert (line["name"], line["kind"]) == ("pull", ROW.symbols[0])
     assert re.search(r"^pull  magnet\n  value +N ", run_command(["run", str(spec)]).stdout, re.MULTILINE)
+
+
+def test_one_in_a_joint(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A detent, whose torque is -c sin(4 angle), in the pins that take it."""
+
+    class DetentEntry(JointLoadEntry):
+        type: Literal["detent"]
+        hold: Moment
+
+    def resolve_detent(resolver: ReferenceResolver, name: str, load: DetentEntry) -> m.Torque:
+        law = compile_expression(f"-{load.hold!r}*sin(4*angle)", Scope(own={"angle": "angle"}, in_time=True))
+        bound = resolve_loads.bind_law(resolver, law, f"forces.{name}.hold", load.joint)
+        assert bound is not None
+        return m.Torque(load.joint, bound, load.type)
+
+    row = LOAD_KINDS["motor"]._replace(name="detent", does="holds in four places", not_negative=("hold",))
+    monkeypatch.setitem(LOAD_KINDS, "detent", row)
+    monkeypatch.setitem(f.LOADS, "detent", DetentEntry)
+    monkeypatch.setitem(resolve_loads.MEANINGS, "detent", resolve_detent)
+    monkeypatch.setitem(TYPES, "pin", TYPES["pin"]._replace(loads=(*TYPES["pin"].loads, "detent")))
+    turned = scene(0.3).replace("slide", "pin").replace("travel", "angle").replace("speed", "rate")
+    turned = turned.replace(
+        "{type: magnet, from: ground.O, to: a.c, strength: 3 N m^2}", "{type: detent, joint: u, hold: 2}"
+    )
+    found = solved(turned)
+    assert found.forces["pull"]["value"] == pytest.approx(-2.0 * np.sin(4.0 * found.coordinates["u"]["angle"]))
+    with pytest.raises(SpecError) as caught:
+        solved(turned.replace("pin", "cylinder"))
+    assert caught.value.problems[0].code == "load-joint"
 
 
 def test_in_random_scenes(monkeypatch: pytest.MonkeyPatch) -> None:

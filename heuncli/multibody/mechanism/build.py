@@ -236,7 +236,7 @@ def build_load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, t
         case m.Bushing():
             return build_bushing(name, f, index)
         case m.Torque():
-            return JointLoad(name, "torque", joints[f.joint][0], f.value)
+            return JointLoad(name, f.type, joints[f.joint][0], f.value)
         case m.TurnSpring():
             k = joints[f.joint][0]
             if f.torque is not None:
