@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 
 Direction = Literal["axis", "to_axis", "first", "second", "z", "across"]
@@ -110,8 +111,8 @@ class JointKind(NamedTuple):
     # coordinates, which may be held at the start, and those of them that a drive may prescribe
     coordinates: tuple[Literal["angle", "travel"], ...] = ()
     drives: tuple[Literal["angle", "travel", "length"], ...] = ()
-    # what acts in it: kinds of loads, and the motions on which they act
-    loads: tuple[Literal["torque", "turn_spring", "damper", "friction"], ...] = ()
+    # what acts in it: kinds of loads (load_kinds.py), and the motions on which they act
+    loads: tuple[str, ...] = ()
     motions: tuple[Motion, ...] = ()
     # what it is in a scene declared planar, None: it cannot be there
     planar: str | None = None
@@ -199,9 +200,15 @@ class JointKind(NamedTuple):
         """Whether the point where it loads its `from` body moves over that body."""
         return bool(self.shifts)
 
+    @property
+    def load_unit(self) -> Literal["N", "N·m"]:
+        """The unit of what acts in it: N·m if it turns."""
+        return "N·m" if "turning" in self.motions else "N"
+
     def motions_for_load(self, load: str) -> tuple[Motion, ...]:
         """Return the motions on which a load of this kind acts: one row of the kernel's table of loads each."""
-        return ("turning",) if load == "turn_spring" else self.motions
+        known: tuple[Motion, ...] = ("turning", "sliding")
+        return tuple(x for x, _ in zip(known, LOAD_KINDS[load].laws, strict=False) if x in self.motions)
 
     def accepts_load(self, load: str) -> bool:
         """Whether a load of this kind may act in it."""

@@ -22,6 +22,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import (
         ACTUATOR,
         BUSHING_SHIFT,
+        BUSHING_TURN,
         COUPLE,
         FORCE,
         ROPE,
@@ -30,6 +31,7 @@ if not cython.compiled:
         SPRING,
         THREAD_FRICTION,
         THRUST,
+        TORQUE,
         TURN_FRICTION,
         TURN_SPRING,
         Body,
@@ -63,7 +65,7 @@ def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
             power += apply_pair_load(scene, load, vector, point.v)
         elif load.kind == ROPE:
             power += apply_rope_load(scene, load, vector)
-        elif load.kind >= BUSHING_SHIFT:
+        elif is_bushing(load):
             shifts: cython.bint = load.kind == BUSHING_SHIFT
             power += apply_bushing_load(scene, load, vector, relative_motion(scene, load, point.v, shifts))
         else:
@@ -139,11 +141,11 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     not applied to any body (joint_friction.py).
     """
     axis: Vec3 = world_direction(scene, load.a, load.axis)
-    slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
+    slides: cython.bint = slides_in_joint(load)
     motion: Vec3 = relative_motion(scene, load, v, slides)
     load_on_b: Vec3
     load.rate = dot(motion, axis)
-    if load.kind <= TURN_SPRING:
+    if acts_about_axis(load):
         load.value = vector.x
         if load.kind == TURN_SPRING:
             load.span = turn_spring_angle(scene, load)
@@ -155,7 +157,7 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
         if not load.in_body:
             load.rate = speed  # a motion without a single axis is measured by its speed
         resistance_factor: cython.double = load.coefficient
-        if load.kind >= TURN_FRICTION:
+        if is_friction(load):
             if not load.presses:
                 load.pressed = vector.x
             resistance_factor = load.coefficient * vector.x / load.speed  # what it comes to at rest, as a slope
@@ -202,6 +204,26 @@ def apply_rope_pull(scene: cython.pointer[Scene], load: cython.pointer[Load]) ->
         apply_condition_load(scene, part, load.value * part.factor)
 
 
+def is_bushing(load: cython.pointer[Load]) -> cython.bint:
+    """Whether a load is the shift or the turn of a bushing."""
+    return load.kind == BUSHING_SHIFT or load.kind == BUSHING_TURN
+
+
+def acts_about_axis(load: cython.pointer[Load]) -> cython.bint:
+    """Whether a load in a joint acts about or along its axis, and not against its motion."""
+    return load.kind == TORQUE or load.kind == THRUST or load.kind == TURN_SPRING
+
+
+def is_friction(load: cython.pointer[Load]) -> cython.bint:
+    """Whether a load has the size of friction, not a coefficient of its rate."""
+    return load.kind == TURN_FRICTION or load.kind == SHIFT_FRICTION or load.kind == THREAD_FRICTION
+
+
+def slides_in_joint(load: cython.pointer[Load]) -> cython.bint:
+    """Whether a load in a joint is a force on its sliding, not a moment on its turning."""
+    return load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
+
+
 def load_potential(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
     """Return the potential energy of a spring, rope or bushing at the present pose, 0 if relaxed; 0 for other loads
     [J].
@@ -209,7 +231,7 @@ def load_potential(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> 
     stretch: cython.double = 0.0
     if load.kind == ROPE:
         return rope_energy(scene, load)
-    elif load.kind >= BUSHING_SHIFT:
+    elif is_bushing(load):
         return bushing_energy(scene, load)
     elif load.kind == SPRING:
         stretch = norm(find_span_vector(scene, load)) - load.length

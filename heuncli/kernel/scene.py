@@ -14,7 +14,7 @@ from heuncli.kernel.algebra import Ldl3, Mat3, Sym3, Vec3
 from heuncli.kernel.programs import Program, Programs
 from heuncli.kernel.structs import Pointer, Record, Struct
 
-# Kinds of freedoms, loads and closure rows.
+# Kinds of freedoms, loads (named in base/load_kinds.py; their order means nothing) and closure rows.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)

@@ -18,19 +18,23 @@ if not cython.compiled:
     from heuncli.kernel.directions import world_direction
     from heuncli.kernel.jets import slope
     from heuncli.kernel.libm import NAN
-    from heuncli.kernel.loads import body_omega, relative_motion, sliding_velocity
+    from heuncli.kernel.loads import (
+        acts_about_axis,
+        body_omega,
+        is_bushing,
+        is_friction,
+        relative_motion,
+        slides_in_joint,
+        sliding_velocity,
+    )
     from heuncli.kernel.scene import (
         ACTUATOR,
         BUSHING_SHIFT,
         COUPLE,
         FORCE,
         ROPE,
-        SHIFT_DAMPER,
-        SHIFT_FRICTION,
         SPRING,
         THREAD_FRICTION,
-        THRUST,
-        TURN_FRICTION,
         TURN_SPRING,
         Body,
         BodyTangent,
@@ -68,7 +72,7 @@ def add_load_tangents(scene: cython.pointer[Scene]) -> cython.double:
             power += add_outer_load_tangent(scene, load, vector, point)
         elif load.kind == SPRING or load.kind == ACTUATOR:
             power += add_pair_load_tangent(scene, load, vector.x, point)
-        elif load.kind >= BUSHING_SHIFT:
+        elif is_bushing(load):
             power += add_bushing_tangent(scene, load, vector, point)
         else:
             power += add_joint_load_tangent(scene, load, vector.x, point)
@@ -162,7 +166,7 @@ def add_joint_load_tangent(
     """
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     axis: Vec3 = world_direction(scene, load.a, load.axis)
-    slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
+    slides: cython.bint = slides_in_joint(load)
     motion: Vec3 = sub(body_omega(scene, load.b), body_omega(scene, load.a))
     change: Vec3 = sub(omega_tangent(scene, load.b), omega_tangent(scene, load.a))
     if slides:
@@ -170,7 +174,7 @@ def add_joint_load_tangent(
         change = sliding_velocity_tangent(scene, load, point)
     power: cython.double
     load_on_b: Vec3
-    if load.kind <= TURN_SPRING:
+    if acts_about_axis(load):
         axis_change: Vec3 = vector_tangent(scene, load.a, axis)
         rate: cython.double = dot(change, axis) + dot(motion, axis_change)
         F: cython.double = value_change
@@ -271,7 +275,7 @@ def turn_spring_angle_tangent(scene: cython.pointer[Scene], load: cython.pointer
 
 def resistance_per_speed(load: cython.pointer[Load], speed: cython.double) -> cython.double:
     """Return the load of a damper or friction, divided by the speed."""
-    if load.kind < TURN_FRICTION:
+    if not is_friction(load):
         return load.coefficient
     size: cython.double = load.coefficient * load.pressed
     if speed > 0.0:
@@ -283,7 +287,7 @@ def resistance_slope(load: cython.pointer[Load], speed: cython.double) -> cython
     """Return the derivative of `resistance_per_speed` by the speed; for friction (F (1 - tanh^2) / v0 - F tanh / v) /
     v.
     """
-    if load.kind < TURN_FRICTION or not speed > 0.0:
+    if not is_friction(load) or not speed > 0.0:
         return 0.0
     f: cython.double = tanh(speed / load.speed)
     size: cython.double = load.coefficient * load.pressed

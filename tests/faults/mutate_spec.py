@@ -9,6 +9,7 @@ from functools import cache
 from random import Random
 from typing import Any
 
+from heuncli.scene.file_format.format import LOADS
 from heuncli.scene.file_format.format_couplings import COUPLINGS
 from tests.faults import sources
 from tests.faults.random_expressions import random_expression
@@ -41,8 +42,7 @@ STRANGE_NAMES = (
 KINDS = {
     "joints": ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod", "curve", "hinge",
     "fixed", "pivot"),
-    "forces": ("force", "couple", "torque", "actuator", "spring", "damper", "friction", "distributed", "turn_spring",
-    "torsion_spring", "motor", "bushing"),
+    "forces": (*LOADS, "torsion_spring"),
     "couplings": tuple(COUPLINGS),
     "shapes": ("rod", "cylinder", "cone", "box", "sphere", "point", "mesh", "ball"),
     "analysis": ("motion", "state", "impulse", "rest", "modes"),

@@ -17,12 +17,13 @@ from heuncli.app.cli.registry import COMMANDS, Command
 from heuncli.app.commands.explain.pages import PAGES, read_summary
 from heuncli.base import units as u
 from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
+from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
 from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.foreign_words import FORCE_WORDS, SHAPE_WORDS
+from heuncli.scene.file_format.foreign_words import SHAPE_WORDS
 from heuncli.scene.file_format.type_aliases import list_aliases
 from tests.manual import codes
 from tests.manual.keys import PLACES
@@ -162,7 +163,7 @@ def types() -> Iterator[tuple[str, str]]:
     """What `type` may be, with the words of others for it, and where each is described."""
     blocks = (
         ("a joint", "joints", f.JOINTS, SYNONYMS, "Joints"),
-        ("a load", "forces", f.LOADS, FORCE_WORDS, None),
+        ("a load", f.LOADS, LOAD_SYNONYMS, None),
         ("a shape", "shapes", fs.SHAPES, SHAPE_WORDS, "Shapes"),
     )
     for what, block, models, meant, heading in blocks:
@@ -210,6 +211,11 @@ def pages() -> Iterator[tuple[str, str]]:
         yield f"[{name}](heuncli/manual/{name}.md)", read_summary(name)
 
 
+def loads() -> Iterator[tuple[str, str]]:
+    """The kinds of loads that users write."""
+    return ((f"`{name}`", LOAD_KINDS[name].does) for name in f.LOADS)
+
+
 def groups_of_equations() -> Iterator[tuple[str, str, str]]:
     """The headings of the page on equations with their numbers, and the first words by which users see them."""
     for heading, rows in equations().items():
@@ -230,6 +236,7 @@ TABLES = (
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
     Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
+    Table("format", "Forces", ("type", "what it is"), list(loads())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "see"), list(keys())),

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.base.joint_kinds import kinds_accepting_load
+from heuncli.base.load_kinds import LOAD_KINDS
 from tests.oracle.read import GROUND, Placed, model, placed, start_state
 from tests.oracle.rows import assemble, coordinates, gaps, rates, velocities
 from tests.oracle.solve import solve
@@ -18,7 +20,7 @@ from tests.oracle.turns import Array, about, across, cross, random_rotation, ran
 from tests.oracle.values import Harmonic
 
 ALL_KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
-LOADS = ("force", "couple", "spring", "actuator", "torque", "damper", "friction")
+LOADS = ("force", "couple", "spring", "actuator", "torque", "damper", "friction")  # each has a law in loads.py
 SPREAD = ("force", "distributed", "turn_spring", "spring")
 ELASTIC = ("force", "bushing", "spring")
 DRIVEN = {"pin": "angle", "slide": "travel", "cylinder": "travel", "rod": "length"}
@@ -230,7 +232,7 @@ class Maker:
         """One load of each kind that the scene can take."""
         forces: dict[str, Any] = {}
         for kind in kinds:
-            spec = getattr(self, f"load_{kind}")(in_time)
+            spec = self.load_from_row(kind) if LOAD_KINDS[kind].sample else getattr(self, f"load_{kind}")(in_time)
             if spec is not None:
                 forces[f"f_{kind}"] = {"type": kind, **spec}
         if forces:
@@ -253,10 +255,17 @@ class Maker:
             return None
         return self.load_force(in_time)
 
-    def load_spring(self, in_time: bool) -> dict[str, Any]:
-        a, b = self.pair()
-        stiffness, length, damping = (float(self.rng.uniform(*range_)) for range_ in ((1, 10), (0.1, 1), (0, 1)))
-        return {"from": a, "to": b, "stiffness": stiffness, "length": length, "damping": damping}
+    def load_from_row(self, kind: str) -> dict[str, Any] | None:
+        """A load that is numbers alone, between two points or in a joint that takes it."""
+        if LOAD_KINDS[kind].is_in_joint:
+            joint = self.on_joint([own.name for own in kinds_accepting_load(kind)])
+            ends: dict[str, Any] | None = None if joint is None else {"joint": joint}
+        else:
+            a, b = self.pair()
+            ends = {"from": a, "to": b}
+        if ends is None:
+            return None
+        return ends | {key: float(self.rng.uniform(*most)) for key, most in LOAD_KINDS[kind].sample.items()}
 
     def load_actuator(self, in_time: bool) -> dict[str, Any]:
         a, b = self.pair()
@@ -298,13 +307,6 @@ class Maker:
         if self.rng.random() < 0.7:
             spec["to_vector"] = [self.value(4, in_time) for _ in range(3)]
         return spec | ({"frame": "body"} if self.rng.random() < 0.5 else {})
-
-    def load_turn_spring(self, in_time: bool) -> dict[str, Any] | None:
-        joint = self.on_joint(("pin", "cylinder", "universal"))
-        if joint is None:
-            return None
-        stiffness, angle, damping = (float(self.rng.uniform(*ends)) for ends in ((1, 10), (-2, 2), (0, 1)))
-        return {"joint": joint, "stiffness": stiffness, "angle": angle, "damping": damping}
 
     def load_bushing(self, in_time: bool) -> dict[str, Any]:
         a, b = self.pair()

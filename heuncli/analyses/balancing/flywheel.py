@@ -24,17 +24,10 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.model import (
-    BushingLoad,
-    JointLoad,
     Load,
     Mechanism,
-    PairLoad,
-    RopeLoad,
-    ThreadLoad,
-    load_path,
 )
 from heuncli.results.results import Array
-from heuncli.scene.expressions.programs import Expression
 from heuncli.study.compose.recovery import Recovery
 
 MIN_INTERVALS_PER_TURN = 1080  # intervals per turn, at least; on each, extremes are those of a cubic
@@ -300,7 +293,7 @@ def require_position_loads(mechanism: Mechanism) -> None:
     """Raise SolveError [no-flywheel] for loads that depend on rates or time: the angle does not determine their
     work.
     """
-    found = dict.fromkeys((load_path(load), why) for load in mechanism.loads for why in iter_dependence_reasons(load))
+    found = dict.fromkeys((load.path, why) for load in mechanism.loads for why in iter_dependence_reasons(load))
     hint = "leave it out of the model, or run the motion with the flywheel in it"
     if found:
         raise SolveError(*(
@@ -312,18 +305,11 @@ def require_position_loads(mechanism: Mechanism) -> None:
 
 def iter_dependence_reasons(load: Load) -> Iterator[str]:
     """Yield the reasons why the pose does not determine the work of a load; none if it does."""
-    if isinstance(load, JointLoad) and load.kind in ("damper", "friction"):
-        yield "depends on the rate of its joint"
-    if isinstance(load, ThreadLoad):
-        yield "depends on the direction of rotation of its thread"
-    if isinstance(load, JointLoad) and load.kind == "turn_spring" and load.turning:
+    if load.row.resists is not None:
+        yield f"depends on {load.row.resists}"
+    if load.row.has_potential and load.is_damped:
         yield "has damping"
-    if isinstance(load, PairLoad | RopeLoad) and load.damping:
-        yield "has damping"
-    if isinstance(load, BushingLoad) and (load.shift.damping.any() or load.turn.damping.any()):
-        yield "has damping"
-    values: tuple[Expression, ...] = load.values
-    if any(value.time_dependent for value in values):
+    if any(value.time_dependent for value in load.values):
         yield "depends on t"
-    if any(quantity in RATES for value in values for _, quantity in value.uses):
+    if any(quantity in RATES for value in load.values for _, quantity in value.uses):
         yield "depends on a rate"

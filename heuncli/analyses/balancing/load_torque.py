@@ -18,7 +18,7 @@ from heuncli.base.errors import SolveError
 from heuncli.base.records import record
 from heuncli.base.tolerances import ORDERS_SETTLED, SUM_ROUNDING
 from heuncli.loads.kinetostatics.energy import rope_power
-from heuncli.multibody.mechanism.model import GROUND, load_path
+from heuncli.multibody.mechanism.model import GROUND
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
@@ -48,7 +48,7 @@ def compute_load_torque(
     mechanism = scene.mechanism
     if not mechanism.loads and not mechanism.gravity.any():
         return LoadTorque()
-    time_loads = [load_path(load) for load in mechanism.loads if any(value.time_dependent for value in load.values)]
+    time_loads = [load.path for load in mechanism.loads if any(value.time_dependent for value in load.values)]
     if time_loads:
         return LoadTorque(notes=(f"no orders of the loads: {time_loads[0]} depends on t",))
     rate = plan.rate or 1.0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TypeGuard
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates
 from heuncli.motion.integration.diagnosis.path_ends import Moving
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import JointLoad, Load, load_path
+from heuncli.multibody.mechanism.model import JointLoad, Load
 from heuncli.results.results import Array, Block
 from heuncli.scene.expressions.programs import Expression
 
@@ -70,7 +69,8 @@ class NextCycle:
 
     def is_periodic(self, load: Load) -> bool:
         """Return whether a load is the same one cycle later."""
-        if is_turn_spring(load) and self.turn_angles.get(self.run.layout.mechanism.joints[load.joint].name, 0.0):
+        joint = self.run.layout.mechanism.joints[load.joint].name if isinstance(load, JointLoad) else ""
+        if load.row.has_potential and self.turn_angles.get(joint, 0.0):
             return False
         return all(self.is_law_periodic(value) for value in load.values)
 
@@ -113,12 +113,7 @@ def describe_nonperiodic_loads(run: FollowedRun, nodes: PieceNodes) -> tuple[str
     next_cycle = NextCycle(run, nodes)
     cycle, hint = ("one revolution", "; try --turns 2") if run.turns == 1 else ("two revolutions", "")
     return tuple(
-        f"{load_path(load)} does not repeat after {cycle}; its orders assume that it restarts there{hint}"
+        f"{load.path} does not repeat after {cycle}; its orders assume that it starts again there{hint}"
         for load in run.layout.mechanism.loads
         if not next_cycle.is_periodic(load)
     )
-
-
-def is_turn_spring(load: Load) -> TypeGuard[JointLoad]:
-    """Return whether a load counts turns by itself."""
-    return isinstance(load, JointLoad) and load.kind == "turn_spring"

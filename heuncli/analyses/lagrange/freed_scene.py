@@ -108,7 +108,7 @@ def make_effort_loads(mechanism: Mechanism, coordinate: str, value: float) -> tu
     k = next(i for i, joint in enumerate(mechanism.joints) if joint.name == joint_name)
     joint, name = mechanism.joints[k], f"drive of {coordinate}"
     if quantity == "length":
-        return (PairLoad(name, joint.a, joint.p, joint.b, joint.q, Expression.from_number(value), 0.0, 0.0, 0.0),)
+        return (PairLoad(name, "actuator", joint.a, joint.p, joint.b, joint.q, Expression.from_number(value)),)
     if JOINTS[joint.kind].coordinates == (quantity,):
         return (JointLoad(name, "torque", k, Expression.from_number(value)),)
     # a cylinder slides along the axis that both bodies have

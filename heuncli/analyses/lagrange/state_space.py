@@ -31,7 +31,7 @@ from heuncli.loads.kinetostatics.actions import collect_applied_loads
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.smoothness import iter_without_derivative
-from heuncli.multibody.mechanism.model import JointLoad, Load, PairLoad, PointLoad
+from heuncli.multibody.mechanism.model import JointLoad, Load, PointLoad
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 
@@ -165,13 +165,9 @@ def format_rate_name(name: str) -> str:
 def get_load_unit(instant: Instant, name: str) -> str:
     """Return the unit of the value of a load."""
     load = find_load(instant, name)
-    if isinstance(load, PointLoad):
-        return "N·m" if load.kind == "couple" else "N"
     if isinstance(load, JointLoad):
-        return (
-            "N·m" if "turning" in JOINTS[instant.freed_scene.layout.mechanism.joints[load.joint].kind].motions else "N"
-        )
-    return "N"
+        return JOINTS[instant.freed_scene.layout.mechanism.joints[load.joint].kind].load_unit
+    return load.row.unit or "N"
 
 
 def find_rate_indices(scene: FreedScene) -> Array:
@@ -220,7 +216,7 @@ def select_inputs(instant: Instant, choice: CoordinateChoice, requested: Sequenc
     """Return the requested inputs; by default all loads that have one value. Raises SolveError [no-state-space] for
     other names.
     """
-    forces = [load.name for load in instant.freed_scene.layout.mechanism.loads if has_value(load)]
+    forces = [load.name for load in instant.freed_scene.layout.mechanism.loads if load.has_value]
     drives = {
         find_drive_name(instant, name): name
         for name, is_driven in zip(choice.names, choice.is_driven, strict=True)
@@ -253,16 +249,6 @@ def find_drive_name(instant: Instant, coordinate: str) -> str:
     joint = coordinate.rpartition(".")[0]
     drives = (own.drive for own in instant.setup.scene.mechanism.joints if own.name == joint)
     return next(drive.name for drive in drives if drive is not None)
-
-
-def has_value(load: Load) -> bool:
-    """Return whether a load has one value, a force or torque, that an input can change.
-
-    Springs and dampers given by numbers, bushings, ropes, threads and distributed loads have none.
-    """
-    if isinstance(load, PointLoad):
-        return load.spread is None
-    return isinstance(load, PairLoad | JointLoad) and load.value is not None
 
 
 def find_direction(load: PointLoad) -> Array | None:

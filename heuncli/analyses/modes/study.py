@@ -31,7 +31,7 @@ from heuncli.motion.linearisation.steady_motion import (
     find_fastest_rate,
     linearise_scene,
 )
-from heuncli.multibody.mechanism.model import RopeLoad, load_path
+from heuncli.multibody.mechanism.model import RopeLoad
 from heuncli.multibody.tree.held_speeds import find_speed_rows
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
@@ -134,7 +134,7 @@ def require_time_independent(setup: Setup) -> None:
             f"{name} depends on t: small oscillations need a state that does not change",
             hint=hint,
         )
-        for name in dict.fromkeys(load_path(load) for load in time_loads)
+        for name in dict.fromkeys(load.path for load in time_loads)
     ]
     if problems:
         raise SolveError(*problems)

@@ -8,7 +8,7 @@ from heuncli.base.errors import Problem
 from heuncli.loads.equilibrium.coordinates import Coordinates
 from heuncli.loads.equilibrium.pose import Pose
 from heuncli.loads.kinetostatics.bodies import make_body_states
-from heuncli.multibody.mechanism.model import ThreadLoad, load_path
+from heuncli.multibody.mechanism.model import ThreadLoad
 from heuncli.results.results import Array
 
 CODE = "no-rest-pose"
@@ -102,7 +102,7 @@ def no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
     """Make the problem of loads without a value, or a slope, where the search is; change (k, f): near the pose."""
     what = "value" if not np.isfinite(change).all() else "derivative"
     layout = coordinates.layout
-    loads = [load_path(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
+    loads = [load.path for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
     which = f" ({', '.join(loads[:MAX_NAMES])})" if loads else ""
     message = f"the search reached a position where a load{which} has no {what}: a root, a logarithm, coincident points"
     return no_rest_problem(message, "start nearer to the rest position, or give the load a value on both sides")

@@ -16,7 +16,7 @@ from heuncli.loads.equilibrium.pose import Pose
 from heuncli.loads.equilibrium.reasons import no_rest_problem
 from heuncli.loads.equilibrium.slopes import RestLaw
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import Mechanism, load_path
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
@@ -30,7 +30,7 @@ PHASES = (0.37, 1.13, 2.71)  # motion of the drives until the next check: rad, o
 def require_constant(mechanism: Mechanism) -> None:
     """Raise SolveError [no-rest-pose] where loads, or the rates of drives, depend on time."""
     problems = [
-        no_rest_problem(f"{load_path(load)} depends on t", "give its value at rest, or run a motion with dampers")
+        no_rest_problem(f"{load.path} depends on t", "give its value at rest, or run a motion with dampers")
         for load in mechanism.loads
         if any(value.time_dependent for value in load.values)
     ]

@@ -19,7 +19,7 @@ from heuncli.kernel.choose import expressions as evaluator
 from heuncli.kernel.choose import jets
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.linearisation.steady_motion import LinearisedState
-from heuncli.multibody.mechanism.model import PairLoad, load_path
+from heuncli.multibody.mechanism.model import PairLoad
 from heuncli.multibody.response import evaluate_variables
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
@@ -50,8 +50,7 @@ def iter_coincident(layout: Layout, evaluation: Evaluation) -> Iterator[str]:
     for load, rows in layout.mechanism.iter_load_rows():
         if not isinstance(load, PairLoad) or load.a == load.b:
             continue
-        is_linear = load.value is None and load.length == 0.0 and load.damping == 0.0
-        if evaluation.loads["span"][0, rows].min() <= tolerances.NO_LENGTH * layout.size and not is_linear:
+        if evaluation.loads["span"][0, rows].min() <= tolerances.NO_LENGTH * layout.size and not load.is_linear:
             yield f"forces.{load.name} has no direction, because its two points coincide"
 
 
@@ -140,7 +139,7 @@ def list_laws(layout: Layout) -> list[LoadLaw]:
     """List the programs of all loads."""
     table, places = layout.tables["loads"], {use: k for k, use in enumerate(layout.pack.variables)}
     return [
-        LoadLaw(load_path(load), int(row[part]["start"]), int(row[part]["count"]), variables_used)
+        LoadLaw(load.path, int(row[part]["start"]), int(row[part]["count"]), variables_used)
         for load, rows in layout.mechanism.iter_load_rows()
         for variables_used in [frozenset(places[use] for law in load.values for use in law.uses)]
         for row in table[rows]

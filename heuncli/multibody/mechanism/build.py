@@ -227,14 +227,16 @@ def build_load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, t
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (
-                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
-            )
-            return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
+            ends = index[a.body], np.array(a.point), index[b.body], np.array(b.point)
+            if isinstance(f, m.Actuator):
+                return PairLoad(name, f.type, *ends, f.value)
+            if f.force is not None:
+                return PairLoad(name, "actuator", *ends, f.force)
+            return PairLoad(name, "spring", *ends, None, f.stiffness, f.length, f.damping)
         case m.Bushing():
             return build_bushing(name, f, index)
-        case m.Torque() | m.Motor():
-            return JointLoad(name, "torque", joints[f.joint][0], f.value)
+        case m.Torque():
+            return JointLoad(name, f.type, joints[f.joint][0], f.value)
         case m.TurnSpring():
             k = joints[f.joint][0]
             if f.torque is not None:

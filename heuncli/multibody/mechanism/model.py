@@ -7,15 +7,16 @@ use the classes of the spec (scene/file_format/models.py); its kinds of loads be
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
 from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.load_kinds import LOAD_KINDS, LoadKind
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.records import record
+from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
@@ -59,8 +60,64 @@ class TriangularDistribution:
         return np.asarray((2.0 * self.start + self.end) / 3.0)
 
 
+class Placement(NamedTuple):
+    """Where an end of a load is put: its body, its point there, and the axes (3, 3) of the former body in the new."""
+
+    body: int
+    point: Array
+    axes: Array
+
+
+class AnyLoad:
+    """What all loads have, with what holds for most of them."""
+
+    kind: str
+    name: str
+    damping: float = 0.0  # 0 where a kind has none of one number
+    presses: str | None = None  # of friction: what of the load of its joint or thread presses, if that tells its size
+
+    @property
+    def row(self) -> LoadKind:
+        """Its kind."""
+        return LOAD_KINDS[self.kind]
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time."""
+        return ()
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether what has a potential takes energy, too."""
+        return self.damping != 0.0
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential, and nothing else."""
+        return self.row.has_potential and not self.is_damped
+
+    @property
+    def has_value(self) -> bool:
+        """Whether it has one value, a force or torque, that an input can change."""
+        return False
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes; empty where it acts at its joint."""
+        return ()
+
+    @property
+    def path(self) -> str:
+        """Its path in the spec and in the results."""
+        return f"{'couplings' if self.row.place in ('rope', 'thread') else 'forces'}.{self.name}"
+
+    def count_rows(self, joints: Sequence[Joint]) -> int:
+        """Return the number of its rows in the kernel's table of loads: one for each of its laws."""
+        return len(self.row.laws)
+
+
 @record
-class PointLoad:
+class PointLoad(AnyLoad):
     """A force [N] at a body's point, or a couple [N m] on it (point None or where the couple enters).
 
     Two of one name with a spread, one from either end, make a distributed load: q(s) = q0 (1 - s/l) + q1 s/l. For the
@@ -68,12 +125,17 @@ class PointLoad:
     """
 
     name: str
-    kind: Literal["force", "couple"]
+    kind: str
     body: int
     point: Array | None
     vector: tuple[Expression, Expression, Expression]
     in_body: bool
     spread: TriangularDistribution | None = None
+
+    @property
+    def is_couple(self) -> bool:
+        """Whether it is a couple."""
+        return self.row.unit == "N·m"
 
     @property
     def factor(self) -> float:
@@ -86,9 +148,9 @@ class PointLoad:
         return self.vector
 
     @property
-    def is_conservative(self) -> bool:
-        """Whether it has a potential."""
-        return False
+    def has_value(self) -> bool:
+        """Whether it is not distributed."""
+        return self.spread is None
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
@@ -96,9 +158,43 @@ class PointLoad:
         return ((self.body, self.point),) if self.point is not None else ()
 
 
+class ValuedLoad(AnyLoad):
+    """A load with one value in time, None where it has a law of the kernel's own."""
+
+    value: Expression | None
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its value in time."""
+        return (self.value,) if self.value is not None else ()
+
+    @property
+    def has_value(self) -> bool:
+        """Whether it has one."""
+        return self.value is not None
+
+
+class TwoPointLoad(AnyLoad):
+    """A load between points p and q of the bodies a and b."""
+
+    a: int
+    p: Array
+    b: int
+    q: Array
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return (self.a, self.p), (self.b, self.q)
+
+    def move(self, a: Placement, b: Placement) -> Self:
+        """Return it between other points, whose bodies may have other axes."""
+        return replace(self, a=a.body, p=a.point, b=b.body, q=b.point)
+
+
 @record
-class PairLoad:
-    """A spring or actuator along the line between two points.
+class PairLoad(ValuedLoad, TwoPointLoad):
+    """A load along the line between two points.
 
     p, q: the points on the bodies a and b, body axes [m]
     value: [N], positive pushes the points apart; None for a spring stiffness [N/m], length: without load [m], damping
@@ -106,37 +202,33 @@ class PairLoad:
     """
 
     name: str
+    kind: str
     a: int
     p: Array
     b: int
     q: Array
     value: Expression | None
-    stiffness: float
-    length: float
-    damping: float
+    stiffness: float = 0.0
+    length: float = 0.0
+    damping: float = 0.0
 
     @property
-    def values(self) -> tuple[Expression, ...]:
-        """Its values in time."""
-        return (self.value,) if self.value is not None else ()
+    def needs_direction(self) -> bool:
+        """Whether it has a force where its line has no length: all but a spring without free length, and nothing."""
+        return self.stiffness * self.length != 0.0 if self.value is None else self.value.constant != 0.0
 
     @property
-    def is_conservative(self) -> bool:
-        """Whether it has a potential."""
-        return self.value is None and self.damping == 0.0
-
-    @property
-    def points(self) -> tuple[tuple[int, Array], ...]:
-        """Bodies with the points at which it acts on them, body axes."""
-        return (self.a, self.p), (self.b, self.q)
+    def is_linear(self) -> bool:
+        """Whether its force is proportional to the vector between its points."""
+        return self.value is None and self.length == 0.0 and self.damping == 0.0
 
 
 @record
-class JointLoad:
+class JointLoad(ValuedLoad):
     """A torque (thrust), turn spring, damper or friction in a joint; acts on `to`, opposite on `from`."""
 
     name: str
-    kind: Literal["torque", "turn_spring", "damper", "friction"]
+    kind: str
     joint: int
     value: Expression | None  # torque: N m about the axis, or N along the slide
     turning: float = 1.0  # damper, turn spring: N m s; friction: by which `value` is its size [N m]; torque: 1
@@ -149,23 +241,17 @@ class JointLoad:
     reach: float = 0.0  # of two ends that press: their distance [m]
 
     @property
-    def values(self) -> tuple[Expression, ...]:
-        """Its values in time."""
-        return (self.value,) if self.value is not None else ()
+    def is_damped(self) -> bool:
+        """Whether a spring is damped."""
+        return self.turning != 0.0
 
-    @property
-    def is_conservative(self) -> bool:
-        """Whether it has a potential."""
-        return self.kind == "turn_spring" and self.turning == 0.0
-
-    @property
-    def points(self) -> tuple[tuple[int, Array], ...]:
-        """Empty: it acts at its joint."""
-        return ()
+    def count_rows(self, joints: Sequence[Joint]) -> int:
+        """Return the number of its rows in the kernel's table of loads: one for each motion that it acts on."""
+        return len(JOINTS[joints[self.joint].kind].motions_for_load(self.kind))
 
 
 @record
-class BushingLoad:
+class BushingLoad(TwoPointLoad):
     """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
 
     p, q: the points on the bodies a and b, their axes [m]
@@ -190,18 +276,17 @@ class BushingLoad:
         return (*self.shift.extra_load, *self.turn.extra_load)
 
     @property
-    def is_conservative(self) -> bool:
-        """Whether it has a potential."""
-        return not (np.any(self.shift.damping) or np.any(self.turn.damping))
+    def is_damped(self) -> bool:
+        """Whether some motion is."""
+        return bool(np.any(self.shift.damping) or np.any(self.turn.damping))
 
-    @property
-    def points(self) -> tuple[tuple[int, Array], ...]:
-        """Bodies with the points at which it acts on them, body axes."""
-        return (self.a, self.p), (self.b, self.q)
+    def move(self, a: Placement, b: Placement) -> BushingLoad:
+        """Return it between other points, its axes turned with those of their bodies."""
+        return replace(super().move(a, b), frame=a.axes @ self.frame, to_frame=b.axes @ self.to_frame)
 
 
 @record
-class RopeLoad:
+class RopeLoad(AnyLoad):
     """An elastic rope: value [N], with the sign of a closure's multiplier, times the unit loads of its parts.
 
     It has the name of its coupling.
@@ -227,8 +312,8 @@ class RopeLoad:
 
     @property
     def is_conservative(self) -> bool:
-        """Whether it has a potential."""
-        return self.damping == 0.0 and self.law is None
+        """Whether it has a potential, and nothing else."""
+        return self.law is None and not self.is_damped
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
@@ -237,7 +322,7 @@ class RopeLoad:
 
 
 @record
-class ThreadLoad:
+class ThreadLoad(AnyLoad):
     """Friction in a thread between the bodies a and b, from the axial force on its flanks; ON b at q.
 
     coupling: its number
@@ -257,16 +342,7 @@ class ThreadLoad:
     factor: float
     speed: float
     kind: str = "thread friction"
-
-    @property
-    def values(self) -> tuple[Expression, ...]:
-        """Empty: it has no value in time."""
-        return ()
-
-    @property
-    def is_conservative(self) -> bool:
-        """Whether it has a potential."""
-        return False
+    presses: str = "thrust"
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:
@@ -275,11 +351,6 @@ class ThreadLoad:
 
 
 Load = PointLoad | PairLoad | JointLoad | BushingLoad | ThreadLoad | RopeLoad
-
-
-def load_path(load: Load) -> str:
-    """Return the path of a load in the spec and in the results."""
-    return f"{'couplings' if isinstance(load, RopeLoad | ThreadLoad) else 'forces'}.{load.name}"
 
 
 class Law(NamedTuple):
@@ -363,11 +434,7 @@ class Mechanism:
         """
         first_row = 0
         for load in self.loads:
-            count = 1
-            if isinstance(load, JointLoad):
-                count = len(JOINTS[self.joints[load.joint].kind].motions_for_load(load.kind))
-            elif isinstance(load, BushingLoad):
-                count = 2
+            count = load.count_rows(self.joints)
             yield load, slice(first_row, first_row + count)
             first_row += count
 
@@ -379,7 +446,7 @@ class Mechanism:
             coupling.name == load.name and coupling.has_pretension for coupling in self.couplings
         ):
             return "couplings"
-        return load_path(load).partition(".")[0]
+        return load.path.partition(".")[0]
 
     def rope_load_row(self, name: str) -> int:
         """Return the row of an elastic rope in that table; -1 if there is none, because the scene has no loads."""
@@ -389,16 +456,12 @@ class Mechanism:
     def joint_friction(self) -> tuple[JointLoad | ThreadLoad, ...]:
         """Friction that depends on the load of its joint or its thread."""
         return tuple(
-            load
-            for load in self.loads
-            if isinstance(load, ThreadLoad) or (isinstance(load, JointLoad) and load.presses is not None)
+            load for load in self.loads if isinstance(load, JointLoad | ThreadLoad) and load.presses is not None
         )
 
     def describe_friction(self, load: JointLoad | ThreadLoad) -> str:
         """Return the path of such friction and of its joint; a thread has only its own."""
-        if isinstance(load, ThreadLoad):
-            return f"couplings.{load.name}"
-        return f"forces.{load.name} in joints.{self.joints[load.joint].name}"
+        return load.path + (f" in joints.{self.joints[load.joint].name}" if isinstance(load, JointLoad) else "")
 
     def iter_expressions(self) -> Iterator[Expression]:
         """Yield the values in time of the loads, then the laws of drives and ropes, then the conditions."""

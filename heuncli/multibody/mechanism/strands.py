@@ -61,7 +61,8 @@ def pretension_load(
     p, _ = joint_line(joints[joint_pair[0]], bodies, first.body)
     q, along = joint_line(joints[joint_pair[1]], bodies, second.body)
     offset = float((first.point - second.point) @ second.axis)
-    return PairLoad(name, first.body, p, second.body, q + offset * along, Expression.from_number(-pull), 0.0, 0.0, 0.0)
+    ends = first.body, p, second.body, q + offset * along
+    return PairLoad(name, "actuator", *ends, Expression.from_number(-pull))
 
 
 def find_strands(entry: c.Belt, first: GearMember, second: GearMember) -> tuple[BeltStrand, BeltStrand]:

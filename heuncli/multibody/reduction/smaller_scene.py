@@ -20,14 +20,14 @@ from heuncli.multibody.mechanism.model import (
     GROUND,
     Blow,
     Body,
-    BushingLoad,
     Joint,
     JointLoad,
     Load,
     Mechanism,
     NamedPoint,
-    PairLoad,
+    Placement,
     PointLoad,
+    TwoPointLoad,
 )
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.pack import lay_out
@@ -162,22 +162,14 @@ def restate_load(load: Load, parts: BodyParts, number: dict[int, int], joint_num
         point = None if load.point is None else part.transform_point(load.point)
         vector = rotate_load(part, load) if load.in_body else load.vector
         return replace(load, body=number[part.body], point=point, vector=vector)
-    if isinstance(load, PairLoad):
-        a, b = parts.get_placement(load.a), parts.get_placement(load.b)
-        return replace(
-            load, a=number[a.body], p=a.transform_point(load.p), b=number[b.body], q=b.transform_point(load.q)
-        )
-    if isinstance(load, BushingLoad):
-        a, b = parts.get_placement(load.a), parts.get_placement(load.b)
-        return replace(
-            load, a=number[a.body], p=a.transform_point(load.p), frame=a.R @ load.frame,
-            b=number[b.body], q=b.transform_point(load.q), to_frame=b.R @ load.to_frame,
-        )  # fmt: skip
+    if isinstance(load, TwoPointLoad):
+        own = ((parts.get_placement(body), point) for body, point in load.points)
+        return load.move(*(Placement(number[part.body], part.transform_point(point), part.R) for part, point in own))
     assert isinstance(load, JointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     zero = Expression.from_number(0.0)
-    value = load.value if load.kind == "torque" and load.value is not None else zero
+    value = load.value if not load.row.resists and load.value is not None else zero
     return PointLoad(load.name, "couple", GROUND, None, (value, zero, zero), False)
 
 

@@ -200,7 +200,7 @@ def find_free_bodies(mechanism: Mechanism) -> dict[int, list[Array]]:
         acts(joint.b, joint.q if kind.is_ball else None)
     for load in mechanism.loads:
         if isinstance(load, PointLoad):
-            acts(load.body, load.point if load.kind == "force" and not load.in_body else None)
+            acts(load.body, None if load.is_couple or load.in_body else load.point)
         elif isinstance(load, PairLoad):
             acts(load.a, load.p)
             acts(load.b, load.q)

@@ -74,7 +74,7 @@ def find_attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict
             elif not kind.is_ball:
                 free.pop(end, None)
     for load in mechanism.loads:
-        if isinstance(load, PointLoad) and load.kind == "couple":
+        if isinstance(load, PointLoad) and load.is_couple:
             continue
         for end, point in load.points:
             if end >= 0:

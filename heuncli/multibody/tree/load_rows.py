@@ -16,6 +16,7 @@ from heuncli.multibody.mechanism.model import (
     GROUND,
     BushingLoad,
     JointLoad,
+    Load,
     Mechanism,
     NamedPoint,
     PairLoad,
@@ -31,12 +32,6 @@ from heuncli.multibody.tree.tables import Table, flat_dtype
 from heuncli.scene.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.scene.shapes.rotations import perpendicular_pair
 
-JOINT_LOADS = {  # of the turning, of the sliding
-    "torque": (kernel.TORQUE, kernel.THRUST),
-    "turn_spring": (kernel.TURN_SPRING, kernel.THRUST),
-    "damper": (kernel.TURN_DAMPER, kernel.SHIFT_DAMPER),
-    "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
-}
 PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
 ONE = (1.0, 0.0, 0.0)  # of friction that is proportional to a normal force
 Components = tuple[Program, Program, Program]
@@ -145,14 +140,14 @@ class _LoadRowBuilder:
 
     def _add_point_load(self, load: PointLoad, values: Components) -> None:
         q = np.zeros(3) if load.point is None else self.frame.relative(load.body, load.point)
-        kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
+        kind = law_numbers(load)[0]
         body, in_body = self.frame.in_tree(load.body), int(load.in_body)
         self.made.append(LoadRow(kind, GROUND, body, *values, ZERO, in_body=in_body, q=q, factor=load.factor))
 
     def _add_pair_load(self, load: PairLoad, values: Components) -> None:
         self.made.append(
             LoadRow(
-                kernel.SPRING if load.value is None else kernel.ACTUATOR,
+                law_numbers(load)[0],
                 self.frame.in_tree(load.a),
                 self.frame.in_tree(load.b),
                 *values,
@@ -167,8 +162,8 @@ class _LoadRowBuilder:
 
     def _add_bushing(self, load: BushingLoad, programs: tuple[Program, ...]) -> None:
         """Add the rows of the shift and of the turn."""
-        parts = (kernel.BUSHING_SHIFT, load.shift, programs[:3]), (kernel.BUSHING_TURN, load.turn, programs[3:])
-        for kind, elastic, part_programs in parts:
+        parts = (load.shift, programs[:3]), (load.turn, programs[3:])
+        for kind, (elastic, part_programs) in zip(law_numbers(load), parts, strict=True):
             self.made.append(
                 LoadRow(
                     kind,
@@ -192,7 +187,7 @@ class _LoadRowBuilder:
         """Add an elastic rope, along its parts."""
         self.made.append(
             LoadRow(
-                kernel.ROPE,
+                law_numbers(load)[0],
                 GROUND,
                 GROUND,
                 *values,
@@ -211,7 +206,7 @@ class _LoadRowBuilder:
         row = self.frame.rows.index(len(self.mechanism.joints) + load.coupling)
         self.made.append(
             LoadRow(
-                kernel.THREAD_FRICTION,
+                law_numbers(load)[0],
                 self.frame.in_tree(load.a),
                 self.frame.in_tree(load.b),
                 NO_PROGRAM,
@@ -234,8 +229,8 @@ class _LoadRowBuilder:
     def _add_joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]
         kind = JOINTS[joint.kind]
-        turns, slides = JOINT_LOADS[load.kind]
-        parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
+        laws = zip(law_numbers(load), (load.turning, load.sliding), strict=False)
+        parts = dict(zip(("turning", "sliding"), laws, strict=False))
         for motion in kind.motions_for_load(load.kind):
             number, coefficient = parts[motion]
             row = LoadRow(
@@ -243,7 +238,7 @@ class _LoadRowBuilder:
                 self.frame.in_tree(joint.a),
                 self.frame.in_tree(joint.b),
                 *values,
-                ONE if load.kind == "friction" else ZERO,
+                ONE if load.row.is_friction else ZERO,
                 in_body=int(kind.has_one_axis),
                 p=self.frame.relative(joint.a, joint.p),
                 q=self.frame.relative(joint.b, joint.q),
@@ -251,7 +246,7 @@ class _LoadRowBuilder:
                 axis=joint.axis,
                 speed=load.speed,
             )
-            if load.kind == "turn_spring":
+            if load.row.has_potential:
                 row = self._complete_turn_spring(load, row)
             elif load.presses is not None:
                 row = self._complete_joint_friction(load, row)
@@ -287,6 +282,11 @@ class _LoadRowBuilder:
             across=across,
             mark=start.R_ref.T @ across,
         )
+
+
+def law_numbers(load: Load) -> tuple[int, ...]:
+    """Return the kernel's numbers of the laws of a load."""
+    return tuple(getattr(kernel, law) for law in load.row.laws)
 
 
 def make_watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:

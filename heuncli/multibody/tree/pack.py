@@ -134,7 +134,7 @@ def find_uncut_joints(mechanism: Mechanism, used_names: frozenset[str]) -> set[i
 
 def find_sprung_joints(mechanism: Mechanism) -> set[int]:
     """Return the joints with springs about their axes."""
-    return {load.joint for load in mechanism.loads if isinstance(load, JointLoad) and load.kind == "turn_spring"}
+    return {load.joint for load in mechanism.loads if isinstance(load, JointLoad) and load.row.has_potential}
 
 
 class _LayoutBuilder:

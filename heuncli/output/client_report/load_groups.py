@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.tables.table_blocks import FAMILIES, format_component
@@ -14,7 +15,6 @@ from heuncli.results.results_schema import MAGNITUDES, XYZ
 MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
 TOTAL = "total"  # of the foundation
 CARRIED_FORCES = frozenset({"force", "contact", "normal", "tension", "last_tension", "tight", "slack"})  # by a coupling
-EXTERNAL_LOADS = frozenset({"force", "couple", "distributed"})  # loads on one body, without a counterpart
 
 
 class LoadNumber(NamedTuple):
@@ -99,8 +99,8 @@ def iter_joining_forces(data: ReportData) -> Iterator[tuple[str, str]]:
             yield path, f"coupling {name}{f' on {loaded_body}' if loaded_body else ''}"
         elif kind == "forces" and quantity in ("force", "value"):
             info = data.labels.forces.get(name)
-            if info is not None and info.type not in EXTERNAL_LOADS:
-                yield path, f"{info.type.replace('turn_spring', 'torsion spring').replace('_', ' ')} {name}"
+            if info is not None and not LOAD_KINDS[info.type].is_external:
+                yield path, f"{LOAD_KINDS[info.type].display_name} {name}"
 
 
 def drop_components(group: LoadGroup) -> LoadGroup:

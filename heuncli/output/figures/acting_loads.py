@@ -118,7 +118,7 @@ def collect_loads(study: Study, machine: Machine, poses: Poses) -> ActingLoads:
         if isinstance(applied.load, PointLoad) and applied.action.spread:
             spreads.append(_make_distributed_load(applied, recovery.states))
         elif isinstance(applied.load, PointLoad):
-            is_moment = applied.load.kind == "couple"
+            is_moment = applied.load.is_couple
             vector = applied.action.moment if is_moment else applied.action.force
             loads.append(
                 ActingLoad(applied.load.name, applied.action.to_end.position[0], vector[0], APPLIED_PEN, is_moment)

@@ -12,6 +12,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import TYPES, JointKind
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
@@ -28,7 +29,7 @@ from heuncli.output.machine_geometry.silhouettes import (
 )
 from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array
-from heuncli.scene.file_format.models import Bushing, Spec, Spring
+from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
 
 BODY_PENS = (0, 2, 4, 6, 7)  # of bodies in turn; the other pens are for loads
@@ -287,12 +288,12 @@ def _draw_rod(posed_machine: PosedMachine, look: JointGeometry, k: int, thin: bo
 
 
 def draw_force_line(posed_machine: PosedMachine, look: LineGeometry, k: int, *, thin: bool = False) -> list[Item]:
-    """Draw a spring, with or without damper, a bushing, or an actuator."""
-    force = posed_machine.spec.forces[look.name]
-    if isinstance(force, Bushing):
+    """Draw a load between two points by its symbol, with or without damper, or one between two bodies."""
+    kind = LOAD_KINDS[look.kind]
+    if kind.place == "bodies":
         return _draw_bushing(posed_machine, look, k, thin)
-    kind = "damped spring" if isinstance(force, Spring) and force.damping else look.kind
-    return _draw_link(posed_machine, look, kind, LOAD_PEN, k, thin)
+    is_damped = bool(getattr(posed_machine.spec.forces[look.name], "damping", 0.0))
+    return _draw_link(posed_machine, look, kind.symbols[-1 if is_damped else 0], LOAD_PEN, k, thin)
 
 
 def draw_belt_strands(posed_machine: PosedMachine, k: int) -> Iterator[Strokes]:

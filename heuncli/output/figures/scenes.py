@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
@@ -26,14 +27,13 @@ from heuncli.output.machine_geometry.poses import Poses, compute_poses, make_sta
 from heuncli.output.machine_geometry.solids import ROUND_FACES
 from heuncli.output.machine_geometry.views import choose_view, parse_view
 from heuncli.results.results import Array
-from heuncli.scene.file_format.models import Damper, Friction, Motor, Spec, Torque, TurnSpring
+from heuncli.scene.file_format.models import JointForce, Spec
 from heuncli.study.model.setup import build_with_cuts
 from heuncli.study.quantities.table_units import Units
 
 HEIGHT = 520.0  # pixels, maximum
 STRIP_HEIGHT = 0.13  # share of the larger side, below the machine: for the key of arrows, axes and gravity
 AXES_LENGTH = 0.05  # share of the larger side: the arrows of axes and gravity
-JOINT_FORCES = (Damper, Friction, Motor, Torque, TurnSpring)
 N_SMOOTH_FACES, MAX_SMOOTH_BODIES = 60, 40  # faces about an axis, and up to how many bodies
 LATER_PEN = 7  # of the labels of later instants
 
@@ -238,11 +238,7 @@ def _make_notes(posed_machine: PosedMachine, loads: ActingLoads) -> list[str]:
     if spread:
         notes.append(f"drawn as the ellipsoid of the same inertia: {', '.join(spread)}")
     forces = posed_machine.spec.forces.items()
-    acting = [
-        f"{n} ({f.type.replace('turn_spring', 'torsion spring').replace('_', ' ')} in {f.joint})"
-        for n, f in forces
-        if isinstance(f, JOINT_FORCES)
-    ]
+    acting = [f"{n} ({LOAD_KINDS[f.type].display_name} in {f.joint})" for n, f in forces if isinstance(f, JointForce)]
     acting += [f"{n} (drive of {drive.joint})" for n, drive in posed_machine.spec.drives.items()]
     if acting and posed_machine.has_names:
         notes.append(f"acting in joints: {', '.join(acting)}")

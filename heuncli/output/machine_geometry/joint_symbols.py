@@ -1,29 +1,21 @@
-"""The symbols of drives and of loads in joints; each kind has a row in SYMBOLS_BY_KIND."""
+"""The symbols of drives and of loads in joints, which stand in the rows of the kinds of loads."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from heuncli.base.joint_kinds import JOINTS, TYPES, JointKind
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.models import JointForce, Spec
 
-DRIVE = "drive"
-# by kind: symbol about an axis towards the eye, about an axis away from the eye, and along an axis
-SYMBOLS_BY_KIND: Mapping[str, tuple[str, str, str]] = {
-    DRIVE: ("turning", "turning back", "sliding"),
-    "torque": ("turning", "turning back", "sliding"),
-    "motor": ("turning", "turning back", "sliding"),
-    "turn_spring": ("coil", "coil", "coil"),
-    "friction": ("brake", "brake", "brake along"),
-    "damper": ("damping", "damping", "damping"),
-}
+DRIVE = "drive"  # drawn as the torque that it is
 
 
 class JointSymbol(NamedTuple):
     """The symbol of a joint's drive, or of a load in a joint.
 
-    load_kind: a key of SYMBOLS_BY_KIND
+    load_kind: DRIVE, or a kind of load
     symbols: seen with the joint's axis towards the eye, and away from it
     slides: whether the symbol acts along the joint's axis and not about it
     """
@@ -47,11 +39,11 @@ def iter_joint_symbols(spec: Spec) -> Iterator[JointSymbol]:
     """
     joint_loads = [(drive.joint, drive.name, DRIVE) for drive in spec.drives.values()]
     for name, force in spec.forces.items():
-        if force.type in ("torque", "turn_spring", "motor", "friction", "damper"):
+        if isinstance(force, JointForce):
             joint_loads.append((force.joint, name, force.type))
     for joint, name, load_kind in joint_loads:
         kind = find_scene_joint_kind(spec, spec.joints[joint].kind)
         if not kind.keeps_distance:
             slides = kind.follows_path or (bool(kind.shifts) and kind.turn.condition == "all")
-            to_eye, away_from_eye, sliding = SYMBOLS_BY_KIND[load_kind]
+            to_eye, away_from_eye, sliding = LOAD_KINDS["torque" if load_kind == DRIVE else load_kind].symbols
             yield JointSymbol(name, load_kind, joint, (sliding, sliding) if slides else (to_eye, away_from_eye), slides)

@@ -29,7 +29,7 @@ from heuncli.output.machine_geometry.solids import (
 )
 from heuncli.output.machine_geometry.wheels import iter_balls
 from heuncli.results.results import Array
-from heuncli.scene.file_format.models import Actuator, Bushing, Shape, Spec, Spring
+from heuncli.scene.file_format.models import PairForce, Shape, Spec
 from heuncli.scene.file_format.names import GROUND
 
 MIN_LINKED_DISCS = 2  # discs: from this number on, a body without shapes is drawn as a line between them
@@ -73,7 +73,7 @@ class JointGeometry(NamedTuple):
 
 
 class LineGeometry(NamedTuple):
-    """A load or link between two points: a spring, an actuator, a bushing."""
+    """A load or link between two points; its kind is that of the load, or of the joint."""
 
     name: str
     kind: str
@@ -118,7 +118,7 @@ def make_machine(spec: Spec, faces: int = ROUND_FACES, scene: PreparedScene | No
     lines = tuple(
         LineGeometry(name, f.type, f.from_.body, np.array(f.from_.point), f.to.body, np.array(f.to.point))
         for name, f in spec.forces.items()
-        if isinstance(f, Spring | Actuator | Bushing)
+        if isinstance(f, PairForce)
     )
     elements = collect_elements(spec, None if scene is None else scene.mechanism)
     bodies = tuple(_make_body(name, spec, (joints, lines), elements, faces) for name in spec.bodies)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
 from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
@@ -80,7 +81,9 @@ def make_page_scene(
             | {"axis": _to_floats(j.axis), "rope": j.name in ropes}
             for j in machine.joints
         ],
-        "lines": [{"name": x.name, "kind": x.kind} | _pack_ends(x, body_numbers) for x in machine.lines],
+        "lines": [
+            {"name": x.name, "kind": LOAD_KINDS[x.kind].symbols[0]} | _pack_ends(x, body_numbers) for x in machine.lines
+        ],
         "paths": [pack_points(path) for path in machine.paths],
         "belts": [
             {

@@ -169,7 +169,21 @@ function drawBushing(pen, view, line, a, b, colours) {
   ring(pen, b[0], b[1], 3.4, colours.paper, colours.ink, 1.8);
 }
 
-/** A spring as a zigzag, an actuator as a cylinder with its rod, a bushing as two sleeves. */
+/** By symbol of the kinds of loads (base/load_kinds.py): between two points, at(share, aside) of the way. */
+const LINES = {
+  spring: (pen, at, colours) => {
+    const turns = [];
+    for (let k = 0; k < 2 * COILS; k += 1) turns.push(at(0.15 + (0.7 * (k + 0.5)) / (2 * COILS), k % 2 ? 6 : -6));
+    polyline(pen, [at(0), at(0.15), ...turns, at(0.85), at(1)], colours.ink, 1.5);
+  },
+  actuator: (pen, at, colours) => {
+    polyline(pen, [at(0), at(1)], colours.ink, 1.8);
+    shape(pen, [at(0.12, 5), at(0.58, 5), at(0.58, -5), at(0.12, -5)], colours.paper, colours.ink, 1.5);
+    polyline(pen, [at(0.45, 5), at(0.45, -5)], colours.ink, 1.5);
+  },
+};
+
+/** A load between two points by its symbol, a bushing as two sleeves. */
 export function drawLine(pen, view, poses, line, colours) {
   const a = view.project(stands(poses, line.a, line.p));
   const b = view.project(stands(poses, line.b, line.q));
@@ -179,16 +193,7 @@ export function drawLine(pen, view, poses, line, colours) {
   }
   const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
   const place = placer(a, [(b[0] - a[0]) / long, (b[1] - a[1]) / long]);
-  const at = (share, aside = 0) => place(share * long, aside);
-  if (line.kind === "spring") {
-    const turns = [];
-    for (let k = 0; k < 2 * COILS; k += 1) turns.push(at(0.15 + (0.7 * (k + 0.5)) / (2 * COILS), k % 2 ? 6 : -6));
-    polyline(pen, [at(0), at(0.15), ...turns, at(0.85), at(1)], colours.ink, 1.5);
-  } else {
-    polyline(pen, [at(0), at(1)], colours.ink, 1.8);
-    shape(pen, [at(0.12, 5), at(0.58, 5), at(0.58, -5), at(0.12, -5)], colours.paper, colours.ink, 1.5);
-    polyline(pen, [at(0.45, 5), at(0.45, -5)], colours.ink, 1.5);
-  }
+  LINES[line.kind](pen, (share, aside = 0) => place(share * long, aside), colours);
   for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.ink, colours.ink, 1);
 }
 

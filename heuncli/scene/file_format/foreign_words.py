@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 from heuncli.base.joint_kinds import SYNONYMS
+from heuncli.base.load_kinds import LOAD_SYNONYMS
 
-FORCE_WORDS = {
-    "moment": "couple", "engine": "motor", "thrust": "torque", "bush": "bushing", "mount": "bushing",
-    "brake": "friction", "springdamper": "spring", "spring_damper": "spring",
-    "dashpot": "damper", "load": "force", "cylinder": "actuator", "coulomb": "friction",
-    "torsion_spring": "turn_spring", "torsional_spring": "turn_spring", "rotational_spring": "turn_spring",
-    "rotary_spring": "turn_spring", "angular_spring": "turn_spring", "spiral_spring": "turn_spring",
-    "line_load": "distributed", "udl": "distributed", "uniform": "distributed", "distributed_load": "distributed",
-    "line_force": "distributed",
-}  # fmt: skip
 COUPLING_WORDS = {
     "gears": "gear", "spur": "gear", "bevel": "gear", "rack": "gear", "rackpinion": "gear", "rack_and_pinion": "gear",
     "chain": "belt", "pulley": "rope", "sheave": "rope", "hoist": "rope", "tackle": "rope", "spindle": "screw",
@@ -202,7 +194,7 @@ PLANNED_WORDS = {  # words reserved for a later version: (block or key, word)
 }  # fmt: skip
 TYPES = {  # by block: error code, description, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),
-    "forces": ("unknown-force-type", "a force type", FORCE_WORDS),
+    "forces": ("unknown-force-type", "a force type", LOAD_SYNONYMS),
     "couplings": ("unknown-coupling-type", "a coupling type", COUPLING_WORDS),
     "shapes": ("unknown-shape-type", "a shape", SHAPE_WORDS),
 }

@@ -64,7 +64,7 @@ from heuncli.scene.file_format.fields import (
 )
 from heuncli.scene.file_format.foreign_words import AMBIGUOUS_WORDS
 from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry
-from heuncli.scene.file_format.format_elastic import BushingEntry, MotorEntry
+from heuncli.scene.file_format.format_elastic import BushingEntry, JointLoadEntry, MotorEntry, PairEntry
 from heuncli.scene.file_format.format_joints import (
     JOINTS as JOINTS,
 )
@@ -222,34 +222,28 @@ class CoupleEntry(Entry):
     frame: Frame = "world"
 
 
-class TorqueEntry(Entry):
+class TorqueEntry(JointLoadEntry):
     type: Literal["torque"]
-    joint: str
     value: EitherInTime
 
 
-class ActuatorEntry(Entry):
+class ActuatorEntry(PairEntry):
     type: Literal["actuator"]
-    from_: AnEnd = key(alias="from")
-    to: AnEnd
     value: ForceInTime
 
 
-class SpringEntry(Entry):
+class SpringEntry(PairEntry):
     """A spring by its numbers, or by a law."""
 
     type: Literal["spring"]
-    from_: AnEnd = key(alias="from")
-    to: AnEnd
     stiffness: Stiffness | None = None
     length: Length | None = None
     damping: Damping | None = None
     force: OwnSpringForce | None = None
 
 
-class TurnSpringEntry(Entry):
+class TurnSpringEntry(JointLoadEntry):
     type: Literal["turn_spring"]
-    joint: str
     stiffness: TurningStiffness | None = None
     angle: Angle | None = None
     damping: TurningDamping | None = None
@@ -266,18 +260,16 @@ class DistributedEntry(Entry):
     frame: Frame = "world"
 
 
-class DamperEntry(Entry):
+class DamperEntry(JointLoadEntry):
     type: Literal["damper"]
-    joint: str
     coefficient: Either | None = None
     sliding: Damping | None = None
     torque: OwnDamperTorque | None = None
     force: OwnDamperForce | None = None
 
 
-class FrictionEntry(Entry):
+class FrictionEntry(JointLoadEntry):
     type: Literal["friction"]
-    joint: str
     torque: MomentInTime | None = None
     force: ForceInTime | None = None
     coefficient: Number | None = None

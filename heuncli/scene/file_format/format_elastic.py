@@ -1,4 +1,4 @@
-"""Bushings and motors: a part of the file format."""
+"""Loads between two points or in a joint, bushings and motors: a part of the file format."""
 
 from __future__ import annotations
 
@@ -24,6 +24,21 @@ from heuncli.scene.file_format.fields import (
 from heuncli.scene.file_format.format_shapes import Orientation
 
 
+class PairEntry(Entry):
+    """A load between two points or bodies."""
+
+    type: str
+    from_: AnEnd = key(alias="from")
+    to: AnEnd
+
+
+class JointLoadEntry(Entry):
+    """A load in a joint."""
+
+    type: str
+    joint: str
+
+
 class RotorEntry(Entry):
     """What turns in a motor."""
 
@@ -31,9 +46,8 @@ class RotorEntry(Entry):
     inertia: Inertia
 
 
-class MotorEntry(Entry):
+class MotorEntry(JointLoadEntry):
     type: Literal["motor"]
-    joint: str
     curve: MotorCurve | None = None
     stall: Moment | None = None
     idle: Rate | None = None
@@ -59,10 +73,8 @@ class TurnLaws(Entry):
     z: TurnLaw = 0.0
 
 
-class BushingEntry(Entry):
+class BushingEntry(PairEntry):
     type: Literal["bushing"]
-    from_: AnEnd = key(alias="from")
-    to: AnEnd
     stiffness: (
         Annotated[
             Annotated[ShiftLaw, Tag("single")]

@@ -209,20 +209,26 @@ class Couple(NamedTuple):
 
 
 class Torque(NamedTuple):
-    """A torque about a pin's axis [N m] or a thrust along a slide [N], on `to`, opposite on `from`."""
+    """A torque about a pin's axis [N m] or a thrust along a slide [N], on `to`, opposite on `from`.
+
+    type: the kind of load that its value comes from, as a motor, whose torque is a function of the joint's rate
+    """
 
     joint: str
     value: Expression
-    type: Literal["torque"] = "torque"
+    type: str = "torque"
 
 
 class Actuator(NamedTuple):
-    """A force along the line between two points [N]; positive pushes them apart."""
+    """A force along the line between two points [N]; positive pushes them apart.
+
+    type: the kind of load that its value comes from
+    """
 
     from_: End
     to: End
     value: Expression
-    type: Literal["actuator"] = "actuator"
+    type: str = "actuator"
 
 
 class Spring(NamedTuple):
@@ -297,14 +303,6 @@ class Bushing(NamedTuple):
     type: Literal["bushing"] = "bushing"
 
 
-class Motor(NamedTuple):
-    """A motor in a joint: torque on `to` [N m], opposite on `from`, as a function of the joint's rate."""
-
-    joint: str
-    value: Expression
-    type: Literal["motor"] = "motor"
-
-
 class Damper(NamedTuple):
     """A damper in a joint: coefficient in N m s (turning) or N s/m (slide, line, plane), sliding in N s/m (cylinder).
 
@@ -335,9 +333,9 @@ class Friction(NamedTuple):
     type: Literal["friction"] = "friction"
 
 
-Force = (
-    PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction | Motor | Bushing
-)
+PairForce = Actuator | Spring | Bushing  # between two points or bodies
+JointForce = Torque | TurnSpring | Damper | Friction
+Force = PointForce | Couple | Distributed | PairForce | JointForce
 
 
 @record

@@ -11,24 +11,16 @@ from typing import TYPE_CHECKING, Any, Literal
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.records import record
-from heuncli.scene.expressions.composition import (
-    add_expressions,
-    limit_magnitude,
-    multiply_expressions,
-    rename_coordinates,
-    scale_coordinate,
-)
 from heuncli.scene.expressions.grammar import Scope, compile_expression
-from heuncli.scene.expressions.programs import LOADS, OWN, Expression, TableFunction
+from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.couplings import Coupling
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.format_couplings import CouplingEntry
 from heuncli.scene.file_format.format_rolling import RollingEntry
-from heuncli.scene.file_format.motors import make_rotors, make_torque_curve
+from heuncli.scene.file_format.motors import make_rotors
 from heuncli.scene.file_format.names import GROUND, UNTIL
 from heuncli.scene.file_format.resolve_couplings import (
     iter_belt_conditions,
@@ -36,6 +28,7 @@ from heuncli.scene.file_format.resolve_couplings import (
     resolve_coupling,
     resolve_wheel,
 )
+from heuncli.scene.file_format.resolve_loads import constant_value, resolve_load
 from heuncli.scene.file_format.rotations import IDENTITY
 from heuncli.scene.file_format.semantics import (
     find_analysis_type,
@@ -275,117 +268,7 @@ class Resolver:
         return m.Drive(name, drive.joint, driven.quantity, value, drive.zero == "assembled", driven.by_rate)
 
     def force(self, name: str, load: f.LoadEntry) -> m.Force:
-        path = f"forces.{name}"
-        match load:
-            case f.ForceEntry():
-                return m.PointForce(self.end(load.on), self.attach_locations(load.vector, path), load.frame)
-            case f.CoupleEntry():
-                on = self.end(load.on) if load.on.at is not None else None
-                return m.Couple(load.on.body, on, self.attach_locations(load.vector, path), load.frame)
-            case f.TorqueEntry():
-                return m.Torque(load.joint, self.attach_location(load.value, f"{path}.value"))
-            case f.ActuatorEntry():
-                return m.Actuator(
-                    self.end(load.from_), self.end(load.to), self.attach_location(load.value, f"{path}.value")
-                )
-            case f.SpringEntry():
-                law = self.bind_law(load.force, f"{path}.force", f"{LOADS}.{name}")
-                numbers = load.stiffness or 0.0, load.length or 0.0, load.damping or 0.0
-                return m.Spring(self.end(load.from_), self.end(load.to), *numbers, law)
-            case f.TurnSpringEntry():
-                law = self.bind_law(load.torque, f"{path}.torque", load.joint)
-                return m.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
-            case fe.BushingEntry():
-                return self.bushing(name, load)
-            case fe.MotorEntry():
-                return self.motor(load, path)
-            case f.DistributedEntry():
-                return self.make_distributed(load, path)
-            case f.DamperEntry():
-                coefficient = constant_value(load.coefficient) if load.coefficient is not None else 0.0
-                torque, force = (
-                    self.bind_law(getattr(load, k), f"{path}.{k}", load.joint) for k in ("torque", "force")
-                )
-                return m.Damper(load.joint, coefficient, load.sliding, torque or force)
-            case _:
-                by_load = load.coefficient, load.radius, load.length
-                torque, force = (
-                    self.attach_location(value, f"{path}.{k}") if (value := getattr(load, k)) is not None else None
-                    for k in ("torque", "force")
-                )
-                return m.Friction(load.joint, torque, force, constant_value(load.speed), *by_load)
-
-    def bind_law(self, law: Expression | None, path: str, owner: str) -> Expression | None:
-        """Bind a load's law to its own variables: the length of its line, or the coordinate of its joint."""
-        if law is None:
-            return None
-        return rename_coordinates(
-            self.attach_location(law, path), {use: (owner, use[1]) for use in law.uses if use[0] == OWN}
-        )
-
-    def motor(self, load: fe.MotorEntry, path: str) -> m.Motor:
-        """Resolve a motor: ratio * value * curve(ratio * rate), within the limit of the motor itself."""
-        law = scale_coordinate(
-            self.attach_location(make_torque_curve(load), f"{path}.curve"), (OWN, "rate"), load.ratio
-        )
-        law = limit_magnitude(law, load.limit) if load.limit is not None else law
-        if load.value is not None:
-            law = multiply_expressions(self.attach_location(load.value, f"{path}.value"), law)
-        bound = self.bind_law(
-            multiply_expressions(Expression.from_number(load.ratio), law), f"{path}.curve", load.joint
-        )
-        assert bound is not None
-        return m.Motor(load.joint, bound)
-
-    def bushing(self, name: str, load: fe.BushingEntry) -> m.Bushing:
-        rotation = orientation_matrix(load.orientation) if load.orientation is not None else IDENTITY
-        to_rotation = orientation_matrix(load.to_orientation) if load.to_orientation is not None else rotation
-        shift = self.make_elastic(name, "shift", load.stiffness, load.damping, load.preload)
-        turn = self.make_elastic(name, "turn", load.turning, load.turning_damping, load.turning_preload)
-        return m.Bushing(self.end(load.from_), self.end(load.to), shift, turn, rotation, to_rotation)
-
-    def make_elastic(
-        self, name: str, motion: str, stiffness: Any, damping: Any, preload: m.Vec | None
-    ) -> m.Elastic[m.Vec]:
-        """Make the three springs of a bushing's translation or rotation.
-
-        motion: "shift" or "turn". An axis without a constant stiffness has a table.
-        """
-        laws = self.add_table_areas(expand_to_axes(stiffness))
-        preload = preload or m.ZERO
-        extra_load = [Expression.from_number(x) for x in preload]
-        numbers = tuple(0.0 if isinstance(law, Expression) else law for law in laws)
-        path = f"forces.{name}.{'stiffness' if motion == 'shift' else 'turning'}"
-        for i, law in enumerate(laws):
-            if isinstance(law, Expression):
-                law_of_axis = rename_coordinates(
-                    self.attach_location(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{motion}_{'xyz'[i]}")}
-                )
-                extra_load[i] = add_expressions(extra_load[i], law_of_axis)
-        return m.Elastic(
-            (numbers[0], numbers[1], numbers[2]),
-            expand_to_axes(damping),
-            preload,
-            (extra_load[0], extra_load[1], extra_load[2]),
-        )
-
-    def add_table_areas(self, laws: tuple[Any, Any, Any]) -> list[Any]:
-        """Return the stiffness laws, tables extended by their areas; a table used for several axes is extended once."""
-        if not any(isinstance(law, Expression) for law in laws):
-            return list(laws)
-        from heuncli.scene.expressions.areas import append_areas  # needs NumPy, which a table has loaded already
-
-        tables_with_areas = {id(law): append_areas(law) for law in laws if isinstance(law, Expression)}
-        return [tables_with_areas.get(id(law), law) for law in laws]
-
-    def make_distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
-        body = self.document.bodies[load.on]
-        start, end = find_point(body, load.from_), find_point(body, load.to)
-        assert start is not None
-        assert end is not None
-        vector = self.attach_locations(load.vector, path)
-        to_vector = vector if load.to_vector is None else self.attach_locations(load.to_vector, path, "to_vector")
-        return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
+        return resolve_load(self, name, load)
 
     def impulse(self, name: str, blow: f.ImpulseEntry) -> m.AppliedImpulse[str, m.Vec]:
         body, point = blow.body, None
@@ -493,15 +376,6 @@ def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) 
     return m.FramedVector(value, False)
 
 
-def expand_to_axes(value: Any) -> tuple[Any, Any, Any]:
-    """Expand a value to three axes: one value for all, a list, or values by axis name; None is zero."""
-    if value is None:
-        return m.ZERO
-    if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
-        return value.x, value.y, value.z
-    return value if isinstance(value, tuple) else (value, value, value)
-
-
 def bearing_area(bearing: f.BearingEntry | None) -> float | None:
     """Return diameter times width of a bearing [m^2], the area of the mean pressure."""
     return bearing.diameter * bearing.width if bearing is not None else None
@@ -543,9 +417,3 @@ def evaluate_numbers(value: Any) -> Any:
     if isinstance(value, tuple):
         return tuple(map(evaluate_numbers, value))
     return constant_value(value) if value is not None else None
-
-
-def constant_value(value: Expression) -> float:
-    """Return the number of an expression that depends on nothing."""
-    assert value.constant is not None
-    return value.constant

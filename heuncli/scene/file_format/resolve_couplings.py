@@ -17,7 +17,7 @@ from heuncli.scene.file_format import format as whole
 from heuncli.scene.file_format import format_couplings as f
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.format_rolling import RollingEntry, find_axle_direction, find_centre
-from heuncli.scene.file_format.models import End, ResultCondition, Z
+from heuncli.scene.file_format.models import End, ResultCondition, Vector, Z
 
 SLACK_BELT_MESSAGE = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
 
@@ -35,6 +35,11 @@ class ReferenceResolver(Protocol):
 
         path: dotted path of the value
         """
+
+    def attach_locations(
+        self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector"
+    ) -> Vector:
+        """Return the components of a vector with their locations; path: of what has the vector under a key."""
 
 
 def resolve_coupling(resolver: ReferenceResolver, name: str, entry: f.CouplingEntry) -> c.Coupling:

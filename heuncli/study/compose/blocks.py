@@ -234,7 +234,7 @@ def make_force_blocks(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[
         force_block: ForceBlock = {"value": applied_load.value}
         if isinstance(applied_load.load, PairLoad):
             force_block["length"] = applied_load.length
-        if isinstance(applied_load.load, JointLoad) and applied_load.load.kind == "turn_spring":
+        if isinstance(applied_load.load, JointLoad) and applied_load.load.row.has_potential:
             force_block["angle"] = applied_load.length
         if isinstance(applied_load.load, BushingLoad):
             force_block |= make_bushing_block(applied_load.load, applied_load, states)

@@ -43,11 +43,7 @@ def full_friction_rate() -> float:
 
 def has_smoothed_friction(mechanism: Mechanism) -> bool:
     """Whether a scene has friction that is smoothed."""
-    return any(_is_smoothed(load) for load in mechanism.loads)
-
-
-def _is_smoothed(load: object) -> bool:
-    return isinstance(load, ThreadLoad) or (isinstance(load, JointLoad) and load.kind == "friction")
+    return any(load.row.is_friction for load in mechanism.loads)
 
 
 def depends_on_friction(path: str) -> bool:
@@ -62,7 +58,7 @@ def list_partial_friction(mechanism: Mechanism, solutions: Evaluation) -> dict[f
     """Return the friction that is below its full value, by instant; instants without any are left out."""
     found: dict[float, list[PartialFriction]] = {}
     for load, own in mechanism.iter_load_rows():
-        if not isinstance(load, JointLoad | ThreadLoad) or not _is_smoothed(load):
+        if not isinstance(load, JointLoad | ThreadLoad) or not load.row.is_friction:
             continue
         rates: Array = np.abs(solutions.loads[:, own]["rate"]).max(axis=1)
         for k in np.flatnonzero(rates < full_friction_rate() * load.speed).tolist():

@@ -14,13 +14,13 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import TYPES, JointKind
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.section_axes import choose_default_axis, find_nearest_axis
 from heuncli.scene.file_format.models import End, Force, Friction, Section, Spec, Stop, Vec
 from heuncli.study.quantities.table_units import Units
 
-LINEAR_FORCE_TYPES = frozenset({"force", "distributed", "bushing", "actuator", "spring"})
 AXES = ("x", "y", "z")
 MOMENT_POINTS = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
 
@@ -96,11 +96,11 @@ class Labels:
         return TYPES[info.type if info else "pin"]
 
     def _is_force_rotational(self, force: ForceInfo | None) -> bool:
-        if force is None or force.type in LINEAR_FORCE_TYPES:
+        if force is None:
             return False
         if force.turning is not None:
             return force.turning
-        return force.type == "couple" or self._find_joint_kind(force.joint).motions[:1] == ("turning",)
+        return (LOAD_KINDS[force.type].unit or self._find_joint_kind(force.joint).load_unit) == "N·m"
 
 
 def distinguish(name: str, words: Collection[str], kind: str = "force") -> str:

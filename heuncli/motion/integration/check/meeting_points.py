@@ -11,7 +11,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem
-from heuncli.motion.integration.diagnosis.coincident_points import make_problem, needs_direction
+from heuncli.motion.integration.diagnosis.coincident_points import make_problem
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.mechanism.model import Mechanism, PairLoad
@@ -26,7 +26,7 @@ def find_directed_loads(mechanism: Mechanism) -> list[tuple[PairLoad, slice]]:
     return [
         (load, rows)
         for load, rows in mechanism.iter_load_rows()
-        if isinstance(load, PairLoad) and load.a != load.b and needs_direction(load)
+        if isinstance(load, PairLoad) and load.a != load.b and load.needs_direction
     ]
 
 

@@ -18,13 +18,6 @@ from heuncli.results.results import Array
 HINT = "in a pin or slide use type: torque; otherwise keep its points apart"
 
 
-def needs_direction(load: PairLoad) -> bool:
-    """Return whether a load has a force where its line has no length."""
-    if load.value is None:
-        return load.stiffness * load.length != 0.0
-    return load.value.constant != 0.0
-
-
 def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_start: bool = False) -> list[Problem]:
     """Return a problem for each load without a direction, at its first instant.
 
@@ -39,7 +32,7 @@ def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_star
         is_coincident = load_rows["span"] <= tolerance
         if not is_coincident.any():
             continue
-        if not needs_direction(load):
+        if not load.needs_direction:
             separation_speed = np.sqrt(np.sum(separation_velocity(layout, load, evaluation) ** 2, axis=1))
             is_coincident &= (load_rows["span"] == 0.0) & (load.damping * separation_speed > 0.0)
         elif load.value is not None:

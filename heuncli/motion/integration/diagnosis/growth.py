@@ -11,7 +11,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates, find_grown
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import Mechanism, load_path
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 
 
@@ -43,8 +43,6 @@ def stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: flo
 def describe_largest_load(mechanism: Mechanism, evaluation: Evaluation) -> str:
     """Describe the largest load at the first instant; empty if there is none."""
     rows = evaluation.loads[0]
-    sizes = [
-        (float(np.abs(rows["value"][k]).max(initial=0.0)), load_path(load)) for load, k in mechanism.iter_load_rows()
-    ]
+    sizes = [(float(np.abs(rows["value"][k]).max(initial=0.0)), load.path) for load, k in mechanism.iter_load_rows()]
     finite = [(value, name) for value, name in sizes if 0.0 < value < math.inf]
     return "the largest load is {1}, {0:.3g}".format(*max(finite)) if finite else ""

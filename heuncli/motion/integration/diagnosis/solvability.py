@@ -9,7 +9,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.number_range import range_error
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad, load_path
+from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 
@@ -99,7 +99,7 @@ def find_too_large(scene: PreparedScene, evaluation: Evaluation, instant: int) -
     values = [(float(sizes[rows].max()), load) for load, rows in mechanism.iter_load_rows()]
     value, load = max(values, key=lambda pair: pair[0], default=(0.0, None))
     if load is not None and value > tolerances.MOST_MAGNITUDE:
-        what = f"at t = {t:.9g} s the value of {load_path(load)}"
+        what = f"at t = {t:.9g} s the value of {load.path}"
     else:
         bodies = evaluation.bodies[instant]
         largest = {name: np.abs(bodies[name]).max(axis=-1) for name in QUANTITIES}
@@ -119,11 +119,17 @@ def require_start(scene: PreparedScene, evaluation: Evaluation, wording: ErrorWo
 
 def require_directions(scene: PreparedScene, evaluation: Evaluation, is_motion_start: bool = False) -> None:
     """Raise SolveError for actuators and springs that push between coincident points; is_motion_start: or will push."""
-    if any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
-        from heuncli.motion.integration.diagnosis.coincident_points import find_undirected_loads  # few scenes have them
+    if problems := find_undirected(scene, evaluation, is_motion_start):
+        raise SolveError(*problems)
 
-        if problems := find_undirected_loads(scene.layout, evaluation, is_motion_start):
-            raise SolveError(*problems)
+
+def find_undirected(scene: PreparedScene, evaluation: Evaluation, is_motion_start: bool = False) -> list[Problem]:
+    """Return the problems of loads that push between coincident points, or will."""
+    if not any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
+        return []
+    from heuncli.motion.integration.diagnosis.coincident_points import find_undirected_loads  # few scenes have them
+
+    return find_undirected_loads(scene.layout, evaluation, is_motion_start)
 
 
 def unmet_rows_problem(scene: PreparedScene, evaluation: Evaluation, instant: int, wording: ErrorWording) -> Problem:
@@ -147,7 +153,9 @@ def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) 
     )
 
     t, length = float(evaluation.times[instant]), float(evaluation.times[-1])
-    problems = find_without_value(scene.mechanism, t, length, evaluate_coordinates(scene.layout, evaluation, instant))
+    problems = find_undirected(scene, evaluation) or find_without_value(
+        scene.mechanism, t, length, evaluate_coordinates(scene.layout, evaluation, instant)
+    )
     if not problems and any(isinstance(load, BushingLoad) for load in scene.mechanism.loads):
         from heuncli.motion.integration.diagnosis.turned_bushings import find_half_turned
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.multibody.mechanism.model import JointLoad, Load, PairLoad
 from heuncli.multibody.response import tangent
 from heuncli.results.results import Array
 
@@ -48,11 +47,4 @@ def find_responsible_load(scene: Evaluator, t: float, state: Array, eigenvector:
             work += change["value"] * (change["rate"] + rate * change["span"])
     shares = {load: float(work[rows].sum()) for load, rows in scene.layout.mechanism.iter_load_rows()}
     load = max(loads, key=lambda one: shares[one])
-    return f"{load_kind(load)} `{load.name}`" if shares[load] > 0.0 else "the model"
-
-
-def load_kind(load: Load) -> str:
-    """Return the kind of a load as in the spec."""
-    if isinstance(load, PairLoad):
-        return "spring" if load.value is None else "actuator"
-    return load.kind.replace("_", " ") if isinstance(load, JointLoad) else load.kind
+    return f"{load.row.display_name} `{load.name}`" if shares[load] > 0.0 else "the model"

@@ -12,7 +12,7 @@ from heuncli.base.records import record
 from heuncli.kernel.choose import integration
 from heuncli.kernel.choose import steps as kernel
 from heuncli.motion.integration.methods.method import Method
-from heuncli.multibody.mechanism.model import BushingLoad, JointLoad, Load, ThreadLoad
+from heuncli.multibody.mechanism.model import Load
 from heuncli.multibody.response import Workspace
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
@@ -150,7 +150,4 @@ def stiffness_limits(method: Method, layout: Layout) -> dict[str, float]:
 
 def depends_on_state(load: Load) -> bool:
     """Return whether a load depends on positions or velocities: a spring, damper, friction, or by its expression."""
-    is_resistance = isinstance(load, BushingLoad | ThreadLoad) or (
-        isinstance(load, JointLoad) and load.kind == "friction"
-    )
-    return is_resistance or not load.values or any(value.uses for value in load.values)
+    return load.row.depends_on_state or any(value.uses for value in load.values)

@@ -125,7 +125,7 @@ def _load_departures(plane_view: PlaneView, height: float) -> Iterator[Departure
         if isinstance(load, PointLoad):
             if plane_view.is_upright(load.body):
                 continue
-            if load.kind == "force" and load.point is not None:
+            if not load.is_couple and load.point is not None:
                 yield from height_departures(plane_view, height, load.body, load.point, f"the point of {name}")
             n = plane_view.normal_components(load.body, load.in_body)
             yield from _component_departures(f"{name}.vector", load.vector, n, load.kind)
@@ -139,12 +139,12 @@ def _load_departures(plane_view: PlaneView, height: float) -> Iterator[Departure
             yield Departure(f"couplings.{load.name} has friction along its axis", 1.0, True)
         elif not isinstance(load, JointLoad):
             yield Departure(f"couplings.{load.name} may leave the plane", 1.0, True)
-        elif load.kind == "turn_spring":
+        elif load.row.has_potential:
             if not plane_view.orientations[load.joint].turns_in_plane and not _cannot_tilt(
                 plane_view, mechanism.joints[load.joint]
             ):
                 yield Departure(f"{name} acts about an axis in the plane", 1.0, True)
-        elif load.kind == "torque" and load.value is not None and load.value.constant != 0.0:
+        elif not load.row.resists and load.value is not None and load.value.constant != 0.0:
             joint = mechanism.joints[load.joint]
             turns = "turning" in JOINTS[joint.kind].motions
             if turns != plane_view.orientations[load.joint].is_normal and not _cannot_tilt(plane_view, joint):

@@ -21,14 +21,14 @@ from heuncli.multibody.mechanism.model import (
     Assembly,
     Blow,
     Body,
-    BushingLoad,
     Joint,
     JointLoad,
     Load,
     Mechanism,
     NamedPoint,
-    PairLoad,
+    Placement,
     PointLoad,
+    TwoPointLoad,
 )
 from heuncli.multibody.reduction.plane.view import PlaneView
 from heuncli.multibody.tree.idle_spins import IdleSpin
@@ -157,21 +157,17 @@ class FlatSceneBuilder:
 
     def build_load(self, load: Load) -> Load:
         """Build a load with its components in the plane. Raises UnrepresentableLoadError."""
-        if isinstance(load, PairLoad):
+        if isinstance(load, TwoPointLoad):
             p, q = self.end_points(load.a, load.p, load.b, load.q)
-            return replace(load, p=p, q=q)
-        if isinstance(load, BushingLoad):
-            p, q = self.end_points(load.a, load.p, load.b, load.q)
-            frames = self.body_axes(load.a) @ load.frame, self.body_axes(load.b) @ load.to_frame
-            return replace(load, p=p, q=q, frame=frames[0], to_frame=frames[1])
+            return load.move(*(Placement(i, x, self.body_axes(i)) for i, x in ((load.a, p), (load.b, q))))
         if isinstance(load, JointLoad):
-            return self.build_turn_spring(load) if load.kind == "turn_spring" else load
+            return self.build_turn_spring(load) if load.row.has_potential else load
         assert isinstance(load, PointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
         if load.body == GROUND:
             return load
         S = self.body_axes(load.body) if load.in_body else self.plane_view.E
         point = None if load.point is None else self.point_in_plane(load.body, load.point)
-        active = (0, 1) if load.kind == "force" else (2,)
+        active = (2,) if load.is_couple else (0, 1)
         vector = tuple(self.build_component(load, S[k]) if k in active else ZERO for k in range(3))
         return replace(load, point=point, vector=vector)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import format_shapes as fs
@@ -161,11 +162,8 @@ def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
 
 def iter_resistances(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
     """Yield every number that says how strongly a load resists; laws are left out, because their sign says nothing."""
-    keys = ["stiffness", "length", "damping", "sliding", "coefficient", "turning", "turning_damping", "limit"]
-    if isinstance(load, f.FrictionEntry):
-        keys += ["torque", "force"]
-    for key in keys:
-        value = getattr(load, key, None)
+    for key in LOAD_KINDS[load.type].not_negative:
+        value = getattr(load, key)
         if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
             value = (value.x, value.y, value.z)
         for part in value if isinstance(value, tuple) else (value,):

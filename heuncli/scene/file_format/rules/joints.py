@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import RATES, TYPES, format_kind_names
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_not_positive, find_jumps
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import format as f
@@ -62,7 +63,7 @@ def check_same_body(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("same-point")
 def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
-    """A spring or actuator acts between two points, not both on the ground; a distributed load has a length.
+    """A load along a line acts between two points, not both on the ground; a distributed load has a length.
 
     A spring within one body moves nothing, but the sections between its points carry its force.
     """
@@ -73,10 +74,11 @@ def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
             if owner is not None and start is not None and start == find_point(owner, load.to):
                 message = "from and to are the same point"
                 yield Violation(("forces", name, "to"), message, "for a force at one point use type: force, in N")
-        if isinstance(load, fe.BushingEntry) and load.from_.body == load.to.body:
-            message, hint = f"from and to are both on {load.to.body}", "a bushing acts between two different bodies"
-            yield Violation(("forces", name, "to"), message, hint)
-        if not isinstance(load, f.ActuatorEntry | f.SpringEntry) or load.from_.body != load.to.body:
+        if not isinstance(load, fe.PairEntry) or load.from_.body != load.to.body:
+            continue
+        if LOAD_KINDS[load.type].place == "bodies":
+            hint = f"a {load.type} acts between two different bodies"
+            yield Violation(("forces", name, "to"), f"from and to are both on {load.to.body}", hint)
             continue
         path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)
         if load.to.body == "ground":

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.base import units as u
 from heuncli.base.joint_kinds import FREE, POINT, TYPES, JointKind, format_kind_names, kinds_accepting_load
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_negative
 from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format as f
@@ -17,16 +18,13 @@ from heuncli.scene.file_format.semantics import find_analysis_type, run_duration
 
 TORQUE_WORDS = {"turning": "about a", "sliding": "along a"}
 FRICTION_KEYS = {"turning": "torque", "sliding": "force"}  # the key of each motion
-
-
-JointLoadEntry = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry | fe.MotorEntry
 DAMPER_LAW_KEYS = {"turning": "torque", "sliding": "force"}  # the key of a law of a damper
 
 
-def iter_joint_loads(draft: DraftDocument) -> Iterator[tuple[str, JointLoadEntry, JointKind]]:
+def iter_joint_loads(draft: DraftDocument) -> Iterator[tuple[str, fe.JointLoadEntry, JointKind]]:
     """Yield the loads in joints that exist, with the kind of the joint; an unknown kind takes no load."""
     for name, load in draft.document.forces.items():
-        if isinstance(load, JointLoadEntry) and load.joint in draft.names.joints:
+        if isinstance(load, fe.JointLoadEntry) and load.joint in draft.names.joints:
             joint_type = draft.names.joints[load.joint]
             yield name, load, TYPES.get(joint_type, JointKind(joint_type, POINT, FREE))
 
@@ -66,30 +64,37 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             if load.sliding is not None and kind not in two_motion_kinds:
                 message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
-        else:
-            given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
-            allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
-            if not kind.accepts_load("friction"):
-                allowed = format_kind_names(kinds_accepting_load("friction"), "or")
-                message = f"friction acts in a {allowed}, not in a {kind.name}"
-                yield Violation((*path, "joint"), message, "between two points use a spring with damping")
-            elif len(given_keys) != 1:
-                description = (
-                    f"both {' and '.join(given_keys[-2:])}"
-                    if given_keys
-                    else "neither torque nor force nor coefficient"
-                )
-                hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
-                yield Violation(path, f"friction with {description}", hint, key=True)
-            elif given_keys[0] == "coefficient":
-                yield from check_friction_coefficient(name, load, kind)
-            elif load.radius is not None or load.length is not None:
-                key = "radius" if load.radius is not None else "length"
-                message = f"{key} is for friction with a coefficient, not with a {given_keys[0]}"
-                yield Violation((*path, key), message, "leave it out, or write coefficient", key=True)
-            elif given_keys[0] not in allowed_keys:
-                message = f"friction of a {kind.name} is a {allowed_keys[0]}"
-                yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
+        elif isinstance(load, f.FrictionEntry):
+            yield from check_friction_form(name, load, kind)
+        elif not kind.accepts_load(load.type):
+            allowed = format_kind_names(kinds_accepting_load(load.type), "or")
+            yield Violation((*path, "joint"), f"a {load.type} has no effect in a {kind.name}", f"use a {allowed}")
+
+
+def check_friction_form(name: str, load: f.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
+    """Friction has a size that fits its joint, or a coefficient."""
+    path = ("forces", name)
+    given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
+    allowed_keys = [FRICTION_KEYS[motion] for motion in kind.motions]
+    if not kind.accepts_load("friction"):
+        allowed = format_kind_names(kinds_accepting_load("friction"), "or")
+        message = f"friction acts in a {allowed}, not in a {kind.name}"
+        yield Violation((*path, "joint"), message, "between two points use a spring with damping")
+    elif len(given_keys) != 1:
+        description = (
+            f"both {' and '.join(given_keys[-2:])}" if given_keys else "neither torque nor force nor coefficient"
+        )
+        hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
+        yield Violation(path, f"friction with {description}", hint, key=True)
+    elif given_keys[0] == "coefficient":
+        yield from check_friction_coefficient(name, load, kind)
+    elif load.radius is not None or load.length is not None:
+        key = "radius" if load.radius is not None else "length"
+        message = f"{key} is for friction with a coefficient, not with a {given_keys[0]}"
+        yield Violation((*path, key), message, "leave it out, or write coefficient", key=True)
+    elif given_keys[0] not in allowed_keys:
+        message = f"friction of a {kind.name} is a {allowed_keys[0]}"
+        yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
 
 
 def check_damper_law(name: str, load: f.DamperEntry, kind: JointKind) -> Iterator[Violation]:
@@ -106,19 +111,12 @@ def check_damper_law(name: str, load: f.DamperEntry, kind: JointKind) -> Iterato
         )
 
 
-LAW_AND_NUMBER_KEYS = {  # loads given by a law or by numbers: keys of the law, keys of the numbers
-    "spring": (("force",), ("stiffness", "length", "damping")),
-    "turn_spring": (("torque",), ("stiffness", "angle", "damping")),
-    "damper": (("torque", "force"), ("coefficient", "sliding")),
-}
-
-
 @rule("load-form")
 def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
     """A spring or damper is given by numbers or by a law; a bushing resists some motion."""
     for name, load in draft.document.forces.items():
         path = ("forces", name)
-        laws, numbers = LAW_AND_NUMBER_KEYS.get(load.type, ((), ()))
+        laws, numbers = LOAD_KINDS[load.type].law_keys, LOAD_KINDS[load.type].number_keys
         law_keys = [key for key in laws if getattr(load, key) is not None]
         extra_keys = [
             key for key in (*laws[1:], *numbers) if getattr(load, key) is not None and key not in law_keys[:1]
@@ -140,16 +138,12 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-# required keys of a load without a law
-REQUIRED_NUMBERS = {"spring": ("stiffness", "length"), "turn_spring": ("stiffness",)}
-
-
 @rule("missing-key")
 def check_missing_numbers(draft: DraftDocument) -> Iterator[Violation]:
     """A spring without a law has its numbers."""
     for name, load in draft.document.forces.items():
-        laws, _ = LAW_AND_NUMBER_KEYS.get(load.type, ((), ()))
-        for key in REQUIRED_NUMBERS.get(load.type, ()):
+        laws = LOAD_KINDS[load.type].law_keys
+        for key in LOAD_KINDS[load.type].required_keys:
             if getattr(load, key) is None and not any(getattr(load, law) is not None for law in laws):
                 hint = f"{MISSING_KEY_HINTS[key]}; or give a law as {laws[0]}: ..."
                 yield Violation(("forces", name), f"'{key}' is missing", hint, key=True)
@@ -218,11 +212,11 @@ def check_load_dimension(draft: DraftDocument) -> Iterator[Violation]:
         sliding = kind.motions == ("sliding",)
         if isinstance(load, f.TorqueEntry):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
-        elif isinstance(load, f.TurnSpringEntry | fe.MotorEntry):
-            checks = []
         elif isinstance(load, f.DamperEntry):
             coefficients = [load.coefficient] if load.coefficient is not None else []
             checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in coefficients]
+        elif not isinstance(load, f.FrictionEntry):
+            checks = []
         else:
             is_sliding = load.force is not None or (load.coefficient is not None and sliding)
             checks = [("speed", load.speed, u.VELOCITY if is_sliding else u.RATE)]

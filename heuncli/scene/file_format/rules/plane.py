@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, TYPES
-from heuncli.scene.file_format import format as f
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.file_format import format_elastic as fe
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rotations import IDENTITY, unit_vector
@@ -17,7 +17,7 @@ from heuncli.scene.file_format.semantics import orientation_matrix
 SPATIAL_HINT = "or declare space: spatial"
 # Vectors of bodies and of loads with the components that they cannot have in the plane.
 FORBIDDEN_VELOCITY = {"velocity": ("z",), "angular_velocity": ("x", "y")}
-FORBIDDEN_LOAD = {"force": ("z",), "distributed": ("z",), "couple": ("x", "y")}
+FORBIDDEN_LOAD = {"N": ("z",), "N·m": ("x", "y")}  # by its unit
 FORBIDDEN_IMPULSE = {"vector": ("z",), "couple": ("x", "y")}
 
 
@@ -45,11 +45,12 @@ def check_planar(draft: DraftDocument) -> Iterator[Violation]:
                     (*path, "vector") if has_frame else path, value.vector if has_frame else value, forbidden
                 )
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.ForceEntry | f.CoupleEntry | f.DistributedEntry):
+        kind = LOAD_KINDS[load.type]
+        if kind.is_external:
             for key in ("vector", "to_vector"):
                 value = getattr(load, key, None)
                 vector = tuple(x.constant for x in value or ())
-                yield from _check_components(("forces", name, key), vector, FORBIDDEN_LOAD[load.type])
+                yield from _check_components(("forces", name, key), vector, FORBIDDEN_LOAD[kind.unit or "N"])
         elif isinstance(load, fe.BushingEntry):
             yield from _check_bushing(("forces", name), load)
     for name, impulse in draft.document.impulses.items():

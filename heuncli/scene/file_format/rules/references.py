@@ -23,7 +23,7 @@ def iter_ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, load in document.forces.items():
         if isinstance(load, f.ForceEntry | f.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, fe.BushingEntry | f.ActuatorEntry | f.SpringEntry):
+        elif isinstance(load, fe.PairEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, impulse in document.impulses.items():
