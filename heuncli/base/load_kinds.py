@@ -36,6 +36,7 @@ class LoadKind(NamedTuple):
     symbols: between two points: the symbol, and the one where it is damped, if that is another; in a joint: about an
     axis towards the eye, about one away from it, and along an axis
     synonyms: what it is called elsewhere
+    words: its name in sentences, if that is not `name`
     sample: the keys that are numbers alone, with ranges from which random scenes of the tests draw
     """
 
@@ -53,6 +54,7 @@ class LoadKind(NamedTuple):
     not_negative: tuple[str, ...] = ()
     symbols: tuple[str, ...] = ()
     synonyms: tuple[str, ...] = ()
+    words: str | None = None
     sample: Mapping[str, tuple[float, float]] = NO_SAMPLE
 
     @property
@@ -73,7 +75,7 @@ class LoadKind(NamedTuple):
     @property
     def display_name(self) -> str:
         """Its name in sentences."""
-        return self.name.replace("_", " ")
+        return self.words or self.name.replace("_", " ")
 
 
 LOAD_KINDS: dict[str, LoadKind] = {
@@ -101,9 +103,10 @@ LOAD_KINDS: dict[str, LoadKind] = {
             has_potential=True, law_keys=("torque",), number_keys=("stiffness", "angle", "damping"),
             required_keys=("stiffness",), not_negative=("stiffness", "damping"), symbols=("coil", "coil", "coil"),
             synonyms=(
-                "torsion_spring", "torsional_spring", "rotational_spring", "rotary_spring", "angular_spring",
+                "torsional_spring", "rotational_spring", "rotary_spring", "angular_spring",
                 "spiral_spring",
             ),
+            words="torsion spring",
             sample={"stiffness": (1, 10), "angle": (-2, 2), "damping": (0, 1)},
         ),
         LoadKind(
@@ -135,7 +138,7 @@ LOAD_KINDS: dict[str, LoadKind] = {
         LoadKind("rope", "rope", ("ROPE",), "an elastic rope", has_potential=True),
         LoadKind(
             "thread friction", "thread", ("THREAD_FRICTION",), "friction in a thread", "N·m",
-            resists="the way that its thread turns", is_friction=True,
+            resists="the direction of rotation of its thread", is_friction=True,
         ),
     )
 }  # fmt: skip

@@ -163,7 +163,7 @@ def types() -> Iterator[tuple[str, str]]:
     """What `type` may be, with the words of others for it, and where each is described."""
     blocks = (
         ("a joint", "joints", f.JOINTS, SYNONYMS, "Joints"),
-        ("a load", f.LOADS, LOAD_SYNONYMS, None),
+        ("a load", "forces", f.LOADS, LOAD_SYNONYMS, None),
         ("a shape", "shapes", fs.SHAPES, SHAPE_WORDS, "Shapes"),
     )
     for what, block, models, meant, heading in blocks:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Results
 from heuncli.results.results_schema import RESULTANTS, STRESSES
@@ -66,7 +67,7 @@ def _make_joint_note(name: str, labels: Labels) -> str:
 
 def _make_force_note(name: str, labels: Labels) -> str:
     info = labels.forces.get(name)
-    kind = info.type.replace("turn_spring", "torsion spring") if info else ""
+    kind = LOAD_KINDS[info.type].display_name if info else ""
     return f"{kind} on {info.joint}" if info and info.joint else kind
 
 
