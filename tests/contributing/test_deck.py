@@ -7,7 +7,7 @@ from pathlib import Path
 from tests.contributing.addition import Addition, Edit, after, heun
 
 PLAIN = Addition(
-    "A form of load cases",
+    "An FE deck",
     {
         "heuncli/output/fe_decks/registry.py": (
             after('    "abaqus": Deck("abaqus"),\n', '    "plain": Deck("plain"),\n'),

@@ -7,7 +7,7 @@ from pathlib import Path
 from tests.contributing.addition import Addition, after, heun
 
 BOBS = Addition(
-    "A format of models",
+    "An importer",
     {
         "heuncli/scene/importers/readers.py": (
             after("READERS = (\n", '    ModelReader("bobs", "Bobs", "bobs.reader", frozenset()),\n'),

@@ -142,4 +142,4 @@ def test_the_first_example_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     (example,) = blocks(README, "yaml")
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(example.encode())))
     assert enter(["run", "-"]) == 0
-    assert "A bar hangs, and swings" in capsys.readouterr().out
+    assert "A bar swings on a pin" in capsys.readouterr().out

@@ -26,7 +26,7 @@ QUESTIONS = [
         "Exit codes",
         "no YAML is a bad spec: 2",
     ),
-    ("what is ? in a table?", "?", "accuracy", "Digits", "`?` is what the error reaches"),
+    ("what is ? in a table?", "?", "accuracy", "Digits", "`?`: the error is as large as the number"),
     ("the torque of a motor?", "motor", "results", "Paths", "`joints.JOINT.drive`"),
     ("how to start with an angle?", "initial angle", "format", "Initial", "as assembled"),
     ("how to end at an event?", "until", "format", "Conditions", "`until`** ends the motion"),
