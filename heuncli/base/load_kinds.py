@@ -103,7 +103,7 @@ LOAD_KINDS: dict[str, LoadKind] = {
             has_potential=True, law_keys=("torque",), number_keys=("stiffness", "angle", "damping"),
             required_keys=("stiffness",), not_negative=("stiffness", "damping"), symbols=("coil", "coil", "coil"),
             synonyms=(
-                "torsional_spring", "rotational_spring", "rotary_spring", "angular_spring",
+                "torsion_spring", "torsional_spring", "rotational_spring", "rotary_spring", "angular_spring",
                 "spiral_spring",
             ),
             words="torsion spring",

@@ -219,7 +219,7 @@ def test_a_table_from_a_file(tmp_path: Path) -> None:
     ("{file: a.csv, x: [1, 2], y: 2}", "table-form", "tables.f", "columns"),
     ("{x: [0, 1], y: [1, 1], period: 1, outside: hold}", "table-form", "tables.f.outside", "outside"),
     ("{x: [0, 360], y: [1, 1], x_unit: deg, period: 360}", "table-period", "tables.f.period", "360 deg"),
-    ("{x: [0, 1], y: [1, 2], period: 1}", "table-period", "tables.f.period", "agree"),
+    ("{x: [0, 1], y: [1, 2], period: 1}", "table-period", "tables.f.period", "must be equal"),
     ("{x: [0, 1], y: [1, 2], x_unit: degs}", "unknown-unit", "tables.f.x_unit", "deg"),
     ("{x: [0, 1], y: [1, 2], interpolation: spline}", "unknown-word", "tables.f.interpolation", "cubic"),
     ("{x: [0, 1e-320], y: [1, 2]}", "magnitude", "tables.f.x.1", "1e-60"),

@@ -152,7 +152,9 @@ def problems(text: str) -> list[str]:
 def test_errors_name_the_place_of_the_alias() -> None:
     wrong = SPEC.replace("type: turn_spring, joint: pivot", "type: torsion_spring, joint: guide")
     (found,) = problems(wrong)
-    assert found.startswith("x.yaml:16:39: forces.coil.joint: a turn_spring acts about a pin")
+    assert found.startswith(
+        "x.yaml:16:39: forces.coil.joint: a turn_spring acts in a pin, cylinder or universal, not in a slide"
+    )
     assert "[load-joint]" in found
     found, *_ = problems(SPEC.replace("type: pin", "type: hinges"))
     assert found.startswith("x.yaml:12:17: joints.pivot.type: 'hinges' is not a joint type")

@@ -48,9 +48,9 @@ def choose_units(
     return found
 
 
-def describe_units(requests: Sequence[MeasureRequest], shown: Sequence[DisplayUnit]) -> list[str]:
+def describe_units(requests: Sequence[MeasureRequest], display_units: Sequence[DisplayUnit]) -> list[str]:
     """Return a line for the unit of each measure; of several with the measure."""
-    lines = [f"unit: {unit or '1'}" for unit, _ in shown]
+    lines = [f"unit: {unit or '1'}" for unit, _ in display_units]
     if len(lines) == 1:
         return lines
     return [f"{line} ({_describe(request)})" for line, request in zip(lines, requests, strict=True)]
