@@ -179,7 +179,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["check", "hanging.yaml", "--jobs", "0"], "expected 1 or more"),
         (["check", "hanging.yaml", "-k", "nosuch"], "none of 1 specs"),
         (["check", "hanging.yaml", "--update"], "--update without --golden"),
-        (["plot", "hanging.yaml"], "nothing to draw is given"),
+        (["plot", "hanging.yaml"], "nothing to plot is given"),
     ],
 )
 def test_bad_usage_and_bad_specs_leave_with_2(heun: Heun, words: list[str], told: str) -> None:
@@ -209,7 +209,7 @@ def test_validate_tells_all_errors_of_all_files_at_once(heun: Heun) -> None:
 
 def test_validate_says_so_briefly_when_all_is_well(heun: Heun) -> None:
     done = heun("validate", "hanging.yaml", "swinging.yaml")
-    assert done == (0, "hanging.yaml: fine (1 body, 1 joint)\nswinging.yaml: fine (1 body, 1 joint)\n", "")
+    assert done == (0, "hanging.yaml: valid (1 body, 1 joint)\nswinging.yaml: valid (1 body, 1 joint)\n", "")
     assert heun("validate", "hanging.yaml", "--quiet") == (0, "", "")
 
 
@@ -227,7 +227,7 @@ def test_check_of_what_holds_and_what_does_not(heun: Heun) -> None:
     assert done.returncode == 1
     assert row(done.stdout, "failing.yaml:11")[1] == "joints.pivot.force.z"
     assert "off by 0.11" in done.stdout
-    assert "3 specs, 1 passed, 1 failed, 1 spec has no checks" in done.stdout
+    assert "3 specs, 1 check passed, 1 failed, 1 spec has no checks" in done.stdout
     parsed = json.loads(heun("check", "failing.yaml", "--format", "json").stdout)
     assert (parsed["passed"], parsed["failed"]) == (0, 1)
     assert parsed["cases"][0]["found"] == pytest.approx(9.81)
@@ -237,7 +237,7 @@ def test_check_tells_what_could_not_be_solved_and_goes_on(heun: Heun) -> None:
     done = heun("check", "wrong.yaml", "failing.yaml", "expecting.yaml")
     assert done.returncode == 2
     assert "wrong.yaml:9:" in done.stderr
-    assert "3 specs, 1 passed, 1 failed, 1 spec not solved" in done.stdout
+    assert "3 specs, 1 check passed, 1 failed, 1 spec not solved" in done.stdout
     assert heun("check", "held.yaml", "failing.yaml").returncode == 3
 
 

@@ -36,7 +36,7 @@ NAMES = [
 WARNED = {
     "flat_four_bar": [
         "singular position",
-        "extremes leave out the numerically uncertain interval around the singular positions",
+        "extremes exclude the numerically uncertain samples near singular positions",
     ],
     "cradle": ["in the impact"],
 }

@@ -34,7 +34,7 @@ def parsed(text: str) -> tree.Element:
 def test_it_is_xml_with_its_text_as_text() -> None:
     root = parsed(to_svg(draw_figure(MANY)))
     texts = [e.text or "" for e in root.iter(f"{SVG}text")]
-    assert root.findtext(f"{SVG}title") == "A scene: speed against accuracy"
+    assert root.findtext(f"{SVG}title") == "A scene: speed versus accuracy"
     assert set(METHODS) <= set(texts) and "A scene" in texts and any("agree: motion to 1e-13" in t for t in texts)
     assert "1 ms" in texts and "1e-6" in texts
 

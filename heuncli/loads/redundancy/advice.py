@@ -65,12 +65,13 @@ def propose_stepwise(scene: PreparedScene, choices: Choices, model: Block, redun
                 break
     if not replacements:
         return [
-            "no joints with fewer constraints reduce the indeterminacy; `stiffness` on these joints splits the load"
+            "joints with fewer constraints do not reduce the indeterminacy; `stiffness` on these joints distributes "
+            "the load"
         ]
     if redundant_left == 0:
         return [
-            f"statically determinate with {format_replacements(scene, replacements, ', ')}: the same motion, and "
-            "no reaction is open"
+            f"statically determinate with {format_replacements(scene, replacements, ', ')}: same motion, no "
+            "open reactions"
         ]
     rest = f"{redundant_left} of {redundant} redundant constraints remain; for those give joints a `stiffness`"
     return [f"with {format_replacements(scene, replacements, ', ')}, {rest}"]

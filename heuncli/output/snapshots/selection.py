@@ -125,4 +125,4 @@ def _make_hint(path: str, entries: Mapping[EntryKeys, Mapping[str, Any]], option
     entry = find_similar_path(path, lambda words: split_entry(words, entries)[0] is not None)
     if entry is not None:
         return f"did you mean {'.'.join(split_entry(entry.split('.'), entries)[0] or ())}?"
-    return f"did you mean {similar}?" if similar else f"such as {option} foundation,joints.NAME"
+    return f"did you mean {similar}?" if similar else f"for example {option} foundation,joints.NAME"

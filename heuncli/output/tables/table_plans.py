@@ -118,7 +118,7 @@ MASS_EFFECT = TablePlan(
     "",
     ("force", "moment_orbital", "moment_spin"),
     lambda results, labels: (
-        "MASS EFFECT  F = Σ m ẍ, moments d/dt Σ m x × ẋ (orbital) and d/dt Σ I σ (spin),"
+        "MASS EFFECT  F = Σ m ẍ, moments d/dt Σ m x × ẋ (orbital) and d/dt Σ I ω (spin),"
         f" world axes, about {_format_moment_point(results, labels)}"
     ),
     only="mass_effect",

@@ -22,8 +22,8 @@ DERIVED: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
 })  # fmt: skip
 SPELLINGS = {"Nm": "N·m", "kNm": "kN·m", "Nmm": "N·mm", "Ns": "N·s", "Nms": "N·m·s"}
 HINT = (
-    "such as --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain format "
-    "lists"
+    "for example --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain "
+    "format lists"
 )
 
 

@@ -32,7 +32,7 @@ def draw_orders(results: BalanceResults, width: int) -> str:
             cells_of_order[position] = letter if cells_of_order[position] == " " else SEVERAL
     if not field:
         return ""
-    head = "ORDERS  relative to the largest of each kind: F force, M moment, T torque, + several"
+    head = "ORDERS  relative to the largest of each kind: F force, M moment, T torque, + overlap"
     lines = [f"{order:{LABEL}g} |{''.join(cells).rstrip()}" for order, cells in field.items()]
     ticks = {round(k * (columns - 1) / DECADES): format_share(k - DECADES) for k in range(DECADES + 1)}
     axis = "".join("+" if k in ticks else "-" for k in range(columns))

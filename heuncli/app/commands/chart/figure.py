@@ -75,7 +75,7 @@ def draw_figure(chart: ChartResults) -> VectorDrawing:
     shapes += [*head, *draw_crosses(groups, levels, frame), *notes]
     height = max(text.y for text in notes) + 14.0
     return VectorDrawing(
-        WIDTH, height, f"{escape(chart.title)}: speed against accuracy", chart.reference.description, shapes
+        WIDTH, height, f"{escape(chart.title)}: speed versus accuracy", chart.reference.description, shapes
     )
 
 

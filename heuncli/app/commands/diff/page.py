@@ -15,7 +15,7 @@ from heuncli.output.tables.plurals import format_count
 from heuncli.output.tables.text_table import TextColumn, TextTable, format_markdown, format_plain
 from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
-HEADS = ("of", "at", "before", "after", "change", "allowed")
+HEADS = ("quantity", "at", "before", "after", "change", "allowed")
 MAX_ROWS = 200  # of a table; JSON holds all
 
 

@@ -30,7 +30,7 @@ def main(request: ValidateRequest) -> int:
         if not request.quiet:
             for warning in warnings:
                 print_stderr(f"warning: {warning}")
-        lines.append(f"{escape(path)}: fine ({_format_summary(spec, len(warnings))})\n")
+        lines.append(f"{escape(path)}: valid ({_format_summary(spec, len(warnings))})\n")
     require_other_file(None, request.specs)
     code = select_exit_code(codes)
     if code == 0 and not request.quiet:
