@@ -71,7 +71,7 @@ REFUSED = {
     "m=3 --set m=1": "m=3: m is varied, and set by --set [bad-option]",
     "m=3 --shard 3/2": "--shard 3/2: expected K/N, the K-th part of N [bad-option]",
     "m=3 --jobs 0": "--jobs 0: expected 1 or more [bad-option]",
-    "m=3 --variants no.csv": "no.csv:1:1: there is no such file [unreadable]",
+    "m=3 --variants no.csv": "no.csv:1:1: file not found [unreadable]",
     "": "sweep: no parameter to vary is given [bad-option]",
     "m=1:3": "m=1:3: an interval needs its number of values [bad-option]",
     "m=1,2 L=1,2,3 --zip": "--zip: the axes have different numbers of values: m 2, L 3 [bad-option]",

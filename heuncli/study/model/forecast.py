@@ -84,7 +84,7 @@ def describe_cost(setup: Setup, tolerance_or_step: float) -> list[str]:
             run = min((run_first_part(setup, tolerance_or_step, last) for _ in range(2)), key=lambda run: run.seconds)
         except LimitError:
             return [
-                f"first {last:.4g} s: more than {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s of computing time: a long run"
+                f"first {last:.4g} s: over {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s of computing time: a long run"
             ]
         steps, evaluations = format_count(run.steps, "step"), format_count(run.evaluations, "evaluation")
         check = "1.3 to 1.5" if setup.step is None else "5"
