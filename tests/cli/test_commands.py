@@ -217,12 +217,12 @@ def test_model_is_a_note_or_json(heun: Heun) -> None:
     done = heun("model", "hanging.yaml")
     assert done.returncode == 0
     assert done.stdout.startswith("A bar hangs at rest\n")
-    assert row(done.stdout, "freedoms")[1] == "3"
+    assert row(done.stdout, "DOF")[1] == "3"
     assert json.loads(heun("model", "hanging.yaml", "--format", "json").stdout)["freedoms"] == 3
 
 
 def test_check_of_what_holds_and_what_does_not(heun: Heun) -> None:
-    assert heun("check", "expecting.yaml").stdout == "1 spec, 1 passed, 0 failed\n"
+    assert heun("check", "expecting.yaml").stdout == "1 spec, 1 check passed, 0 failed\n"
     done = heun("check", "failing.yaml", "expecting.yaml", "hanging.yaml")
     assert done.returncode == 1
     assert row(done.stdout, "failing.yaml:11")[1] == "joints.pivot.force.z"
@@ -258,7 +258,7 @@ def test_check_of_folders_passes_by_what_is_broken_on_purpose(heun: Heun, folder
     for name, place in {"expecting": "", "wrong": "broken", "failing": ".hidden"}.items():
         (folder / f"{name}.yaml").rename(folder / "specs" / place / f"{name}.yaml")
     done = heun("check", "specs")
-    assert done == (0, f"1 spec, 1 passed, 0 failed, {Path('specs/broken')} skipped\n", "")
+    assert done == (0, f"1 spec, 1 check passed, 0 failed, {Path('specs/broken')} skipped\n", "")
     assert heun("check", "specs/broken").returncode == 2
     assert heun("check", "specs/.hidden").returncode == 1
 
@@ -358,7 +358,7 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
     assert done.returncode == (code if code == 70 else 2)
     assert f"heun: swinging.yaml: {told}" in done.stderr and "wrong.yaml:" in done.stderr
     if command == "check":
-        assert "4 specs, 1 passed, 1 failed, 2 specs not solved" in done.stdout
+        assert "4 specs, 1 check passed, 1 failed, 2 specs not solved" in done.stdout
         found = json.loads(heun(command, "expecting.yaml", "swinging.yaml", "--format", "json").stdout)
         assert [(case["passed"], case.get("exit")) for case in found["cases"]] == [(True, None), (False, code)]
         assert told in found["cases"][1]["message"]
