@@ -31,11 +31,11 @@ SMOOTH_ONLY = "use method: auto, or any method other than SciPy's"  # the hint w
 METHODS = (
     MethodRow(
         "Euler", 1, "explicit", "fixed", "quaternion",
-        "cautionary example: each further digit takes ten times the steps", "explicit.EULER",
+        "cautionary example: one more digit takes ten times the steps", "explicit.EULER",
     ),
     MethodRow(
         "Heun2", 2, "explicit", "fixed", "quaternion",
-        "Heun's method (mean of two slopes), 1900: for teaching and comparison", "explicit.HEUN2",
+        "mean of two slopes (Heun, 1900): for teaching and comparison", "explicit.HEUN2",
     ),
     MethodRow(
         "Heun3", 3, "explicit", "fixed", "quaternion",
@@ -59,11 +59,11 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's no. 20: rotation from the start orientation; fails at 180 deg", "rodrigues.DOP853_GLOBAL",
+        "Heun's no. 20: rotation from the start; fails at 180 deg", "rodrigues.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "rotation from the start of each step: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
+        "rotation from the step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",

@@ -230,7 +230,7 @@ TABLES = (
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
     Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
-    Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
+    Table("methods", "The list", ("name", "order", "kind", "steps", "orientation", "purpose"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "see"), list(keys())),
     Table("index", "Types", ("type", "see"), list(types())),

@@ -81,7 +81,8 @@ def _find_entry(path: str, spec: Spec, request: ReportChoice) -> EntryKeys:
     elif find_quantity(words) is not None and REPORT_OF.get(words[0]):
         hint = f"use {words[0]}; {request.measures} prints single numbers"
     elif words[0] not in REPORT_OF:
-        message = f"{request.option} {path}: unknown report; known: {', '.join((*REPORTS, SHARES))}, or entries such as joints.NAME"
+        known = ", ".join((*REPORTS, SHARES))
+        message = f"{request.option} {path}: unknown report; known: {known}, or entries such as joints.NAME"
         hint = _make_hint(path, entries, request.option)
     else:
         hint = suggest(path, names, "entries") if names else f"the model has no {words[0]}"
