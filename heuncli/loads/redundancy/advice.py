@@ -46,8 +46,8 @@ def propose_replacements(scene: PreparedScene, model: Block) -> list[str]:
             break
         if _count_remaining(scene, replacements, model) == 0:
             return [
-                f"statically determinate with {format_replacements(scene, replacements, ' and ')}: the same "
-                "motion, and no reaction is open"
+                f"statically determinate with {format_replacements(scene, replacements, ' and ')}: "
+                "same motion, no open reactions"
             ]
     return propose_stepwise(scene, choices, model, redundant)
 
