@@ -35,7 +35,7 @@ NAMES = [
 ]
 WARNED = {
     "flat_four_bar": [
-        "singular position",
+        "singular positions",
         "extremes exclude the numerically uncertain samples near singular positions",
     ],
     "cradle": ["in the impact"],
@@ -95,7 +95,7 @@ def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None
     words = printed.out.split()
     assert not {"nan", "inf", "-inf", "-0", "None"} & set(words)
     assert enter(["model", path_of(name)]) == 0
-    assert "freedoms" in capsys.readouterr().out
+    assert "DOF" in capsys.readouterr().out
 
 
 @each

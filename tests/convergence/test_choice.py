@@ -102,7 +102,7 @@ def test_the_note_on_the_model_and_the_run_agree(name: str) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("duration: 0.5", "short: "),
+        ("duration: 0.5", "short motion: "),
         ("duration: 600", "long and conservative, about 150 "),
     ],
 )
