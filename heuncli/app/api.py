@@ -88,7 +88,7 @@ def solve(
     `report`, else everything
     at: instants [s] of the run at which results are given, in place of the spec's
     tolerance, method, step: as in `analysis`
-    least_norm: split indeterminate reactions by the least norm
+    least_norm: distribute indeterminate reactions by the minimum-norm solution
     reduce: whether heun may solve a reduced scene
     by_cause: also give loads by their causes
     axes: axes of joint loads, "world", "from" or "to"
@@ -249,7 +249,7 @@ def _suggest_options(parameters: Mapping[str, object]) -> Iterator[None]:
 
 def _check_time_limit(seconds: float | None) -> float | None:
     if seconds is not None and not 0.0 < seconds < math.inf:
-        hint = "such as 60, in s; leave it out for no limit"
+        hint = "for example 60, in s; leave it out for no limit"
         raise UsageError(Problem("bad-option", f"time_limit {seconds:g}: expected a positive number", hint=hint))
     return seconds
 

@@ -31,11 +31,11 @@ SMOOTH_ONLY = "use method: auto, or any method other than SciPy's"  # the hint w
 METHODS = (
     MethodRow(
         "Euler", 1, "explicit", "fixed", "quaternion",
-        "a warning example: one more digit takes ten times the steps", "explicit.EULER",
+        "cautionary example: one more digit takes ten times the steps", "explicit.EULER",
     ),
     MethodRow(
         "Heun2", 2, "explicit", "fixed", "quaternion",
-        "Heun's mean of two slopes, 1900: for teaching and comparison", "explicit.HEUN2",
+        "mean of two slopes (Heun, 1900): for teaching and comparison", "explicit.HEUN2",
     ),
     MethodRow(
         "Heun3", 3, "explicit", "fixed", "quaternion",
@@ -43,7 +43,7 @@ METHODS = (
     ),
     MethodRow(
         "RK4", 4, "explicit", "fixed", "quaternion",
-        "the classical method: for real time and comparison", "explicit.RK4",
+        "classical Runge-Kutta method: for real time and comparison", "explicit.RK4",
     ),
     MethodRow(
         "DOPRI5", 5, "explicit", "adaptive", "quaternion",
@@ -51,7 +51,7 @@ METHODS = (
     ),
     MethodRow(
         "DOP853", 8, "explicit", "adaptive", "quaternion",
-        "the default: smooth motions, six digits and more", "dop853.DOP853",
+        "the default: smooth motions, six or more digits", "dop853.DOP853",
     ),
     MethodRow(
         "Verner98", 9, "explicit", "adaptive", "quaternion",
@@ -59,11 +59,11 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's no. 20: rotations from the start; ends at 180 deg", "rodrigues.DOP853_GLOBAL",
+        "Heun's no. 20: rotation from the start; fails at 180 deg", "rodrigues.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "rotations from each step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
+        "rotation from the step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",
@@ -71,15 +71,15 @@ METHODS = (
     ),
     MethodRow(
         "Gauss6", 6, "implicit", "fixed", "quaternion",
-        "long runs without damping, more digits", "collocation.GAUSS6",
+        "long runs without damping, higher accuracy", "collocation.GAUSS6",
     ),
     MethodRow(
         "Radau5", 5, "implicit", "adaptive", "quaternion",
-        "stiff systems, a few digits: hard springs, dry friction", "collocation.RADAU5",
+        "stiff systems, a few digits: stiff springs, dry friction", "collocation.RADAU5",
     ),
     MethodRow(
         "Radau9", 9, "implicit", "adaptive", "quaternion",
-        "stiff systems, six digits and more", "collocation.RADAU9",
+        "stiff systems, six or more digits", "collocation.RADAU9",
     ),
     MethodRow(
         "SciPy-Radau", 5, "SciPy", "adaptive", "quaternion",

@@ -78,7 +78,7 @@ def suggest(word: str, candidates: Collection[str], kind: str) -> str:
     if similar is not None:
         return f"did you mean {similar}?"
     if not candidates:
-        return f"there are no {kind}"
+        return f"no {kind} are defined"
     return f"known {kind}: {list_words(candidates)}"
 
 

@@ -66,7 +66,7 @@ def test_all_forms_name_the_case(heun: Heun, scene: Path) -> None:
 
 
 def test_what_is_expected_in_a_case_and_in_all(heun: Heun, scene: Path) -> None:
-    assert heun("check", "cases.yaml").stdout == "1 spec, 5 passed, 0 failed\n"
+    assert heun("check", "cases.yaml").stdout == "1 spec, 5 checks passed, 0 failed\n"
     spec = scene / "cases.yaml"
     spec.write_text(spec.read_text().replace("is: 29.43", "is: 29.5"))
     found = json.loads(heun("check", "cases.yaml", "--format", "json").stdout)

@@ -102,7 +102,7 @@ def test_failures_and_errors_as_lines_of_a_workflow(heun: Heun) -> None:
         ("error", "failing.yaml"),
         ("error", "wrong.yaml"),
     }
-    assert done.stdout.splitlines()[-1] == "3 specs, 1 passed, 1 failed, 1 spec not solved"
+    assert done.stdout.splitlines()[-1] == "3 specs, 1 check passed, 1 failed, 1 spec not solved"
 
 
 def test_files_are_named_as_a_pipeline_finds_them(heun: Heun, folder: Path) -> None:
@@ -114,7 +114,7 @@ def test_files_are_named_as_a_pipeline_finds_them(heun: Heun, folder: Path) -> N
 
 def test_markdown_for_the_summary_of_a_job(heun: Heun) -> None:
     done = heun("check", "expecting.yaml", "failing.yaml", "--format", "markdown")
-    assert done.stdout.startswith("### heun check: failed\n\n2 specs, 1 passed, 1 failed\n")
+    assert done.stdout.startswith("### heun check: failed\n\n2 specs, 1 check passed, 1 failed\n")
     assert "| failing.yaml:11 | joints.pivot.force.z |" in done.stdout
 
 

@@ -179,7 +179,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["check", "hanging.yaml", "--jobs", "0"], "expected 1 or more"),
         (["check", "hanging.yaml", "-k", "nosuch"], "none of 1 specs"),
         (["check", "hanging.yaml", "--update"], "--update without --golden"),
-        (["plot", "hanging.yaml"], "nothing to draw is given"),
+        (["plot", "hanging.yaml"], "nothing to plot is given"),
     ],
 )
 def test_bad_usage_and_bad_specs_leave_with_2(heun: Heun, words: list[str], told: str) -> None:
@@ -222,12 +222,12 @@ def test_model_is_a_note_or_json(heun: Heun) -> None:
 
 
 def test_check_of_what_holds_and_what_does_not(heun: Heun) -> None:
-    assert heun("check", "expecting.yaml").stdout == "1 spec, 1 passed, 0 failed\n"
+    assert heun("check", "expecting.yaml").stdout == "1 spec, 1 check passed, 0 failed\n"
     done = heun("check", "failing.yaml", "expecting.yaml", "hanging.yaml")
     assert done.returncode == 1
     assert row(done.stdout, "failing.yaml:11")[1] == "joints.pivot.force.z"
     assert "off by 0.11" in done.stdout
-    assert "3 specs, 1 passed, 1 failed, 1 spec has no checks" in done.stdout
+    assert "3 specs, 1 check passed, 1 failed, 1 spec has no checks" in done.stdout
     parsed = json.loads(heun("check", "failing.yaml", "--format", "json").stdout)
     assert (parsed["passed"], parsed["failed"]) == (0, 1)
     assert parsed["cases"][0]["found"] == pytest.approx(9.81)
@@ -237,7 +237,7 @@ def test_check_tells_what_could_not_be_solved_and_goes_on(heun: Heun) -> None:
     done = heun("check", "wrong.yaml", "failing.yaml", "expecting.yaml")
     assert done.returncode == 2
     assert "wrong.yaml:9:" in done.stderr
-    assert "3 specs, 1 passed, 1 failed, 1 spec not solved" in done.stdout
+    assert "3 specs, 1 check passed, 1 failed, 1 spec not solved" in done.stdout
     assert heun("check", "held.yaml", "failing.yaml").returncode == 3
 
 
@@ -258,7 +258,7 @@ def test_check_of_folders_passes_by_what_is_broken_on_purpose(heun: Heun, folder
     for name, place in {"expecting": "", "wrong": "broken", "failing": ".hidden"}.items():
         (folder / f"{name}.yaml").rename(folder / "specs" / place / f"{name}.yaml")
     done = heun("check", "specs")
-    assert done == (0, f"1 spec, 1 passed, 0 failed, {Path('specs/broken')} skipped\n", "")
+    assert done == (0, f"1 spec, 1 check passed, 0 failed, {Path('specs/broken')} skipped\n", "")
     assert heun("check", "specs/broken").returncode == 2
     assert heun("check", "specs/.hidden").returncode == 1
 
@@ -358,7 +358,7 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
     assert done.returncode == (code if code == 70 else 2)
     assert f"heun: swinging.yaml: {told}" in done.stderr and "wrong.yaml:" in done.stderr
     if command == "check":
-        assert "4 specs, 1 passed, 1 failed, 2 specs not solved" in done.stdout
+        assert "4 specs, 1 check passed, 1 failed, 2 specs not solved" in done.stdout
         found = json.loads(heun(command, "expecting.yaml", "swinging.yaml", "--format", "json").stdout)
         assert [(case["passed"], case.get("exit")) for case in found["cases"]] == [(True, None), (False, code)]
         assert told in found["cases"][1]["message"]

@@ -222,7 +222,7 @@ def test_a_block_lists_its_quantities(heun: Heun) -> None:
 
 def test_quantities_of_one_row_have_their_own_meanings(heun: Heun) -> None:
     assert set(MEANINGS) <= {row.path for row in ROWS}
-    assert "moment perpendicular to the joint's axis" in heun("explain", "joints.main.tilting").stdout
+    assert "moment perpendicular to the joint axis" in heun("explain", "joints.main.tilting").stdout
     assert "force along the joint's axis" in heun("explain", "joints.main.axial").stdout
     assert "bending moment about e2" in heun("explain", "sections.boom.M2@0.28").stdout
 

@@ -67,7 +67,7 @@ def test_links_in_a_circle_end(heun: Heun, specs: Path) -> None:
     assert done.returncode == 2
     assert "specs/a/up skipped: same folder as specs" in done.stderr
     assert "specs/itself.yaml:1:1: its links form a loop [unreadable]" in done.stderr
-    assert "4 specs, 3 passed, 0 failed, 1 spec not solved" in done.stdout
+    assert "4 specs, 3 checks passed, 0 failed, 1 spec not solved" in done.stdout
 
 
 def test_folders_that_meet_again_and_again_are_looked_into_once(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_eleven_hundred_nested_folders(heun: Heun, folder: Path) -> None:
     for name in reversed(names):
         os.chdir("..")
         Path(name).rmdir()
-    assert done.stdout == "1 spec, 1 passed, 0 failed\n"
+    assert done.stdout == "1 spec, 1 check passed, 0 failed\n"
 
 
 def test_folders_beyond_the_longest_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,7 +61,7 @@ def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypa
 def test_x_ends_at_the_first_that_fails(heun: Heun, many: Path) -> None:
     one, several = (heun("check", "many", "-x", "--jobs", n) for n in ("1", "3"))
     assert one == several
-    assert one.stdout.splitlines()[-1] == "2 specs, 1 passed, 1 failed"
+    assert one.stdout.splitlines()[-1] == "2 specs, 1 check passed, 1 failed"
 
 
 @pytest.mark.heavy

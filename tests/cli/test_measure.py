@@ -163,8 +163,8 @@ def test_of_several_all_that_are_wrong_are_told() -> None:
         ("energy.kinetic at 0.5", "did you mean 'at 0.5 energy.kinetic'?"),
         ("first joints.pivot.force[2]", "did you mean 'first joints.pivot.force.2'?"),
         ("max energy.kinetic, min energy.kinetic", "one number each: --measure may be repeated"),
-        ("mean energy.kinetic", "such as --measure 'max abs sections.middle.M1'"),
-        ("", "such as --measure 'max abs sections.middle.M1'"),
+        ("mean energy.kinetic", "for example --measure 'max abs sections.middle.M1'"),
+        ("", "for example --measure 'max abs sections.middle.M1'"),
     ],
 )
 def test_other_words_get_the_form_that_was_meant(text: str, said: str) -> None:

@@ -78,8 +78,8 @@ def test_json_stays_in_si(heun: Heun) -> None:
 @pytest.mark.parametrize(
     ("words", "wrong", "hint"),
     [
-        (("--measure", FORCE, "--units", "mm"), "sections.beam.Q1 is in N [bad-option]", "such as --units kN"),
-        (("--measure", MOMENT, "--units", "rpm"), "sections.beam.M2 is in N·m [bad-option]", "such as --units kN,m"),
+        (("--measure", FORCE, "--units", "mm"), "sections.beam.Q1 is in N [bad-option]", "for example --units kN"),
+        (("--measure", MOMENT, "--units", "rpm"), "sections.beam.M2 is in N·m [bad-option]", "example --units kN,m"),
         (("--measure", FORCE, "--units", "foo"), "'foo' is not a unit [bad-option]", "known units"),
         (("--measure", "max sections.beam.Q9", "--units", "kN"), "'Q9' is not a result [unknown-path]", "known quant"),
         (("--measure", "model.freedoms", "--units", "kN"), "model.freedoms has no unit [bad-option]", "leave --units"),

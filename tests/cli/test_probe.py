@@ -34,7 +34,7 @@ def test_a_page_with_the_verdict_at_the_top(heun: Heun, folder: Path) -> None:
     text = (folder / "free.txt").read_text()
     assert done.returncode == 0 and not done.stdout
     assert "verdict  no difficulties for heun's default method in this motion" in text
-    for heading in ("GROWTH", "STEPS", "CONDITION", "ATTITUDES", "INSTANTS"):
+    for heading in ("GROWTH", "STEPS", "CONDITION", "ORIENTATIONS", "EVENTS"):
         assert f"\n{heading}" in text
     assert max(map(len, text.splitlines())) <= 120
     assert heun("probe", "free.yaml", "--set", "bodies.b.mass=2").returncode == 0

@@ -90,7 +90,7 @@ def test_a_scene_that_cannot_be_solved_is_its_own_error(heun: Heun) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        ((), "bad-option", "no measure is given"),
+        ((), "bad-option", "no --measure is given"),
         (("mm", "--measure", TENSION), "bad-option", "no number there"),
         (("joints.pivot.type", "--measure", TENSION), "bad-option", "not a number"),
         (("m=3", "--measure", TENSION), "bad-option", "expected a parameter"),

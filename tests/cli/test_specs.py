@@ -35,8 +35,8 @@ NAMES = [
 ]
 WARNED = {
     "flat_four_bar": [
-        "singular position",
-        "extremes leave out the numerically uncertain interval around the singular positions",
+        "singular positions",
+        "extremes exclude the numerically uncertain samples near singular positions",
     ],
     "cradle": ["in the impact"],
 }
@@ -163,7 +163,7 @@ def test_an_expectation_that_fails_is_told(tmp_path: Path, capsys: pytest.Captur
     assert enter(["check", str(wrong)]) == 1
     printed = capsys.readouterr().out
     assert "sections.shaft.M2" in printed
-    assert "1 spec, 7 passed, 1 failed" in printed
+    assert "1 spec, 7 checks passed, 1 failed" in printed
 
 
 def test_expectations_follow_the_parameters(capsys: pytest.CaptureFixture[str]) -> None:

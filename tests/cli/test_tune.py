@@ -216,7 +216,7 @@ def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--maximise", "joints.pivot.force.z"], "both --minimise and --maximise"),
         (["m=1:2kg", *WEIGHT], "no spec is given"),
         (["hanging.yaml", "other.yaml", "m=1:2kg", *WEIGHT], "2 files"),
-        (["hanging.yaml", *WEIGHT], "no parameter is varied"),
+        (["hanging.yaml", *WEIGHT], "no parameter to vary is given"),
         (["hanging.yaml", "m=1:2kg", "m=2:3kg", *WEIGHT], "is varied twice"),
         (["hanging.yaml", "m=1:1kg", *WEIGHT], "both ends are the same"),
         (["hanging.yaml", "m=1kg", *WEIGHT], "expected NAME=a:b"),

@@ -75,7 +75,7 @@ def test_a_fall_past_a_height(limit: float, reduce: bool) -> None:
     assert len(results.time) == 1 + sum(x < t for x in (0.0, 0.5, 1.0, 1.5, 2.0))
     near(results.coordinates["guide"]["travel"][-1], limit, limit, 1e-13)
     near(results.energy["kinetic"][-1], 2.0 * G * limit, 2.0 * G * limit, 1e-13)
-    assert results.status["message"] == f"ended at t = {t:.6g} s: until guide.travel > {limit!r}"
+    assert results.status["message"] == f"end condition guide.travel > {limit!r} met at t = {t:.6g} s"
 
 
 def test_what_has_passed_may_not_come_back() -> None:

@@ -149,9 +149,9 @@ def test_the_weight_alone_presses_on_stops(scene: str) -> None:
 
 
 def test_the_model_tells_what_opens_and_closes() -> None:
-    assert "opens and closes: one, two; closed at the start: one, two" in solved(TWO).model["reasons"]
+    assert "contacts that open and close: one, two; closed at the start: one, two" in solved(TWO).model["reasons"]
     hanging = STRAP.format(ends="from: ground.O, to: weight.c", limits="[0.5, 1]", z=-0.8)
-    assert "opens and closes: end; closed at the start: none" in solved(hanging).model["reasons"]
+    assert "contacts that open and close: end; closed at the start: none" in solved(hanging).model["reasons"]
     assert solved(hanging).model["freedoms"] == 3  # of a point, whose spins are none
 
 

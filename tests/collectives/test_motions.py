@@ -250,7 +250,7 @@ def test_refused_beyond_the_horizon_and_where_a_cycle_does_not_close(heun: Heun)
 def test_options_that_mean_nothing_are_refused_all_at_once(heun: Heun) -> None:
     done = heun("run", "hanging.yaml", "--slope", "0.5,x", "--cycles", "0", "--bins", "0", "--repeat", "2.5", "--all")
     assert done.returncode == 2
-    assert "--slope applies to load collectives" in done.stderr
+    assert "--slope applies to load spectra" in done.stderr
     done = heun(
         "run", "hanging.yaml", "--collective", "a,,b", "--slope", "0.5", "--cycles", "0", "--bins", "0", "--repeat",
         "2.5", "--all", "--measure", "time",

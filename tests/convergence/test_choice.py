@@ -102,7 +102,7 @@ def test_the_note_on_the_model_and_the_run_agree(name: str) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ("duration: 0.5", "short: "),
+        ("duration: 0.5", "short motion: "),
         ("duration: 600", "long and conservative, about 150 "),
     ],
 )
@@ -110,4 +110,4 @@ def test_reasons_tell_the_kind_of_motion(change: str, words: str) -> None:
     swing = BESIDE_A_PENDULUM.replace("stops:", "# stops:").replace("duration: 20", change)
     reasons = describe(load("scene.yaml", swing))["reasons"]
     assert [reason for reason in reasons if reason.startswith(words)]
-    assert "no stiffness expected" in reasons[-1]
+    assert "not expected to be stiff" in reasons[-1]

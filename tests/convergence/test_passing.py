@@ -76,7 +76,7 @@ def test_passages_are_told() -> None:
         found, runner = run(rate, 1e-9)
         np.testing.assert_allclose(find_singular_positions(runner, found), pendulum(rate)[1], atol=3e-6)
     warnings = study(parallelogram(1.0, TURN, 5)).results.warnings
-    assert any(w.startswith("singular position at t = 0.70845, 1.21526 s") for w in warnings)
+    assert any(w.startswith("singular positions at t = 0.70845, 1.21526 s") for w in warnings)
 
 
 @pytest.mark.parametrize("coupler", [pytest.param(0.97, marks=pytest.mark.heavy), 1.01])

@@ -31,7 +31,7 @@ from tests.shared.scenes import study
 FACTOR = 2.0  # of what is stated: an estimate, no bound
 APART = 1e-5  # of the size: farther apart are two poses
 PRINTED = 1e-3  # of a number in a sentence, which has four digits
-LEAST = re.compile(r"smallest eigenvalue of stiffness over inertia (\S+) 1/s²")
+LEAST = re.compile(r"smallest eigenvalue stiffness/inertia (\S+) 1/s²")
 GROWS = re.compile(r"departs as exp\((\S+) t\)")
 SWINGS = re.compile(r"oscillation (\S+) Hz")
 RATES = {

@@ -101,13 +101,13 @@ def tried(text: str) -> str:
 )
 def test_of_the_specs(name: str, said: str) -> None:
     note = tried(start_of(name))
-    assert note == f"statically determinate with {said}: the same motion, and no reaction is open"
+    assert note == f"statically determinate with {said}: same motion, no open reactions"
 
 
 @pytest.mark.parametrize("name", ["crankshaft", "table"])
 def test_nothing_looser_for_one_body_on_many_supports(name: str) -> None:
     note = advice(start_of(name))
-    assert note.startswith("no joints with fewer constraints") and "stiffness" in note
+    assert note.startswith("joints with fewer constraints do not") and "stiffness" in note
 
 
 def test_no_advice_where_nothing_is_held_twice() -> None:
@@ -150,7 +150,7 @@ def test_in_the_plane() -> None:
     joints = {name: {**pin, **end} for name, end in ends.items()}
     scene = {"space": "planar", "gravity": [0, -9.81, 0], "bodies": {"beam": beam}, "joints": joints}
     assert tried(to_yaml(scene)) == (
-        "statically determinate with a as line (axis [1, 0.5, 0]): the same motion, and no reaction is open"
+        "statically determinate with a as line (axis [1, 0.5, 0]): same motion, no open reactions"
     )
 
 

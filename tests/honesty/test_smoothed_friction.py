@@ -41,7 +41,7 @@ def test_a_start_from_rest_says_that_friction_is_nothing_there(heun: Heun, folde
     assert "rub" in told["notes"][0]
     table = heun("run", "s.yaml", "--only", "motion").stdout
     assert re.search(r"4\.1750*†", table)
-    assert "† smoothed friction (rub) is below full value there" in table
+    assert "† smoothed friction (rub) is below its full value here" in table
     result = json.loads(heun("run", "s.yaml", "--format", "json").stdout)
     assert any("at 1 of 11 samples" in note for note in result["model"]["notes"])
     report = heun("report", "s.yaml", "--format", "md", "-o", "-").stdout

@@ -269,7 +269,7 @@ def test_a_density_fills_meshes(name: str, mirrored: bool, tmp_path: Path) -> No
 def test_meshes_that_are_no_solids_are_told(tmp_path: Path) -> None:
     (tmp_path / "open.stl").write_bytes(triangles.binary_stl(BAR[1:]))
     for name, told in (
-        ("open.stl", "3 edges are open"), ("none.stl", "no such file"), ("package://x/open.stl", "no such file"),
+        ("open.stl", "3 edges are open"), ("none.stl", "file not found"), ("package://x/open.stl", "file not found"),
     ):  # fmt: skip
         with pytest.raises(SpecError, match=told) as refused:
             imported(meshed(name), density=1.0, file=str(tmp_path / "model.urdf"))

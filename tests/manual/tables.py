@@ -237,7 +237,7 @@ TABLES = (
     Table("format", "Expressions", ("", ""), list(words())),
     Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
     Table("format", "Forces", ("type", "what it is"), list(loads())),
-    Table("methods", "The list", ("name", "order", "kind", "steps", "attitude", "what for"), list(methods())),
+    Table("methods", "The list", ("name", "order", "kind", "steps", "orientation", "purpose"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "see"), list(keys())),
     Table("index", "Types", ("type", "see"), list(types())),

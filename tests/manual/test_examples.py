@@ -45,7 +45,7 @@ def beside_specs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 BUDGET = "24"  # of a search whose result is not shown: it ends as told, whatever it has found by then
-WARNED = ("flat_four_bar.yaml: singular position at t = ", "rigid bodies do not determine the split, impacts: ")
+WARNED = ("flat_four_bar.yaml: singular positions at t = ", "rigid bodies do not determine the split, impacts: ")
 
 
 @pytest.mark.heavy

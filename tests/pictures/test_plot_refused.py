@@ -26,11 +26,11 @@ TURNED = TWO + "forces: {f: {type: torque, joint: pivot, value: t}}\n"
 PUSHED = TWO + "forces: {f: {type: actuator, from: {body: ground, at: [1, 0, 0]}, to: bar.top, value: t}}\n"
 REFUSED = [
     ((PATH,), "no spec is given"),
-    (("hanging.yaml",), "nothing to draw is given"),
+    (("hanging.yaml",), "nothing to plot is given"),
     (("hanging.yaml", ""), "an empty argument"),
     (("", PATH), "no spec is given"),
     ((".", PATH), "this is a folder"),
-    (("missing.yaml", PATH), "no such file"),
+    (("missing.yaml", PATH), "file not found"),
     (("hanging.yaml", "joints.pivo.force"), "did you mean pivot?"),
     (("hanging.yaml", "scen"), "did you mean scene?"),
     (("hanging.yaml", "model.freedoms"), "does not vary with time"),
@@ -53,7 +53,7 @@ REFUSED = [
     (("hanging.yaml", PATH, "--x", "joints.pivot.forc"), "did you mean"),
     (("hanging.yaml", PATH, "--with", "bench.csv"), "expected FILE:X:Y"),
     (("hanging.yaml", PATH, "--with", "none.csv:t:F"), "it contains no row of numbers"),
-    (("hanging.yaml", PATH, "--with", "gone.csv:t:F"), "no such file"),
+    (("hanging.yaml", PATH, "--with", "gone.csv:t:F"), "file not found"),
     (("hanging.yaml", PATH, "--with", ".:t:F"), "this is a folder"),
     (("hanging.yaml", PATH, "--with", "bench.csv:t:G"), "there is no column 'G'"),
     (("hanging.yaml", PATH, "--with", "bench.csv:F:t"), "is a force, but the axis shows a time"),

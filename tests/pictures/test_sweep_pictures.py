@@ -221,7 +221,7 @@ def test_other_files_and_words_are_refused(heun: Heun, swept: Heun, folder: Path
         other.execute("CREATE TABLE t (x)")
     for words, why in [
         (("other.sqlite",), "a database of another program"),
-        (("none.sqlite",), "there is no such file"),
+        (("none.sqlite",), "file not found"),
         (("none.csv",), "none.csv"),
         (("s.csv", "s.sqlite"), "one sweep at a time"),
         (("s.csv", "joints.pivot.force.w"), "no column of the sweep has this name"),

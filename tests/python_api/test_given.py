@@ -73,7 +73,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: heuncli.solve(REST, text="heun: 1"), "spec: both a mapping and text= are given [bad-option]"),
     (lambda: heuncli.solve(HANGING), "spec: this path has several lines [bad-option]\n  hint: pass YAML text as text="),
     (lambda: heuncli.solve("-"), "spec: - is not a file [bad-option]"),
-    (lambda: heuncli.solve("none.yaml"), "none.yaml:1:1: there is no such file [unreadable]"),
+    (lambda: heuncli.solve("none.yaml"), "none.yaml:1:1: file not found [unreadable]"),
     (lambda: heuncli.solve({"heun": 1, "bodies": {1: {}}}), "<mapping>: bodies: expected a string as key, found int"),
     (lambda: heuncli.solve({"heun": 1, "forces": {"f": {True: "a"}}}), "hint: PyYAML reads the key `on` as True"),
     (lambda: heuncli.solve({"heun": 1, "bodies": {"a": {"mass": {2}}}}), "<mapping>: bodies.a.mass: set is not"),

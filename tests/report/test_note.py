@@ -45,8 +45,8 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
 
 
 def test_what_couplings_close_is_told_beside_the_loops_of_joints() -> None:
-    assert "  loops      no closed loops of joints, and 1 coupling\n" in format_model("", MODEL | {"couplings": 1})
-    assert "  loops      2 closed loops of joints, and 3 couplings" in format_model(
+    assert "  loops      no closed loops of joints; 1 coupling\n" in format_model("", MODEL | {"couplings": 1})
+    assert "  loops      2 closed loops of joints; 3 couplings" in format_model(
         "", MODEL | {"loops": 2, "couplings": 3}
     )
 

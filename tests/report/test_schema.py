@@ -110,9 +110,9 @@ def judged(item: str) -> str:
         ("{of: sections.run.force.2.x, at: 0, is: 1}", ""),
         ("{of: sections.one.force.x, at: 0, is: 1}", ""),
         ("{of: sections.one.line.kind, at: 0, is: 1}", ""),
-        ("{of: sections.one.force, at: 0, is: 1}", "name one of its numbers, as sections.one.force.x"),
-        ("{of: sections.run.M2, at: 0, is: 1}", "name one of its numbers, as sections.run.M2.0"),
-        ("{of: energy.kinetic, is: [1, 2]}", "name one of its numbers, as energy.kinetic.0"),  # of three instants
+        ("{of: sections.one.force, at: 0, is: 1}", "give one of its numbers, such as sections.one.force.x"),
+        ("{of: sections.run.M2, at: 0, is: 1}", "give one of its numbers, such as sections.run.M2.0"),
+        ("{of: energy.kinetic, is: [1, 2]}", "give one of its numbers, such as energy.kinetic.0"),  # of three instants
         ("{of: points.b.p.position.z, at: 0, is: 1}", ""),
         ("{of: points.b.q.position.z, at: 0, is: 1}", "did you mean b.p?"),
         ("{of: points.b, at: 0, is: 1}", "'b' is not a result"),

@@ -11,7 +11,7 @@ from heuncli.analyses.variants.conditions import MeasureCondition, find_si_value
 from heuncli.scene.file_format.load import load
 from tests.shared.folders import SPECS
 
-HINT = "such as 'x < 3'"
+HINT = "for example 'x < 3'"
 SCENE = load(str(SPECS / "double.yaml"))._replace(parameters={"F": 7.0})
 
 

@@ -215,7 +215,7 @@ def test_one_thing_wrong_has_one_hint(given: str, instead: str, said: str) -> No
         ("'t > 1 ? 5 : 0'", "a if c else b"),
         ("5*pivot", "pivot.angle"),
         ("21/s", "with a unit: 21 1/s"),
-        ("5/q", "there are no parameters"),
+        ("5/q", "no parameters are defined"),
         ("joints.pivot.force.z", "{of: "),
         ("\"table('f', t)\"", "write no quotes"),
         ("interp(t)", "table(NAME, ...)"),

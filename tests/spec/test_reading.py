@@ -94,7 +94,7 @@ def test_a_closed_standard_input_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         ("x" * 300, "too long"),
         ("a\0b", "cannot be the name"),
         ("\ud800", "cannot be the name"),
-        ("none", "no such file"),
+        ("none", "file not found"),
         (".", "a folder"),
     ],
 )
@@ -118,7 +118,7 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
     run = subprocess.run([sys.executable, "-P", "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},
                          capture_output=True, text=True, check=False)  # fmt: skip
     assert run.returncode == 2
-    assert "no such file" in run.stderr
+    assert "file not found" in run.stderr
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
         ("/dev/zero", "table-file", "a device"),
         ("loop.csv", "table-file", "form a loop"),
         ("large.csv", "too-large", "at most 200 MB"),
-        ("'a\\0b'", "table-file", "no such file"),
+        ("'a\\0b'", "table-file", "file not found"),
         ('"a\\0b"', "table-file", "cannot be the name"),
     ],
 )

@@ -140,7 +140,7 @@ def test_other_encodings(tmp_path: Path, content: bytes, code: str, line: int, c
 
 
 def test_what_cannot_be_read(tmp_path: Path) -> None:
-    cases = ((tmp_path / "none.yaml", "no such file"), (tmp_path, "folder"), (Path("a\0b"), "cannot be the name"))
+    cases = ((tmp_path / "none.yaml", "file not found"), (tmp_path, "folder"), (Path("a\0b"), "cannot be the name"))
     for path, words in cases:
         with pytest.raises(SpecError) as caught:
             read_source(str(path), None)

@@ -190,7 +190,7 @@ def find_default_radius(mechanism: Mechanism, weight_place: WeightPlace, axis: A
     arms = [end - weight_place.point for end in [*ends, body.center]]
     distance = max((float(np.linalg.norm(arm - (axis @ arm) * axis)) for arm in arms), default=0.0)
     if distance <= tolerances.PARALLEL:
-        hint = f"such as --counterweight {weight_place.name}:radius=50mm"
+        hint = f"for example --counterweight {weight_place.name}:radius=50mm"
         raise SolveError(
             Problem("radius-needed", f"{weight_place.name}: the radius of the weight is not known", hint=hint)
         )

@@ -34,7 +34,7 @@ def find_requested_flywheel(spec: Spec, scene: PreparedScene, plan: CyclePlan, r
         raise SolveError(Problem("no-flywheel", message, hint="leave out the drives that the flywheel is to replace"))
     if plan.rate is None:
         message = "the mean speed of the machine is not known"
-        raise SolveError(Problem("no-flywheel", message, hint="such as --rate 1500rpm"))
+        raise SolveError(Problem("no-flywheel", message, hint="for example --rate 1500rpm"))
     require_position_loads(scene.mechanism)
     loaded_scene = make_loaded_scene(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
     return find_flywheel(loaded_scene, plan.joint, abs(plan.rate), request.delta)

@@ -55,7 +55,7 @@ def format_remaining_orders(rows: Sequence[OrderRow], *, endless: bool = False) 
     last = max(row.order for row in remaining)
     if len(remaining) == len(named):
         return sentence
-    return f"{sentence}; {SMALLER} up to {last:g}{ENDLESS if endless else ''}"
+    return f"{sentence}; {SMALLER} up to order {last:g}{ENDLESS if endless else ''}"
 
 
 def format_direction(row: OrderRow) -> str:

@@ -42,8 +42,8 @@ from heuncli.study.compose.blocks import make_blocks as blocks_of
 from heuncli.study.model.error_places import attach_locations
 
 QUASI_VELOCITY_NOTE = (
-    "{names}: quasi-velocities, components of angular velocity and of velocity along the world axes: "
-    "Christoffel symbols and alpha are not defined for them"
+    "{names}: rates are quasi-velocities (components of angular velocity and velocity along the world axes), "
+    "for which Christoffel symbols and alpha are not defined"
 )
 
 

@@ -18,7 +18,7 @@ from heuncli.results.results import Array
 POUND_FORCE = units.UNITS["lbf"][0]
 # Masses that specs do not know, for there `t` is the time: what a force of 1 gives an acceleration of 1.
 MASSES = {"t": 1e3, "slinch": POUND_FORCE / 0.0254, "slug": POUND_FORCE / 0.3048, "Gg": 1e6}
-UNITS_HINT = "such as --units N,mm,t or N,m,kg or lbf,in,slinch; a fourth unit sets the time, s or ms"
+UNITS_HINT = "for example --units N,mm,t or N,m,kg or lbf,in,slinch; a fourth unit sets the time, s or ms"
 CONSISTENCY_TOLERANCE = 1e-9  # relative: definitions agree to the last digit, inconsistent units differ by a factor
 
 

@@ -19,7 +19,7 @@ def find_largest_conditions(motion: MotionSearch) -> tuple[LargestCondition | No
     layout = motion.layout
     layout_coordinates, n = make_coordinates(layout), layout.velocity_count
     if not layout_coordinates.count:
-        return None, None, "nothing is free to move"
+        return None, None, "no free degrees of freedom"
     if n > MAX_FREEDOMS:
         return None, None, f"{n} degrees of freedom, more than {MAX_FREEDOMS}: full matrices are not formed"
     instant_limit = max(1, MAX_NUMBERS // (6 * n * len(layout.place) + n * n + n * len(layout.rows)))
@@ -27,7 +27,7 @@ def find_largest_conditions(motion: MotionSearch) -> tuple[LargestCondition | No
     recovered = motion.recover(times)
     numbers = compute_conditions(layout, layout_coordinates, recovered)
     if not numbers.lightest_motion.any():
-        return None, None, "drives and joints leave nothing free to move"
+        return None, None, "no free degrees of freedom"
     k, m = int(np.argmax(numbers.mass)), int(np.argmax(numbers.closure))
     mass = LargestCondition(float(numbers.mass[k]), float(times[k]), find_lightest(layout_coordinates, numbers, k))
     closure = LargestCondition(float(numbers.closure[m]), float(times[m])) if layout.rows else None
@@ -43,7 +43,9 @@ def find_singular_events(motion: MotionSearch) -> list[Event]:
     """Return singular poses that the motion passes or begins in, and bodies without inertia about an axis."""
     study = motion.study
     loops = study.setup.scene.mechanism.owner_path(motion.layout.rows[0]) if motion.layout.rows else ""
-    singular_text = "closed loops are stretched, folded or flat: they lose rank, and several motions are possible"
+    singular_text = (
+        "closed loops are stretched, folded or flat: their constraints lose rank, several motions are possible"
+    )
     events = [Event(t, SINGULAR, loops, singular_text) for t in study.history.singular]
     events += [
         Event(float(motion.times[0]), SINGULAR, loops, note)

@@ -20,9 +20,9 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 
 SLOPE_SAMPLES = 200  # instants for the fit of the slope
-CONTACTS_REASON = "stops or ropes open and close at different times in each run: use the horizon of the run itself"
-TRIGGERS_REASON = "conditional impulses act at different times in each run: use the horizon of the run itself"
-ONE_INSTANT_REASON = "one instant, no motion; heun modes shows what grows about a rest position"
+CONTACTS_REASON = "stops or ropes open and close at different times in each run; see the horizon reported by heun run"
+TRIGGERS_REASON = "conditional impulses act at different times in each run; see the horizon reported by heun run"
+ONE_INSTANT_REASON = "one instant, no motion; for the stability of a rest position see heun modes"
 FOLLOWED_REASON = "motion fully prescribed: nothing is integrated"
 
 
@@ -40,7 +40,7 @@ def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
     disturbed_runs = DisturbedRuns(runner, checked_run.run, choose_method(checked_run.run))
     Q = disturbed_runs.find_directions()
     if not Q.shape[1]:
-        return None, "nothing is free to move"
+        return None, "no free degrees of freedom"
     return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 
@@ -63,7 +63,7 @@ def find_out_of_plane_growth(motion: MotionSearch) -> tuple[GrowthResults | None
     if checked_run is None or study.setup.model.get("plane") is None:
         return None, ""
     if study.setup.model["plane"] == "declared":
-        return None, "the model is declared planar: nothing leaves the plane"
+        return None, "the model is declared planar, without out-of-plane motion"
     if checked_run.run.method.is_determined:
         return None, FOLLOWED_REASON
     if layout.contacts:
@@ -73,7 +73,7 @@ def find_out_of_plane_growth(motion: MotionSearch) -> tuple[GrowthResults | None
     disturbed_runs = DisturbedRuns(study.setup.runner, checked_run.run, choose_method(checked_run.run), whole=True)
     Q = find_out_of_plane_directions(disturbed_runs)
     if Q is None or not Q.shape[1]:
-        return None, "no joint lets a body leave the plane"
+        return None, "the joints permit no out-of-plane motion"
     return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 

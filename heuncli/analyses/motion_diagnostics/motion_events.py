@@ -228,7 +228,7 @@ def explain_skipped(motion: MotionSearch, loop: Loop, count: int) -> str:
     names = format_joints(motion, loop)
     if count == 0:
         return f"the coordinates of {names} do not move"
-    return f"the coordinates of {names} share {count} degrees of freedom: none drives another alone"
+    return f"the coordinates of {names} have {count} degrees of freedom together: no single one drives the others"
 
 
 def format_joints(motion: MotionSearch, loop: Loop) -> str:

@@ -46,7 +46,7 @@ def find_stiffness(motion: MotionSearch) -> tuple[StiffnessResults | None, str]:
     if n > MAX_STATE_SIZE:
         return None, f"{n} state variables, more than {MAX_STATE_SIZE}: the full tangent matrix is not formed"
     if not DisturbanceScale(runner.integrated_scene.layout, 1.0).n:
-        return None, "nothing is free to move"
+        return None, "no free degrees of freedom"
     if checked_run is None:
         recovered = study.history.solutions
         values = compute_eigenvalues(

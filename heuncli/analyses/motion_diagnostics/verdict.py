@@ -22,7 +22,7 @@ def iter_troubles(result: Probe) -> Iterator[str]:
     singular_events = [event for event in result.events if event.kind == SINGULAR]
     if singular_events:
         yield (
-            f"singular positions: closed loops lose rank at t = {format_instants(singular_events)} s; "
+            f"singular positions: loop constraints lose rank at t = {format_instants(singular_events)} s; "
             "several motions are possible there"
         )
     closure = result.closure
@@ -48,8 +48,8 @@ def iter_stiffness(result: Probe) -> Iterator[str]:
             f"{result.implicit_method}, used in this run, has" if result.implicit_method else "an implicit method has"
         )
         yield (
-            f"stiff: rates up to {max(stiffness.decay, stiffness.oscillation):.3g} 1/s allow DOP853 steps of "
-            f"{get_stable_step(result, 'DOP853'):.2g} s only, {stiffness.ratio:.2g} times shorter "
+            f"stiff: rates up to {max(stiffness.decay, stiffness.oscillation):.3g} 1/s limit DOP853 to steps of "
+            f"{get_stable_step(result, 'DOP853'):.2g} s, {stiffness.ratio:.2g} times shorter "
             "than accuracy requires, "
             f"shortest at t = {stiffness.time:.4g} s; {alternative} no such limit"
         )
@@ -76,11 +76,11 @@ def iter_other_troubles(result: Probe) -> Iterator[str]:
     if turns := by_kind[HALF_TURN]:
         n = len(turns) + further_counts[HALF_TURN]
         yield (
-            f"global Rodrigues parameters (DOP853-rodrigues) fail at {format_count(n, 'half turn')}: "
+            f"global Rodrigues parameters (DOP853-rodrigues) fail at {format_count(n, 'half revolution')}: "
             f"{format_bodies(turns)}"
         )
     if locks := by_kind[GIMBAL]:
-        yield f"Euler angles lock or lose digits: {format_bodies(locks)}"
+        yield f"Euler angles at or near gimbal lock: {format_bodies(locks)}"
     if centres := by_kind[DEAD_CENTRE]:
         n = len(centres) + further_counts[DEAD_CENTRE]
         joints = list_some(list(dict.fromkeys(e.where.removeprefix("joints.") for e in centres)))

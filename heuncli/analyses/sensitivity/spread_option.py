@@ -10,7 +10,7 @@ from heuncli.base.units import describe, parse_unit
 from heuncli.scene.file_format.quantity import parse_number_with_unit
 
 FORM = "expected NAME=VALUE,..., the tolerance of each parameter"
-HINT = "such as --spread L=0.1mm,e=0.02mm"
+HINT = "for example --spread L=0.1mm,e=0.02mm"
 
 
 def parse_spreads(text: str, spec_numbers: WrittenNumbers) -> list[NumberSpread]:

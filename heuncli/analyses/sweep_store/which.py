@@ -21,7 +21,7 @@ def split_store_argument(word: str, option: str) -> tuple[str, int | None]:
     else:
         sweep_number = None
     if not Path(word).is_file():
-        message = f"{option} {word}: there is no such file"
+        message = f"{option} {word}: file not found"
         raise UsageError(Problem("unreadable", message, hint="create one with heun sweep ... --store FILE"))
     return word, sweep_number
 

@@ -28,8 +28,8 @@ MAX_VALUES = 10_000_000  # of one axis, which are stored as numbers
 EVEN_AXIS = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 RANDOM_AXIS = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)
 FORMS = "NAME=a:b/count, NAME=a:b/count log, NAME=v1,v2,..., or NAME=normal(mean,deviation), uniform(a,b), lhs, sobol"
-HINT = "such as n=1000:6000/51rpm, L=0.1,0.12,0.15 or d=normal(100,0.1)mm"
-INTERVAL_HINT = "such as r=20:60mm"
+HINT = "for example n=1000:6000/51rpm, L=0.1,0.12,0.15 or d=normal(100,0.1)mm"
+INTERVAL_HINT = "for example r=20:60mm"
 
 
 class AxisError(HeunError):
@@ -95,7 +95,7 @@ def parse_axis_values(word: str) -> ParameterAxis | RandomVariable:
             ),
         )
     if ":" in values and not values.lstrip().startswith(("{", "[")):
-        raise AxisError(word, "an interval needs its number of values", f"such as {name}={values.strip()}/11")
+        raise AxisError(word, "an interval needs its number of values", f"for example {name}={values.strip()}/11")
     return ParameterAxis(name, _parse_list(word, values))
 
 
@@ -161,7 +161,7 @@ def _parse_random_variable(word: str, name: str, law: str, inner: str, last_unit
     """Parse a random parameter."""
     parts = split_at_commas(inner)
     if len(parts) != 2:
-        raise AxisError(word, f"{law} takes two numbers", f"such as {name}={law}(99,101)mm")
+        raise AxisError(word, f"{law} takes two numbers", f"for example {name}={law}(99,101)mm")
     a, b, unit = _parse_two_numbers(word, (parts[0], f"{parts[1]} {last_unit}"), "", HINT)
     if law == "normal":
         if b <= 0.0:

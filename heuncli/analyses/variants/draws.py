@@ -31,7 +31,7 @@ BITS = 52  # of a random number: (k + 1/2) / 2^52 is neither 0 nor 1, and exact
 JOINT_LAWS = ("lhs", "sobol")
 REPETITIONS = 16  # of a plan for Sobol indices
 MIN_SHARE = 0.5 * 2.0**-BITS  # of them
-SAMPLES_HINT = "such as --samples 1000"
+SAMPLES_HINT = "for example --samples 1000"
 
 
 def make_draws(laws: Sequence[RandomVariable], samples: int, seed: int = 0, *, indices: bool = False) -> Draws:
@@ -41,7 +41,7 @@ def make_draws(laws: Sequence[RandomVariable], samples: int, seed: int = 0, *, i
     """
     _require_few(laws, samples, len(laws) + 2 if indices else 1)
     if seed < 0:
-        raise AxisError("--seed", f"{seed}: expected 0 or more", "such as --seed 7")
+        raise AxisError("--seed", f"{seed}: expected 0 or more", "for example --seed 7")
     copies = 2 if indices else 1
     repetitions = REPETITIONS if indices and find_joint_law(laws) else 1
     points = _draw_points(laws, samples, seed, copies, repetitions).reshape(samples, copies, len(laws))

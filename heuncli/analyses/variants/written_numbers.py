@@ -18,7 +18,7 @@ from heuncli.scene.file_format.overrides import apply_settings, get_value, parse
 from heuncli.scene.file_format.quantity import Scope, match_quantity, read_number
 from heuncli.scene.file_format.source import read_source
 
-EXAMPLES = "such as L, or bodies.crank.mass"
+EXAMPLES = "for example L, or bodies.crank.mass"
 
 
 class WrittenNumber(NamedTuple):

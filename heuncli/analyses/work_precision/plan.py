@@ -52,9 +52,7 @@ def plan_chart(motion: MotionProblem, options: ChartOptions) -> ChartPlan:
         others = [row.name for row in methods if row.attitude != QUATERNION]
         methods = [row for row in methods if row.attitude == QUATERNION]
         if others:
-            notes.append(
-                f"{' and '.join(others)} left out: nothing here rotates freely in space, so they equal {DEFAULT}"
-            )
+            notes.append(f"{' and '.join(others)} omitted: no body rotates freely in space, so they equal {DEFAULT}")
     require_usable_options(methods, options)
     steps = options.steps
     if steps is None and any(row.steps == "fixed" for row in methods):

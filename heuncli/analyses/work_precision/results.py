@@ -1,4 +1,4 @@
-"""Results of a chart of speed against accuracy: runs of one motion by several methods, each compared with a reference.
+"""Results of a chart of speed versus accuracy: runs of one motion by several methods, each compared with a reference.
 
 Errors are differences from the reference at the requested instants, up to where it is valid. The reference's error is
 at most its `error`, as two runs by different methods show. A run that differs by less has an error of at most twice

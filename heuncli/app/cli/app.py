@@ -14,7 +14,10 @@ from heuncli.app.cli.completion import BY_WORD
 from heuncli.app.cli.options import RequestField, list_fields
 from heuncli.app.cli.registry import Command, ParsedCommand
 
-EPILOG = "Exit codes: 0 success, 1 check failed, 2 bad usage or spec, 3 not solvable, 4 limit, 5 output error, 70 bug."
+EPILOG = (
+    "Exit codes: 0 success, 1 check failed, 2 bad usage or spec, 3 not solvable, 4 limit, 5 output error, "
+    "70 internal error."
+)
 COMPLETION_VARIABLE = "_HEUN_COMPLETE"  # set by a shell that completes
 
 

@@ -114,7 +114,7 @@ def _run_command(argv: list[str]) -> int:
 def _require_limit(option: str, limit: float | None) -> None:
     """Raise UsageError if a time limit is not a positive, finite number."""
     if limit is not None and not 0.0 < limit < math.inf:
-        hint = f"such as {option} 60, in s; leave it out for no limit"
+        hint = f"for example {option} 60, in s; leave it out for no limit"
         raise UsageError(Problem("bad-option", f"{option} {limit:g}: expected a positive number", hint=hint))
 
 

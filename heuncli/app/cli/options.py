@@ -31,7 +31,7 @@ SET = Option(
 CASE = Option(("--case",), "Solve this load case; --set is applied on top.", "NAME", completes="case")
 OUTPUT = Option(("--output", "-o"), "Output file, written atomically.", "FILE")
 QUIET = Option(("--quiet", "-q"), "Suppress warnings on standard error.")
-TIME_LIMIT = Option(("--time-limit",), "Stop after this time.", "SECONDS")
+TIME_LIMIT = Option(("--time-limit",), "Stop after this computing time.", "SECONDS")
 TIME_LIMIT_EACH = Option(("--time-limit",), "Stop each spec after this time; the others continue.", "SECONDS")
 UNITS = Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; all other formats stay in SI.", "UNIT,...")
 VIEW = Option(
@@ -41,7 +41,7 @@ WIDTH = Option(("--width",), "Width of a text drawing in columns.", "COLUMNS")
 METHOD = Option(("--method",), "Integration method; `heun methods` lists them.", "NAME")
 STEP = Option(("--step",), "Step size of a fixed-step method.", "SECONDS")
 TOLERANCE = Option(("--tolerance",), "Allowed error of the motion, relative to the model size.", "NUMBER")
-LEAST_NORM = Option(("--least-norm",), "Split indeterminate reactions by the least norm.")
+LEAST_NORM = Option(("--least-norm",), "Distribute indeterminate reactions by the minimum-norm solution.")
 WITHOUT = Option(
     ("--without",),
     "Leave out these forces, and lock these drives at their start position. May be repeated.",

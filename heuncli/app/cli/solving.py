@@ -53,7 +53,9 @@ def parse_overrides(words: Sequence[str]) -> dict[str, str]:
     for word in words:
         name, equals, value = word.partition("=")
         if not equals or not name.strip():
-            raise UsageError(Problem("bad-option", f"--set {word}: expected NAME=VALUE", hint="such as --set L=1.2"))
+            raise UsageError(
+                Problem("bad-option", f"--set {word}: expected NAME=VALUE", hint="for example --set L=1.2")
+            )
         pairs[name.strip()] = value.strip()
     return pairs
 

@@ -40,6 +40,6 @@ def choose_format(requested: str | None, output: str | None, formats: Sequence[s
 def require_writable(output: str, option: str = "-o") -> None:
     """Raise an error before the work if a file could not be written after it: UsageError, OutputError."""
     if not output:
-        hint = f"such as {option} {'results.json' if option == '-o' else 'chart.svg'}"
+        hint = f"for example {option} {'results.json' if option == '-o' else 'chart.svg'}"
         raise UsageError(Problem("bad-option", f"{option}: expected a file name", hint=hint))
     find_target(output)

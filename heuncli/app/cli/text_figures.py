@@ -18,7 +18,7 @@ def require_width(width: int | None) -> None:
     """Raise UsageError for a width in which nothing can be drawn."""
     if width is not None and not MIN_WIDTH <= width <= MAX_WIDTH:
         message = f"--width {width}: expected {MIN_WIDTH} to {MAX_WIDTH} columns"
-        raise UsageError(Problem("bad-option", message, hint=f"such as --width {WIDTH}"))
+        raise UsageError(Problem("bad-option", message, hint=f"for example --width {WIDTH}"))
 
 
 def render_panels(figure: Figure, output: str | None = None) -> str:

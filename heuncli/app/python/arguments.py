@@ -70,6 +70,6 @@ def check_arguments(*arguments: tuple[str, object, ArgumentKind], optional: bool
         if (value is None and optional) or kind.accepts(value):
             continue
         message = f"{name}: expected {kind.words}, found {type(value).__name__}"
-        problems.append(Problem("bad-option", message, hint=f"such as {name}={kind.example}"))
+        problems.append(Problem("bad-option", message, hint=f"for example {name}={kind.example}"))
     if problems:
         raise UsageError(*problems)

@@ -50,7 +50,7 @@ def make_diagram(study: Study, paths: Sequence[str], x_path: str | None, units: 
     SpecError.
     """
     if not paths:
-        hint = "such as study.plot('energy.kinetic')"
+        hint = "for example study.plot('energy.kinetic')"
         raise UsageError(Problem("bad-option", "plot: no path is given", hint=hint))
     requests = [MeasureRequest("", path) for path in (*paths, *([] if x_path is None else [x_path]))]
     require_known_paths(requests, study.spec, "plot")

@@ -86,7 +86,7 @@ class LockedRun:
         the run.
         """
         if not len(times):
-            raise UsageError(Problem("bad-option", "at: no instants are given", hint="such as at=[0.1, 0.2], in s"))
+            raise UsageError(Problem("bad-option", "at: no instants are given", hint="for example at=[0.1, 0.2], in s"))
         with self.hold_lock():
             results = self.study.resample(require_within_run("at", times.tolist(), self.study.results.time))
         return LockedRun(self.study, results, self._lock)

@@ -37,7 +37,7 @@ class Stability:
 
     growth: growth rate of what grows fastest [1/s], 0 where nothing does
     grows: name of what moves in it
-    least: smallest eigenvalue of stiffness over inertia of what is held, or pushed off [1/s^2]
+    least: smallest eigenvalue stiffness/inertia of what is held, or pushed off [1/s^2]
     slowest: name of what moves in it, "" where nothing does
     frequency: of the slowest small oscillation [Hz], 0 where nothing oscillates
     motions: number of free motions

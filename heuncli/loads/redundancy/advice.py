@@ -46,8 +46,8 @@ def propose_replacements(scene: PreparedScene, model: Block) -> list[str]:
             break
         if _count_remaining(scene, replacements, model) == 0:
             return [
-                f"statically determinate with {format_replacements(scene, replacements, ' and ')}: the same "
-                "motion, and no reaction is open"
+                f"statically determinate with {format_replacements(scene, replacements, ' and ')}: "
+                "same motion, no open reactions"
             ]
     return propose_stepwise(scene, choices, model, redundant)
 
@@ -67,8 +67,8 @@ def propose_stepwise(scene: PreparedScene, choices: Choices, model: Block, redun
         return ["joint types with fewer constraints do not help; give these joints a `stiffness` to split the load"]
     if redundant_left == 0:
         return [
-            f"statically determinate with {format_replacements(scene, replacements, ', ')}: the same motion, and "
-            "no reaction is open"
+            f"statically determinate with {format_replacements(scene, replacements, ', ')}: same motion, no "
+            "open reactions"
         ]
     rest = f"{redundant_left} of {redundant} redundant constraints remain; for those give joints a `stiffness`"
     return [f"with {format_replacements(scene, replacements, ', ')}, {rest}"]

@@ -28,7 +28,7 @@ from heuncli.scene.file_format.headings import split_heading
 from heuncli.scene.file_format.reading import read_bytes
 
 MAX_BYTES = 200_000_000  # bytes
-EXAMPLE_HINT = "such as --with bench.csv:t:F, columns by the names in the first row or by numbers from 1"
+EXAMPLE_HINT = "for example --with bench.csv:t:F, columns by the names in the first row or by numbers from 1"
 
 
 class PointsQuery(NamedTuple):

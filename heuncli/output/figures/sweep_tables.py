@@ -148,10 +148,12 @@ def _find_rows(variable: SweepVariable, text: str) -> Mask:
         figure = parse_number_with_unit(text)
         if figure is None or figure.unit not in ("", variable.unit):
             unit = f" in {variable.unit}" if variable.unit else ""
-            raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {make_example(variable)}")
+            raise NotDrawable(
+                f"{variable.name}={text}: expected a number{unit}", f"for example {make_example(variable)}"
+            )
         row_mask = np.isclose(variable.values, figure.value, rtol=tolerances.SAME_VALUE, atol=0.0)
     if not row_mask.any():
-        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {make_example(variable)}")
+        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"for example {make_example(variable)}")
     return np.asarray(row_mask)
 
 

@@ -87,7 +87,7 @@ def _require_vector(study: Study, path: str) -> None:
     numbers = study.find_numbers(path)
     if numbers.axes != (SPACE,) or not numbers.is_timed:
         message = f"polar {path}: a polar diagram needs a vector over time, and this is not one"
-        raise NotDrawable(message, "such as polar joints.main, or polar foundation")
+        raise NotDrawable(message, "for example polar joints.main, or polar foundation")
     if study.has_one_instant or len(choose_instants(study)) < 2:
         message = f"polar {path}: there is only one instant, so no curve"
         raise NotDrawable(message, "define a motion: analysis.duration")

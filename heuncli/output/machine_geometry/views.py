@@ -26,7 +26,7 @@ MIN_VISIBLE_GRAVITY = 0.1  # part of gravity perpendicular to the line of sight 
 ROUNDING = 1e-12  # components of unit vectors below it are rounding errors
 MAX_DEPTH_RATIO = 0.6  # of the extent in the plane of motion; a deeper machine is seen in the spatial view
 VALID_VIEWS = "x, y, z, or azimuth and elevation in degrees"
-VIEW_EXAMPLES = "such as --view z or --view 30,20"
+VIEW_EXAMPLES = "for example --view z or --view 30,20"
 
 
 class SceneView(NamedTuple):

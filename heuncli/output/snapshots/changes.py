@@ -195,7 +195,7 @@ def _describe_transition(old: Value | str | None, new: Value | str | None) -> st
     if old is None or new is None:
         return _name_absence(old, new)
     phrases = {"open": "open", "beyond": "past the horizon", "unknown": "unknown near a singular position"}
-    return f"was {phrases.get(str(old), 'a number')}, is {phrases.get(str(new), 'a number')}"
+    return f"was {phrases.get(str(old), 'a number')}, now {phrases.get(str(new), 'a number')}"
 
 
 def _name_absence(old: object, new: object) -> str:

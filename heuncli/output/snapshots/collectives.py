@@ -61,7 +61,7 @@ def count_collectives(study: Study, paths: Sequence[str], options: Counting) -> 
 def make_option_problem(unfit: UnfitCounting, option: str, value: object) -> Problem:
     """Return the problem with an option."""
     message = f"{option} {value}: expected {unfit.requirement}"
-    return Problem("bad-option", message, hint=f"such as {option} {unfit.example}")
+    return Problem("bad-option", message, hint=f"for example {option} {unfit.example}")
 
 
 def require_closed(histories: Sequence[LoadHistory]) -> None:

@@ -44,7 +44,7 @@ SYNONYMS = {
 KINDS = {"tension": "rod", "torque": "cv", "contact_point": "curve"}  # the only kinds of joints with these
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
-EXAMPLE_HINT = "such as {} 'max abs sections.middle.M1'"
+EXAMPLE_HINT = "for example {} 'max abs sections.middle.M1'"
 
 
 def parse_measure(text: str, option: str = "--measure") -> MeasureRequest:

@@ -33,7 +33,9 @@ def require_fitting_units(requests: Sequence[MeasureRequest], spec: Spec, units:
         f"{path} is in {unit}" if unit not in ("", "1") else f"{path} has no unit" for path, unit in known.items()
     )
     examples = [EXAMPLES[unit] for unit in known.values() if unit in EXAMPLES]
-    hint = f"such as --units {examples[0]}; without --units it is printed in SI" if examples else "leave --units out"
+    hint = (
+        f"for example --units {examples[0]}; without --units it is printed in SI" if examples else "leave --units out"
+    )
     raise UsageError(Problem("bad-option", f"--units {words}: {stated}", hint=hint))
 
 

@@ -81,9 +81,8 @@ def _find_entry(path: str, spec: Spec, request: ReportChoice) -> EntryKeys:
     elif find_quantity(words) is not None and REPORT_OF.get(words[0]):
         hint = f"use {words[0]}; {request.measures} prints single numbers"
     elif words[0] not in REPORT_OF:
-        message = (
-            f"{request.option} {path}: unknown; known: {', '.join((*REPORTS, SHARES))}, or entries such as joints.NAME"
-        )
+        known = ", ".join((*REPORTS, SHARES))
+        message = f"{request.option} {path}: unknown report; known: {known}, or entries such as joints.NAME"
         hint = _make_hint(path, entries, request.option)
     else:
         hint = suggest(path, names, "entries") if names else f"the model has no {words[0]}"
@@ -125,4 +124,4 @@ def _make_hint(path: str, entries: Mapping[EntryKeys, Mapping[str, Any]], option
     entry = find_similar_path(path, lambda words: split_entry(words, entries)[0] is not None)
     if entry is not None:
         return f"did you mean {'.'.join(split_entry(entry.split('.'), entries)[0] or ())}?"
-    return f"did you mean {similar}?" if similar else f"such as {option} foundation,joints.NAME"
+    return f"did you mean {similar}?" if similar else f"for example {option} foundation,joints.NAME"

@@ -34,8 +34,8 @@ from heuncli.study.quantities.series import Series
 
 TOTAL_COLUMNS = ("sum", "total")  # after those of the causes
 MAX_CAUSE_COLUMNS = 9  # further, smaller causes share one column
-ALONG_NOTE = "|F|, |M|: contribution along the total vector"
-CAUSES_NOTE = "motion: part quadratic in the velocities; drives: part from prescribed accelerations"
+ALONG_NOTE = "|F|, |M|: component of each contribution along the total"
+CAUSES_NOTE = "motion: from inertia forces quadratic in the velocities; drives: from prescribed accelerations"
 DIRECT_NOTE = (
     "direct: the load itself, where it is applied; the rest of its contribution acts through the motion it causes"
 )

@@ -55,7 +55,7 @@ def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool
         for k in range(len(collective.counts))
     )
     heading = (
-        f"COLLECTIVE {collective.history.path}  rainflow cycles (ASTM E1049-85) by range, {format_times(collective)}"
+        f"LOAD SPECTRUM {collective.history.path}  rainflow cycles (ASTM E1049-85) by range, {format_times(collective)}"
     )
     return TextTable(
         heading,
@@ -83,7 +83,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         collective.history.error * size,
     )
     yield (
-        f"{format_cycles(collective.total_cycles)} of {collective.points} turning points between {low} "
+        f"{format_cycles(collective.total_cycles)} of {collective.points} reversals between {low} "
         f"and {append_unit(high, unit)}"
     )
     if not collective.total_cycles:
@@ -91,8 +91,8 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
     if collective.below_error.cycles:
         small = format_error(collective.below_error.range * size)
         yield (
-            f"below the error: {format_cycles(collective.below_error.cycles)} of at most "
-            f"{append_unit(small, unit)}; not in any class or sum"
+            f"not counted: {format_cycles(collective.below_error.cycles)} of at most "
+            f"{small}{unit_suffix}, below the numerical error"
         )
     if collective.history.is_magnitude:
         yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE
@@ -137,7 +137,9 @@ def make_crossings_table(collective: Collective, units: Units) -> TextTable:
         TextColumn("upwards"),
         TextColumn("downwards"),
     )
-    heading = f"LEVEL CROSSINGS {collective.history.path}  (ASTM E1049, 5.1) upward at levels ≥ 0, downward below 0"
+    heading = (
+        f"LEVEL CROSSINGS {collective.history.path}  (ASTM E1049, 5.1) counted upward at levels ≥ 0, downward below 0"
+    )
     return TextTable(heading, columns, tuple(rows))
 
 
@@ -159,7 +161,7 @@ def make_matrix_table(collective: Collective, units: Units) -> TextTable:
         )
         for i in np.flatnonzero(collective.matrix.counts.any(axis=1)).tolist()
     )
-    heading = f"RANGE AND MEAN {collective.history.path}  cycles by range (rows) and mean (columns)"
+    heading = f"RANGE-MEAN MATRIX {collective.history.path}  cycles by range (rows) and mean (columns)"
     return TextTable(heading, columns, rows)
 
 

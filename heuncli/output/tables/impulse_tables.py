@@ -35,7 +35,7 @@ from heuncli.study.quantities.series import Series, convert_units, iter_impulse_
 
 MAX_SHOWN, MAX_LISTED = 3, 20  # impacts with tables, impacts in the list, unless all are requested
 UNIT = "N·s"
-HEADING = "all impulses of the run: largest impulse and moment impulse on a joint, stop or the ground; kinetic energy"
+HEADING = "all impulses of the run: largest impulse and angular impulse on a joint, stop or the ground; kinetic energy"
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
 
 
@@ -121,10 +121,10 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
             cells = [UNKNOWN] * len(cells)
         rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
     heads = [f"largest [{unit}]" for unit, _ in impulse_units]
-    heads += [f"{word} [{energy_unit}]" for word in ("energy before", "after", "jump")]
+    heads += [f"{word} [{energy_unit}]" for word in ("energy before", "after", "change")]
     columns = (TextColumn(""), TextColumn("t [s]"), TextColumn("cause", "left"), *map(TextColumn, heads))
     numbers = ", ".join(map(str, shown_numbers.tolist()))
-    note = f"tables below: {numbers} (the largest); all: --all or --format csv"
+    note = f"details below: {numbers} (the largest); all: --all or --format csv"
     hidden_note = f"{len(impulses) - len(listed)} further, the last at t = {clock[-1]} s"
     notes = (hidden_note,) * (len(listed) < len(impulses)) + (note,) * (len(shown_numbers) < len(impulses))
     return TextTable(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)

@@ -10,12 +10,12 @@ from heuncli.output.tables.text_table import TextColumn, TextTable
 HEADING = "METHODS  integration methods, for analysis: {method: NAME} and --method NAME"
 COLUMNS = tuple(
     TextColumn(head, "point" if head == "order" else "left")
-    for head in ("name", "order", "kind", "steps", "attitude", "purpose")
+    for head in ("name", "order", "kind", "steps", "orientation", "purpose")
 )
 NOTES = (
-    f"{AUTO} (default) chooses from the model and the behaviour during the run: normally {DEFAULT}.",
+    f"{AUTO} (default) selects by the model and its behaviour during the run: normally {DEFAULT}.",
     "steps: adaptive steps follow analysis: {tolerance: 1e-9}; fixed steps are set by analysis: {step: 0.001}.",
-    "attitude: how a body's orientation is represented within a step. SciPy methods are independent checks.",
+    "orientation: parameters of a body's orientation within a step. SciPy methods are independent checks.",
 )
 
 

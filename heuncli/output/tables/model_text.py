@@ -11,6 +11,7 @@ from heuncli.output.tables.plurals import format_count
 
 WIDTH = 110
 MAX_NAMES = 12
+PLANE = {"found": "detected", "declared": "declared"}  # how a model came to be planar -> its text
 # Key of the model -> title of its list of sentences.
 LIST_TITLES = (
     ("reasons", "Why this model"),
@@ -49,7 +50,7 @@ def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     plane = "detected" if model.get("plane") == "found" else model.get("plane")
     grubler_text = f" (Grübler's count: {grubler}{among})" if grubler is not None else ""
     return [
-        ("space", str(model.get("space", "")) + (f" ({plane})" if plane else "")),
+        ("space", str(model.get("space", "")) + (f" ({PLANE[model['plane']]})" if "plane" in model else "")),
         ("bodies", _format_names(names.get("bodies", model.get("bodies")))),
         ("joints", _format_names(names.get("joints", model.get("joints")))),
         ("DOF", f"{freedoms}{grubler_text}" if freedoms is not None else ""),
@@ -79,7 +80,7 @@ def _format_loops(model: Mapping[str, Any]) -> str:
     if not isinstance(loops, int):
         return ""
     closed = format_count(loops, "closed loop")
-    return f"{closed} of joints, and {format_count(coupled, 'coupling')}" if coupled else closed
+    return f"{closed} of joints; {format_count(coupled, 'coupling')}" if coupled else closed
 
 
 def _format_redundant(redundant: Any) -> str:

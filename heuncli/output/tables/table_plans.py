@@ -79,9 +79,9 @@ def _make_stop_note(name: str, labels: Labels) -> str:
     if info.latch:
         place = f" at {size * info.catch:.6g} {unit}" if isinstance(info.catch, float) else f" at the stop {info.catch}"
         return f"latch, {info.coordinate}{place if info.catch is not None else ''}"
-    limits = (("from", info.low), ("to", info.high))
+    limits = (("≥", info.low), ("≤", info.high))
     limit_texts = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
-    return f"{info.coordinate} {' '.join(limit_texts)} {unit}"
+    return f"{info.coordinate} {' and '.join(limit_texts)} {unit}"
 
 
 def _name_stop_load(labels: Labels) -> str:
@@ -119,7 +119,7 @@ MASS_EFFECT = TablePlan(
     "",
     ("force", "moment_orbital", "moment_spin"),
     lambda results, labels: (
-        "MASS EFFECT  F = Σ m ẍ, moments d/dt Σ m x × ẋ (orbital) and d/dt Σ I σ (spin),"
+        "MASS EFFECT  F = Σ m ẍ, moments d/dt Σ m x × ẋ (orbital) and d/dt Σ I ω (spin),"
         f" world axes, about {_format_moment_point(results, labels)}"
     ),
     only="mass_effect",

@@ -30,7 +30,7 @@ from heuncli.scene.file_format.quantity import (
     read_number,
 )
 
-TABLE_HINT = "such as tables: {NAME: {x: [...], y: [...], interpolation: cubic}}"
+TABLE_HINT = "for example tables: {NAME: {x: [...], y: [...], interpolation: cubic}}"
 HELD_TABLE = 1  # kind of a table (scene/expressions/programs.py) that is constant outside its range
 
 
@@ -137,7 +137,7 @@ class ImpulseCondition(ValueReader):
     def read(self, value: Any, info: Any) -> Expression:
         if type(value) is dict:
             message = "an impulse needs a condition in time and coordinates, not one on a number of the results"
-            raise Finding("condition", message, "such as guide.travel > 0.2, or shaft.rate < 0 and t > 1")
+            raise Finding("condition", message, "for example guide.travel > 0.2, or shaft.rate < 0 and t > 1")
         return read_condition(value, info.context.time)
 
 

@@ -175,7 +175,7 @@ MISPLACED_KEYS = {  # keys that belong somewhere else, or are expressed differen
     "torque": "write a torque as a force of type torque; a drive prescribes the motion, and its torque is a result",
     "on": "a torque acts in a joint; on a body write a couple, type: couple",
     "dt": "the tolerance sets the steps; samples is the number of output times, times lists them",
-    "units": "write units with the numbers: 12 mm; plain numbers are SI; for tables: --units",
+    "units": "write units with the numbers: 12 mm; numbers without a unit are SI; for tables: --units",
     "mu": "coefficient refers to the joint's own force; for friction of a given size use torque or force",
     "motor": "for a driven pin or slide: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
     "efficiency": "give gear losses as a separate load: forces: {rubs: {type: friction, joint: spin, "

@@ -31,7 +31,7 @@ WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 PLAIN_OR_WITH_UNIT = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
 USES_TIME = re.compile(r"(?<![\w.])t(?![\w.])")
-CONDITIONS_HINT = "such as guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
+CONDITIONS_HINT = "for example guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
 
 

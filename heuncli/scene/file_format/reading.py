@@ -27,8 +27,8 @@ FILE_KINDS = (
     (stat.S_ISCHR, "a device"),
 )
 REASONS = {  # why a file cannot be opened, and what to do
-    errno.ENOENT: ("there is no such file", None),
-    errno.ENOTDIR: ("there is no such file: the part before the last / is not a folder", None),
+    errno.ENOENT: ("file not found", None),
+    errno.ENOTDIR: ("file not found: the part before the last / is not a folder", None),
     errno.EACCES: ("no permission to read the file", "check its permissions"),
     errno.EPERM: ("no permission to read the file", "check its permissions"),
     errno.ELOOP: ("its links form a loop", "check where they lead: ls -l"),

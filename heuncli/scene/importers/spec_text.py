@@ -27,8 +27,8 @@ MAX_REMARK_LENGTH = 240  # characters of a remark
 # names, joint ends, numbers with a unit need no quotes
 PLAIN_TEXT = re.compile(r"(?:-?\d)?[\w.]+(?: [A-Za-z][\w^/*]*)?\Z")
 BLOCK_REMARKS = {
-    "bodies": "kg, m, kg m^2 about the centre of mass; with every joint at 0 body axes are parallel to world axes",
-    "joints": "directions in body axes, which are parallel to world axes with every joint at 0",
+    "bodies": "kg, m, kg m^2 about the centre of mass; with all joints at 0, body axes are parallel to world axes",
+    "joints": "directions in body axes, which are parallel to world axes with all joints at 0",
 }
 
 
@@ -44,7 +44,7 @@ def _iter_lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield from map(_format_comment, _left_out_lines(machine))
     yield _format_comment(f"Made by heun import from {_base_name(machine.file)}, {machine.form}, sha256")
     yield _format_comment(machine.sha256)
-    yield "heun: 1 # version of the format; plain numbers are SI"
+    yield "heun: 1 # format version; numbers without a unit are SI"
     yield f"title: {_quote_text(_make_safe(machine.title))}"
     yield ""
     yield from _block_lines(

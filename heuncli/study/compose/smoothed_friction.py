@@ -88,6 +88,5 @@ def make_partial_note(partial_by_time: dict[float, list[PartialFriction]]) -> st
     """Explain the mark beside numbers, with the names of the friction."""
     names = dict.fromkeys(own.name for partial in partial_by_time.values() for own in partial)
     some = ", ".join(list(names)[:MAX_NAMED]) + (" ..." if len(names) > MAX_NAMED else "")
-    return (
-        f"smoothed friction ({some}) is below full value there: rate below {full_friction_rate():.3g} times its `speed`"
-    )
+    rate = f"{full_friction_rate():.3g}"
+    return f"smoothed friction ({some}) is below its full value here: rate below {rate} times its `speed`"

@@ -58,7 +58,8 @@ def warn_near_singular(unknown: Array) -> list[str]:
     if not len(unknown):
         return []
     times = ", ".join(f"{t:.6g}" for t in unknown[:MAX_TIMES]) + (" ..." if len(unknown) > MAX_TIMES else "")
-    return [f"singular position at t = {times} s: numbers near it that are lost to rounding are not shown"]
+    positions = f"singular position{'s' * (len(unknown) > 1)}"
+    return [f"{positions} at t = {times} s: numbers near it that are lost to rounding are not shown"]
 
 
 def warn_left_out(unknown: Sequence[float]) -> list[str]:
@@ -67,9 +68,7 @@ def warn_left_out(unknown: Sequence[float]) -> list[str]:
         return []
     low, high = min(unknown), max(unknown)
     end = f" to {high:.6g}" if f"{low:.6g}" != f"{high:.6g}" else ""
-    return [
-        f"extremes leave out the numerically uncertain interval around the singular positions at t = {low:.6g}{end} s"
-    ]
+    return [f"extremes exclude the numerically uncertain samples near singular positions, t = {low:.6g}{end} s"]
 
 
 def warn_unbalanced(residual: float) -> list[str]:
@@ -94,7 +93,8 @@ def warn_of_motion(setup: Setup, history: History) -> list[str]:
         times = ", ".join(f"{t:.6g}" for t in history.singular[:MAX_TIMES])
         times += " ..." if len(history.singular) > MAX_TIMES else ""
         goes = "heun follows the smooth one" if checked.horizon is None else "rounding decides which one is followed"
-        lines.append(f"singular position at t = {times} s (two motions are possible there); {goes}")
+        positions = f"singular position{'s' * (len(history.singular) > 1)}"
+        lines.append(f"{positions} at t = {times} s (two motions are possible there); {goes}")
     if checked.run.uncertain_count:
         steps = "one step" if checked.run.uncertain_count == 1 else f"{checked.run.uncertain_count} steps"
         lines.append(f"in {steps} the loads could not be checked between the stages")

@@ -32,19 +32,19 @@ MAX_STEPS = 2_000
 def describe_integration(setup: Setup) -> list[str]:
     """Describe in sentences what is integrated, and what the first part of the run costs."""
     if setup.spec.analysis.type == "rest":
-        return ["nothing: search for the rest position that a heavily damped motion from the start reaches"]
+        return ["none: search for the rest position that a heavily damped motion from the start would reach"]
     if setup.method is None:
-        return ["nothing: one instant is solved"]
+        return ["none: one instant is solved"]
     if setup.method.is_determined:
-        return ["nothing: motion fully prescribed, solved at each instant along its branch"]
+        return ["none: motion fully prescribed, solved at each instant on the same assembly branch"]
     layout, tolerance = setup.runner.integrated_scene.layout, setup.spec.analysis.tolerance
-    how = f"to {tolerance:.3g} of the model size, then again to 1/30 of that as a check"
+    how = f"tolerance {tolerance:.3g} of the model size; repeated with 1/30 of it as a check"
     if setup.step is not None:
-        how = f"in steps of {setup.step:.4g} s, then again in quarter steps as a check"
+        how = f"in steps of {setup.step:.4g} s; repeated with quarter steps as a check"
     row = find_method(setup.method.name)
-    kind = f"{row.kind} " if row is not None and row.kind != "SciPy" else ""
+    kind = f"an {row.kind}" if row is not None and row.kind != "SciPy" else "a"
     sentence = (
-        f"{format_count(layout.n_state, 'state variable')}, by {setup.method.name}, an {kind}method of order "
+        f"{format_count(layout.n_state, 'state variable')}, by {setup.method.name}, {kind} method of order "
         f"{setup.method.order}, {how}"
     )
     return [sentence, *describe_cost(setup, tolerance if setup.step is None else setup.step)]
@@ -83,11 +83,13 @@ def describe_cost(setup: Setup, tolerance_or_step: float) -> list[str]:
         try:
             run = min((run_first_part(setup, tolerance_or_step, last) for _ in range(2)), key=lambda run: run.seconds)
         except LimitError:
-            return [f"the first {last:.4g} s take more than {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s: a long run"]
+            return [
+                f"first {last:.4g} s: over {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s of computing time: a long run"
+            ]
         steps, evaluations = format_count(run.steps, "step"), format_count(run.evaluations, "evaluation")
         check = "1.3 to 1.5" if setup.step is None else "5"
-        took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
-        return [f"{took}: {whole} times that in total at this pace, and {check} times as much for the check"]
+        took = f"first {last:.4g} s: {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
+        return [f"{took}; estimated total {whole} times that, plus {check} times as much for the check"]
     return []
 
 

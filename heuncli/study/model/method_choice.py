@@ -26,10 +26,10 @@ from heuncli.study.model.counts_and_lists import list_some
 FINE_METHOD = "Verner98"
 LONG_MOTION = 100.0  # turns or swings from which on a conservative motion is called long
 MAY_BE_STIFF = (
-    "monitored for stiffness: if explicit steps are kept short by {}, the motion is restarted with an "
-    "implicit method where that is faster"
+    "monitored for stiffness due to {}: if explicit steps stay short, the run is restarted with an implicit "
+    "method where that is faster"
 )
-NOTHING_STIFF = "no stiffness expected: no spring, damper, friction or force law in coordinates"
+NOTHING_STIFF = "not expected to be stiff: no spring, damper, friction or force law in coordinates"
 
 
 def choose_first_method(layout: Layout, spec: Spec) -> Method:
@@ -56,7 +56,7 @@ def explain_method(method: Method, layout: Layout, spec: Spec) -> list[str]:
     if method.name == FINE_METHOD:
         sentence += "fewest evaluations for smooth motions at so small a tolerance"
     else:
-        sentence += "fewest evaluations for smooth motions, at six digits or more"
+        sentence += "fewest evaluations for smooth motions, at six or more digits"
     return [*describe_length(layout, end_time(spec)), sentence, describe_stiffness(layout.mechanism)]
 
 
@@ -75,13 +75,13 @@ def describe_length(layout: Layout, last: float) -> list[str]:
     """Say in a sentence whether the motion is long and conservative, or short; empty if it is neither."""
     swings = last * typical_rate(layout) / (2.0 * math.pi)
     if swings < 1.0:
-        return ["short: less than one revolution or oscillation"]
+        return ["short motion: less than one revolution or oscillation"]
     if swings >= LONG_MOTION and is_conservative(layout):
         rounded = float(f"{swings:.2g}")
         return [
             f"long and conservative, about {rounded:,.0f} revolutions or oscillations: the error "
             "estimate of the check run holds to "
-            "the end; a symmetric method (Gauss6 with a given step) pays only above about 100,000"
+            "the end; a symmetric method (Gauss6 with a given step) is worthwhile only above about 100,000"
         ]
     return []
 

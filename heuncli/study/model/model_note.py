@@ -122,7 +122,7 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     sentences = [f"{bodies} {where}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
-        sentences.append(f"loops closed by {list_some(cut)}; the other joints form a tree")
+        sentences.append(f"loop-closing joint{'s' * (len(cut) > 1)}: {list_some(cut)}; the other joints form the tree")
     coupled = [f"{own.name} ({own.entry.type})" for own in mechanism.couplings if own.stretched_row is None]
     if coupled:
         sentences.append(f"coupled: {list_some(coupled)}")
@@ -135,10 +135,10 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
         sentences.append(f"driven: {list_some(driven)}")
     bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]
     if bushings:
-        sentences.append(f"on bushings, which constrain nothing: {list_some(bushings)}")
+        sentences.append(f"bushings, elastic without constraints: {list_some(bushings)}")
     ropes = [own.name for own in mechanism.couplings if own.stretched_row is not None]
     if ropes:
-        sentences.append(f"on elastic ropes, which constrain nothing: {list_some(ropes)}")
+        sentences.append(f"elastic ropes, without constraints: {list_some(ropes)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.links if h.joint < 0]
     if floating:
         sentences.append(f"free bodies: {list_some(floating)}")
@@ -172,7 +172,7 @@ def describe_contacts(layout: Layout, is_closed: Mask) -> str:
         dict.fromkeys(contact.name for contact, is_held in zip(contacts, is_closed, strict=True) if is_held)
     )
     return (
-        f"opens and closes: {list_some(names)}; closed at the start: "
+        f"contacts that open and close: {list_some(names)}; closed at the start: "
         f"{list_some(closed_names) if closed_names else 'none'}"
     )
 

@@ -117,15 +117,15 @@ def describe_rest(mechanism: Mechanism, stability: Stability, without_slope: lis
     texts = [f"at rest in the frame that moves with {drives}"] if drives else []
     if without_slope:
         return [*texts, f"stability not decided: {'; '.join(without_slope)}"]
-    least = f"smallest eigenvalue of stiffness over inertia {stability.least:.4g} 1/s² ({stability.slowest})"
+    least = f"smallest eigenvalue stiffness/inertia {stability.least:.4g} 1/s² ({stability.slowest})"
     indifferent_motions = stability.indifferent + stability.flat + stability.edge
     if stability.growth > 0.0:
         texts.append(f"unstable: {stability.grows} departs as exp({stability.growth:.4g} t); {least}")
     elif stability.slowest:
-        swings = f", slowest small oscillation {stability.frequency:.4g} Hz" if stability.frequency else ""
+        swings = f", lowest natural frequency {stability.frequency:.4g} Hz" if stability.frequency else ""
         texts.append(f"stable{' except where indifferent' if indifferent_motions else ''}: {least}{swings}")
     elif not indifferent_motions:
-        texts.append("nothing is free to move")
+        texts.append("no free degrees of freedom")
     if stability.indifferent:
         what = f"{list_motions(stability.indifferent)}, without restoring force{describe_lone_motion(stability)}"
         texts.append(f"indifferent: {what}; the position along it depends on the path")

@@ -23,8 +23,8 @@ DERIVED: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
 SHOWN = {"m", "rad", "N", "Pa", "W", *DERIVED}  # SI units of what tables show
 SPELLINGS = {"Nm": "N·m", "kNm": "kN·m", "Nmm": "N·mm", "Ns": "N·s", "Nms": "N·m·s"}
 HINT = (
-    "such as --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain format "
-    "lists"
+    "for example --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain "
+    "format lists"
 )
 
 

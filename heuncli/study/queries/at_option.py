@@ -19,7 +19,7 @@ from heuncli.study.queries.study import Study
 EXTREMES: dict[str, Literal["abs", "max", "min"]] = {"peak": "abs", "max": "max", "min": "min"}
 IMPULSE = "impulse"
 FORMS = "a number, first, last, peak:PATH, max:PATH, min:PATH, impulse:NAME or impulse:NUMBER"
-HINT = "such as --at peak:sections.middle.M1,0.31,last"
+HINT = "for example --at peak:sections.middle.M1,0.31,last"
 BEYOND_HORIZON = "--at {}: past the horizon of the run, t = {:.6g} s, results are not reliable"
 HORIZON_HINT = "heun probe shows why; use an earlier instant, or end the run earlier"
 

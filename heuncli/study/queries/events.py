@@ -346,7 +346,7 @@ def add_ending(results: Results, condition: WatchedCondition, changes: Condition
     if len(became):
         k = int(became[0])
         at = format_instant(float(changes.times[k]), float(changes.error[k]))
-        message = f"ended at t = {at} s: until {condition.text}{began}"
+        message = f"end condition {condition.text} met at t = {at} s{began}"
         status: Status = {"code": results.status["code"], "message": message}
     else:
         message = f"the end condition, {condition.text}, did not become true{began}"

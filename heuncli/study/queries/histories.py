@@ -88,7 +88,7 @@ def require_history(study: Study, path: str) -> None:
             f"{path} belongs to one impulse: it has no time history", "use a path of the motion: joints.NAME.force"
         )
     if not numbers.is_timed:
-        raise NotOneNumber(f"{path} has no time history to be counted", f"such as heun run SPEC --measure {path}")
+        raise NotOneNumber(f"{path} has no time history to be counted", f"for example heun run SPEC --measure {path}")
     if numbers.axes and not (numbers.is_vector and len(numbers.axes) == 1):
         raise make_several_error(path, numbers)
 

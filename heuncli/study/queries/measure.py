@@ -89,7 +89,7 @@ def measure_value(request: MeasureRequest, study: Study) -> Peak:
         k = -1 if request.how == "final" else 0
         return Peak(read_one_number(path, numbers, k), float(results.time[k]))
     message = f"{path} has values at {len(results.time)} instants: use max, min, max abs, first, final or at T"
-    raise NotOneNumber(message, f"such as 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
+    raise NotOneNumber(message, f"for example 'max abs {path}', or 'at {results.time[-1]:.6g} {path}'")
 
 
 def find_exceeded_horizon(request: MeasureRequest, study: Study) -> float | None:
@@ -309,6 +309,6 @@ def require_instant(request: MeasureRequest, times: Array) -> float:
     time = float(request.time or 0.0)
     slack = tolerances.SAME_INSTANT * float(np.ptp(times))
     if not times[0] - slack <= time <= times[-1] + slack:
-        hint = f"such as 'at {times[-1]:.6g} {request.path}'"
+        hint = f"for example 'at {times[-1]:.6g} {request.path}'"
         raise NotInThisRun(f"{request.path} at {time:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
     return float(np.clip(time, times[0], times[-1]))

@@ -29,7 +29,7 @@ def require_positive(option: str, value: float | None) -> float | None:
     """Return the value if it is a positive number, or None. Raises UsageError."""
     if value is not None and not (math.isfinite(value) and value > 0.0):
         message = f"{option} {value}: expected a positive number"
-        raise UsageError(Problem("bad-option", message, hint=f"such as {option} 0.001, in s"))
+        raise UsageError(Problem("bad-option", message, hint=f"for example {option} 0.001, in s"))
     return value
 
 
@@ -51,7 +51,7 @@ def require_within_run(option: str, instants: Sequence[float], times: Array) -> 
         if not times[0] - slack <= t <= times[-1] + slack:
             span = f"the run goes from {times[0]:.6g} to {times[-1]:.6g} s"
             message = span if len(times) > 1 else f"there is one instant, t = {times[0]:.6g} s"
-            hint = f"leave {option} out" if len(times) == 1 else f"such as {option} {times[-1]:.6g}"
+            hint = f"leave {option} out" if len(times) == 1 else f"for example {option} {times[-1]:.6g}"
             hint += ", or a longer duration" if times[-1] < t < math.inf else ""
             raise UsageError(Problem("bad-option", f"{option} {t:.6g}: {message}", hint=hint))
     within: Array = np.clip(np.array(instants, dtype=np.float64), times[0], times[-1])

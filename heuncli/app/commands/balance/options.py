@@ -27,7 +27,7 @@ def parse_options(request: BalanceRequest, spec: Spec) -> BalanceOptions:
     about, place = parse_about(request.about, spec)
     rate = None if request.rate is None else parse_quantity("--rate", request.rate, RATE, "1500rpm")
     if rate == 0.0:
-        raise UsageError(Problem("bad-option", "--rate 0: nothing rotates", hint="such as --rate 1500rpm"))
+        raise UsageError(Problem("bad-option", "--rate 0: nothing rotates", hint="for example --rate 1500rpm"))
     lever = (
         None
         if request.lever is None
@@ -70,7 +70,7 @@ def require_positive(option: str, value: float, quantity_name: str = "length", e
     """Return the value if it is above 0. Raises UsageError."""
     if value <= 0.0:
         message = f"{option} {value:g}: expected a {quantity_name} above 0"
-        raise UsageError(Problem("bad-option", message, hint=f"such as {example}"))
+        raise UsageError(Problem("bad-option", message, hint=f"for example {example}"))
     return value
 
 
@@ -81,7 +81,7 @@ def parse_weight(words: str) -> WeightRequest:
     key, equals, value = rest.partition("=")
     if not (body and dot and point) or (colon and (key.strip() != "radius" or not equals)):
         message = f"--counterweight {words}: expected BODY.POINT, or BODY.POINT:radius=LENGTH"
-        raise UsageError(Problem("bad-option", message, hint="such as --counterweight crank.main:radius=60mm"))
+        raise UsageError(Problem("bad-option", message, hint="for example --counterweight crank.main:radius=60mm"))
     radius = None
     if colon:
         radius = require_positive(
@@ -100,7 +100,7 @@ def parse_wheel(words: str) -> FlywheelRequest:
         delta = 0.0
     if not 0.0 < delta < 1.0 or (equals and not joint.strip()):
         message = f"--flywheel {words}: expected a speed fluctuation between 0 and 1"
-        raise UsageError(Problem("bad-option", message, hint="such as --flywheel main=1%, or --flywheel 0.01"))
+        raise UsageError(Problem("bad-option", message, hint="for example --flywheel main=1%, or --flywheel 0.01"))
     return FlywheelRequest(joint.strip().removesuffix(".angle"), delta)
 
 
@@ -109,7 +109,7 @@ def parse_quantity(option: str, words: str, dimension: Dimension, example: str) 
     try:
         return read_number(words, dimension, Scope())
     except Finding as finding:
-        hint = f"{finding.hint}; such as {option} {example}" if finding.hint else f"such as {option} {example}"
+        hint = f"{finding.hint}; for example {option} {example}" if finding.hint else f"for example {option} {example}"
         raise UsageError(Problem("bad-option", f"{option} {words}: {finding}", hint=hint)) from None
 
 
@@ -123,7 +123,7 @@ def parse_orders(words: str | None) -> tuple[float, ...] | None:
         orders = []
     if not orders or any(not (order > 0.0 and (2.0 * order).is_integer()) for order in orders):
         message = f"--orders {words}: expected whole or half orders"
-        raise UsageError(Problem("bad-option", message, hint="such as --orders 1,2,4,6, or 0.5,1 with --turns 2"))
+        raise UsageError(Problem("bad-option", message, hint="for example --orders 1,2,4,6, or 0.5,1 with --turns 2"))
     return tuple(orders)
 
 

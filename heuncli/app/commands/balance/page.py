@@ -30,14 +30,14 @@ from heuncli.version import VERSION
 
 LETTERS = ("x", "y", "z")
 FORCE = "FORCE  ON the foundation, world axes; order k: amplitude · cos(kφ - phase)"
-MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: their contributions in phase with it"
-TORQUE = "TORQUE  drive torque due to inertia alone, ½ dε/dφ ω²"
+MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: components in phase with the total"
+TORQUE = "TORQUE  drive torque due to inertia alone, ½ dε/dφ ω²; ε: effective inertia"
 LOAD = "LOADS  torque of loads and weight on the shaft: their power divided by its speed"
 LEAST_SHOWN, MOST_LOADS = 1e-3, 12  # share of the largest order; number of rows
-RESIDUAL = "OVER THE CYCLE  root mean square, largest value, error of both, and where the largest is"
+RESIDUAL = "OVER THE CYCLE  rms and peak value, numerical error of both, position of the peak"
 JOINTS = "joints."
 REMARK_SHARE = 0.5  # share of the bodies' own effect below which a balanced order gets a remark
-SIGNS = "minus the mass_effect of heun run, which is + sum m xdd"
+SIGNS = "the negative of mass_effect in heun run (Σ m ẍ)"
 CSV_COLUMNS = "kind,order,quantity,component,unit,value"
 
 

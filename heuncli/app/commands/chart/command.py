@@ -102,7 +102,7 @@ def parse_numbers(option: str, words: str | None, upper_bound: float) -> tuple[f
     try:
         values = [float(word) for word in words.split(",")]
     except ValueError:
-        hint = f"such as {option} 1e-4,1e-6"
+        hint = f"for example {option} 1e-4,1e-6"
         raise UsageError(Problem("bad-option", f"{option} {words}: expected numbers", hint=hint)) from None
     for value in values:
         if not (0.0 < value < upper_bound and math.isfinite(value)):
@@ -111,7 +111,7 @@ def parse_numbers(option: str, words: str | None, upper_bound: float) -> tuple[f
                 Problem(
                     "bad-option",
                     f"{option} {value:g}: expected positive numbers{limit}",
-                    hint=f"such as {option} 1e-4,1e-6",
+                    hint=f"for example {option} 1e-4,1e-6",
                 )
             )
     return tuple(values)

@@ -1,4 +1,4 @@
-"""Render a chart of speed against accuracy as a table, as JSON (manual/results.md) and as CSV, one line per run."""
+"""Render a chart of speed versus accuracy as a table, as JSON (manual/results.md) and as CSV, one line per run."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def format_heading(chart: ChartResults) -> list[tuple[str, str]]:
     instants = f"{reference.instants} instants" if reference.instants != 1 else "1 instant"
     return [
         ("heun", f"{VERSION}  {chart.title}"),
-        ("chart", f"speed against accuracy, compared at {instants} up to t = {reference.last_time:.6g} s"),
+        ("chart", f"speed versus accuracy, compared at {instants} up to t = {reference.last_time:.6g} s"),
         ("reference", reference.description),
         *(("", note) for note in (*reference.notes, *chart.notes)),
     ]

@@ -78,7 +78,9 @@ def _require_consistent_options(request: CheckRequest) -> None:
     goldens.require_consistent_options(request)
     for word, number in (("--jobs", request.jobs), ("--durations", request.durations)):
         if number is not None and number < 1:
-            raise UsageError(Problem("bad-option", f"{word} {number}: expected 1 or more", hint=f"such as {word} 2"))
+            raise UsageError(
+                Problem("bad-option", f"{word} {number}: expected 1 or more", hint=f"for example {word} 2")
+            )
     if request.junit is not None:
         require_writable(request.junit, "--junit")
         if request.output is not None and is_same_file(request.junit, request.output):

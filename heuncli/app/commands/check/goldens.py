@@ -35,7 +35,7 @@ def require_consistent_options(request: CheckRequest) -> None:
             ("--golden-tolerance", request.golden_tolerance is not None),
         ):  # fmt: skip
             if is_given:
-                raise UsageError(Problem("bad-option", f"{word} without --golden", hint="such as --golden golden"))
+                raise UsageError(Problem("bad-option", f"{word} without --golden", hint="for example --golden golden"))
         return
     if request.force and not request.update:
         raise UsageError(
@@ -43,7 +43,7 @@ def require_consistent_options(request: CheckRequest) -> None:
         )
     share = request.golden_tolerance
     if share is not None and not 0.0 < share < 1.0:
-        hint = "such as 1e-6; without it, the stated errors apply"
+        hint = "for example 1e-6; without it, the stated errors apply"
         raise UsageError(
             Problem("bad-option", f"--golden-tolerance {share:g}: expected a fraction between 0 and 1", hint=hint)
         )

@@ -90,7 +90,11 @@ def format_summary(check_summary: CheckSummary) -> str:
     failed = [outcome for outcome in outcomes if not outcome.has_passed]
     errors = sum(bool(one.error) for one in check_summary.results)
     unchecked = sum(not one.outcomes and not one.error for one in check_summary.results)
-    parts = [format_count(len(check_summary.results), "spec"), f"{len(met)} passed", f"{len(failed)} failed"]
+    parts = [
+        format_count(len(check_summary.results), "spec"),
+        f"{format_count(len(met), 'check')} passed",
+        f"{len(failed)} failed",
+    ]
     parts += [f"{format_count(errors, 'spec')} not solved"] if errors else []
     parts += [f"{format_count(unchecked, 'spec')} {'has' if unchecked == 1 else 'have'} no checks"] if unchecked else []
     without_golden = sum(

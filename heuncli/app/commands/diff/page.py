@@ -9,13 +9,18 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.change_words import format_difference, format_value
+from heuncli.output.snapshots.changes import EXTRA, MISSING, THROUGHOUT
 from heuncli.output.tables.export import dump_json
 from heuncli.output.tables.markdown_text import escape_line
 from heuncli.output.tables.plurals import format_count
 from heuncli.output.tables.text_table import TextColumn, TextTable, format_markdown, format_plain
 from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
-HEADS = ("of", "at", "before", "after", "change", "allowed")
+HEADS = ("quantity", "at", "before", "after", "change", "allowed")
+WORDS = {  # word of a change in JSON -> its text in tables
+    EXTRA: "only in the second", MISSING: "only in the first", THROUGHOUT: "all times", "verdict": "status",
+    "certain": "determinate",
+}  # fmt: skip
 MAX_ROWS = 200  # of a table; JSON holds all
 
 
@@ -64,11 +69,12 @@ def _make_table(difference: Difference) -> TextTable:
 
 def _make_row(case: str, change: Change) -> tuple[str, ...]:
     name = f"{case}: {change.path}" if case else change.path
-    change_text = change.reason or format_difference(change)
+    change_text = WORDS.get(change.reason, change.reason) or format_difference(change)
     change_text += f"; and {change.n_similar} more of its values" if change.n_similar else ""
     allowed = f"{change.tolerance:.2g}" if change.tolerance and not change.reason else ""
-    values = (format_value(value, change.unit) for value in (change.old, change.new))
-    return tuple(map(escape, (name, change.what, *values, change_text, allowed)))
+    values = (WORDS.get(text, text) for text in (format_value(x, change.unit) for x in (change.old, change.new)))
+    at = "" if change.what in (EXTRA, MISSING) else WORDS.get(change.what, change.what)
+    return tuple(map(escape, (name, at, *values, change_text, allowed)))
 
 
 def _format_notes(difference: Difference) -> list[str]:

@@ -39,7 +39,7 @@ SHAPES = {"space": "x, y, z", "cut": "one number for each cut of a run"}
 MEANINGS = {
     "joints.JOINT.axial": "force along the joint's axis",
     "joints.JOINT.radial": "size of the force perpendicular to the joint's axis",
-    "joints.JOINT.tilting": "size of the moment perpendicular to the joint's axis: what tilts the bearing",
+    "joints.JOINT.tilting": "magnitude of the moment perpendicular to the joint axis: tilting moment on the bearing",
     "sections.SECTION.normal": "n, normal of the cut, towards the far side",
     "sections.SECTION.first_axis": "e1, first axis in the plane of the cut; e2 = n × e1",
     "sections.SECTION.force": "force of the far side on the near side of the cut",
@@ -134,7 +134,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     if (sign := SIGNS.get(keys[0])) is not None:
         yield "sign", f"{sign}: heun explain signs"
     shape = " by ".join(SHAPES.get(axis.name, axis.name) for axis in row.shape) or "one number"
-    yield "shape", shape + (" at each instant" if row.is_timed else "")
+    yield "shape", shape + (" at each output time" if row.is_timed else "")
     kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
     yield (
         "error",

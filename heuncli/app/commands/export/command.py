@@ -112,10 +112,12 @@ def _parse_deck_names(request: ExportRequest) -> DeckNames:
     first, elements = request.first_node or FIRST_NODE, request.elements or DEFAULT_SET
     if not 1 <= first <= LAST_NODE or request.first_node == 0:
         message = f"--first-node {request.first_node}: expected a whole number from 1 to {LAST_NODE}"
-        raise UsageError(Problem("bad-option", message, hint=f"such as --first-node {FIRST_NODE}"))
+        raise UsageError(Problem("bad-option", message, hint=f"for example --first-node {FIRST_NODE}"))
     wrong = explain_invalid_set(elements)
     if wrong:
-        raise UsageError(Problem("bad-option", f"--elements {elements}: {wrong}", hint="such as --elements ROD_ALL"))
+        raise UsageError(
+            Problem("bad-option", f"--elements {elements}: {wrong}", hint="for example --elements ROD_ALL")
+        )
     return DeckNames(first, elements)
 
 
@@ -136,7 +138,7 @@ def _choose_instant(spec: Spec) -> list[InstantRequest]:
         return parse("impulse:0")
     if spec.analysis.type in ("state", "rest"):
         return parse("first")
-    hint = "such as --at peak:joints.NAME.force,last; one load case each"
+    hint = "for example --at peak:joints.NAME.force,last; one load case each"
     raise UsageError(Problem("bad-option", "--at: no instants are given", hint=hint))
 
 
@@ -191,7 +193,7 @@ def _read_mesh(request: ExportRequest, form: str, cases: LoadCases, names: DeckN
     common_numbers = {node.number for node in DeckNodes(cases, names).nodes} & set(mesh.numbers.tolist())
     if common_numbers:
         message = f"--first-node {names.first_node}: the mesh already has a node {min(common_numbers)}"
-        raise UsageError(Problem("bad-option", message, hint=f"such as --first-node {int(mesh.numbers.max()) + 1}"))
+        raise UsageError(Problem("bad-option", message, hint=f"for example --first-node {int(mesh.numbers.max()) + 1}"))
     return mesh
 
 

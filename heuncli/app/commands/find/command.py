@@ -33,7 +33,7 @@ from heuncli.study.quantities.table_units import Units
 
 DEFAULT_SCAN, DEFAULT_EVALUATIONS = 7, 300  # default numbers of variants: of the scan, in all
 FORM = "expected MEASURE = VALUE, or <, >, <=, >= in place of ="
-HINT = "such as 'max joints.main.force = 10 kN'"
+HINT = "for example 'max joints.main.force = 10 kN'"
 MIN_SCAN = 4  # fewer values do not show a course
 MAX_SCAN = 10_000
 
@@ -85,10 +85,10 @@ def parse_counts(request: FindRequest) -> tuple[int, int]:
     max_variants = max(DEFAULT_EVALUATIONS, 2 * scan) if request.evaluations is None else request.evaluations
     if not MIN_SCAN <= scan <= MAX_SCAN:
         message = f"--scan {scan}: expected {MIN_SCAN} to {MAX_SCAN:,}"
-        raise UsageError(Problem("bad-option", message, hint="such as --scan 25"))
+        raise UsageError(Problem("bad-option", message, hint="for example --scan 25"))
     if max_variants < scan:
         message = f"--evaluations {max_variants}: fewer than the {scan} values of the scan"
-        raise UsageError(Problem("bad-option", message, hint=f"such as --evaluations {DEFAULT_EVALUATIONS}"))
+        raise UsageError(Problem("bad-option", message, hint=f"for example --evaluations {DEFAULT_EVALUATIONS}"))
     return scan, max_variants
 
 

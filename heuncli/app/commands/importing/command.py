@@ -111,7 +111,7 @@ def _parse_options(request: ImportRequest) -> ImportOptions:
 
 def _parse_density(text: str) -> float:
     """Parse a density [kg/m^3]. Raises UsageError."""
-    hint = "such as --density 2700, in kg/m^3, or '2.7 g/cm^3'"
+    hint = "for example --density 2700, in kg/m^3, or '2.7 g/cm^3'"
     try:
         value = read_number(text, DENSITY, Scope({}))
     except Finding as finding:

@@ -19,7 +19,7 @@ from heuncli.scene.expressions.grammar import Scope
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import read_number
 
-FORM = "such as --over main.angle=0:360deg/73"
+FORM = "for example --over main.angle=0:360deg/73"
 COUNT = 73  # every five degrees of a turn
 MAX_VALUES = 100_000  # values
 
@@ -79,7 +79,7 @@ def check_place(place: str) -> list[tuple[str, str]]:
     n = [float(word) for word in direction.split(",") if is_number(word)]
     if len(n) == 3 == len(direction.split(",")) and all(map(math.isfinite, n)) and any(n):
         return []
-    return [(f"--seen {place}: expected a direction of three numbers", f"such as --seen {point}:0,0,1")]
+    return [(f"--seen {place}: expected a direction of three numbers", f"for example --seen {point}:0,0,1")]
 
 
 def require_instant(instant: float | None, spec: Spec) -> None:
@@ -87,7 +87,9 @@ def require_instant(instant: float | None, spec: Spec) -> None:
     if instant is None:
         return
     if not (math.isfinite(instant) and instant >= 0.0):
-        raise UsageError(Problem("bad-option", f"--at {instant:g}: expected 0 or later", hint="such as --at 0.5, in s"))
+        raise UsageError(
+            Problem("bad-option", f"--at {instant:g}: expected 0 or later", hint="for example --at 0.5, in s")
+        )
     if spec.analysis.type != "motion" and instant > 0.0:
         message = f"--at {instant:g}: the analysis is not a motion (type: {spec.analysis.type})"
         raise UsageError(

@@ -26,9 +26,9 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.version import VERSION
 
 HEADING = "LAGRANGE  {at}: coordinates q and rates q'; ε q'' + C = k + drive"
-MASS = "MASS  ε = ∂²E/∂q'∂q', and the effective inertia with the other coordinates fixed, and with them free"
-RECIPROCAL = "RECIPROCAL  η = 1/ε: E = p η p / 2"
-FORCES = "FORCES  k along each coordinate, by cause; C: centrifugal and Coriolis terms"
+MASS = "MASS MATRIX  ε = ∂²E/∂q'∂q'; effective inertia with the other coordinates fixed or free"
+RECIPROCAL = "INVERSE MASS MATRIX  η = ε⁻¹: E = p η p / 2"
+FORCES = "GENERALISED FORCES  k by cause; C: centrifugal and Coriolis terms"
 CHRISTOFFEL = "CHRISTOFFEL  γ(i; l, k) = (∂ε_il/∂q_k + ∂ε_ik/∂q_l − ∂ε_lk/∂q_i) / 2 and α(i; l, k) = −Σ η_ij γ(j; l, k)"
 BLOWS = "IMPULSES  ε [q'] = h + drives; r': impulse of the far side on the near side of the cut"
 SECTIONS = "SECTIONS  s' along each coordinate: force of the far side on the near side of the cut"
@@ -73,8 +73,10 @@ def format_energy(results: LagrangeResults, units: Units) -> Iterator[tuple[str,
         if any(results.is_driven) and free and not np.isnan(free)
         else ""
     )
-    yield "energy", f"E = {size * results.energy:.6g} {unit}, F = {size * results.reciprocal_energy:.6g} {unit}{parts}"
-    yield "", f"ε q'' + C = k + drive holds to {results.residual:.1g} of the summed terms"
+    sizes = (size * energy for energy in (results.energy, results.reciprocal_energy))
+    energy, reciprocal = (f"{value:.6g} {unit}" for value in sizes)
+    yield "energy", f"kinetic E = {energy}, from momenta F = {reciprocal}{parts}"
+    yield "", f"ε q'' + C = k + drive: relative residual {results.residual:.1g}"
     for note in results.notes:
         yield "", note
 

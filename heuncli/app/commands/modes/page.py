@@ -13,7 +13,7 @@ from heuncli.output.tables.page_width import split_to_width
 from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_plain
 from heuncli.version import VERSION
 
-HEADING = "MODES  motions exp(growth t) cos(2π frequency t): damping ratio -growth/|growth + 2πi frequency|"
+HEADING = "MODES  motion exp(growth·t) cos(2π·frequency·t); damping ratio = -growth / |growth + 2πi·frequency|"
 COLUMNS = (
     TextColumn("mode"), TextColumn("frequency Hz"), TextColumn("period s"), TextColumn("damping"),
     TextColumn("growth 1/s"), TextColumn("kind", "left"), TextColumn("largest amplitudes (rad, m)", "left"),

@@ -13,7 +13,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar
 
 SPECS, SWEEPS = (".yaml", ".yml"), (".sqlite", ".csv", ".db")
-USAGE = "such as heun plot engine.yaml joints.main.force, or heun plot engine.yaml scene"
+USAGE = "for example heun plot engine.yaml joints.main.force, or heun plot engine.yaml scene"
 PATH_KINDS, SWEEP_KIND = ("history", "sections"), "sweep"  # kinds that follow from the paths or files
 NAMED_KINDS = tuple(kind for kind in KINDS if kind not in (*PATH_KINDS, SWEEP_KIND))
 
@@ -40,7 +40,7 @@ def parse_words(words: Sequence[str]) -> PlotTarget:
             raise _make_error(f"{', '.join(files)}: specs and sweeps cannot share one plot", "call it once for each")
         return PlotTarget(files, SWEEP_KIND, others)
     if not others:
-        raise _make_error("nothing to draw is given", USAGE)
+        raise _make_error("nothing to plot is given", USAGE)
     kinds = [word for word in others if word in NAMED_KINDS]
     if len(kinds) > 1 or (kinds and kinds[0] != others[0]):
         raise _make_error(f"{', '.join(others)}: one kind of plot at a time", "call it once for each")

@@ -24,7 +24,7 @@ from heuncli.study.queries.measure import MeasureRequest
 
 ENTRY_LENGTH = {"joints": 2, "sections": 2, "foundation": 1}  # number of words of a path to a whole entry
 FOUNDATION_PART_LENGTH = 3  # words of foundation.supports.NAME
-SUCH_AS = "such as polar joints.main, or polar foundation"
+SUCH_AS = "for example polar joints.main, or polar foundation"
 
 
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:

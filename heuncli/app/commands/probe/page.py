@@ -15,11 +15,11 @@ REST = "rest"  # stands in `model` in place of a method
 GROWTH = "GROWTH  of a small disturbance, largest over all unconstrained directions"
 STEPS = "STEPS  of explicit methods: smallest stability limit; approximate step for accuracy"
 STEPS_HERE = "STEPS  of explicit methods: stability limit here"
-CONDITION = "CONDITION  largest / smallest singular value; displacements relative to the model size"
+CONDITION = "CONDITION NUMBER  largest / smallest singular value; displacements relative to the model size"
 ATTITUDES = (
-    "ATTITUDES  bodies free to rotate about any axis: half revolutions, condition of Euler angle matrices (max.)"
+    "ORIENTATIONS  bodies free to rotate about any axis: half revolutions, condition of Euler angle matrices (max.)"
 )
-EVENTS = "INSTANTS"
+EVENTS = "EVENTS"
 NAMES = {"mass": "mass matrix", "closure": "loop closures"}
 
 
@@ -38,7 +38,7 @@ def format_heading(results: Probe) -> Iterator[tuple[str, str]]:
     yield "verdict", results.verdict
     yield from (("", text) for text in results.trouble[1:])
     yield from (("also" if k == 0 else "", text) for k, text in enumerate(results.others))
-    yield from (("unknown" if k == 0 else "", text) for k, text in enumerate(format_reasons(results)))
+    yield from (("omitted" if k == 0 else "", text) for k, text in enumerate(format_reasons(results)))
 
 
 def describe_motion(results: Probe) -> str:
@@ -60,13 +60,15 @@ def format_reasons(results: Probe) -> list[str]:
 def make_tables(results: Probe) -> Iterator[TextTable]:
     """Yield all tables that have something to show."""
     if grown := tuple(make_growth_row(name, g) for name, g in list_growths(results) if g is not None):
-        heads = ("of", "grows e-fold every [s]", "factor", "until [s]", "horizon of double precision [s]")
+        heads = ("of", "e-folding time [s]", "growth factor", "until [s]", "double precision lost at [s]")
         yield TextTable(GROWTH, make_columns(heads, 1), grown)
     if results.stiffness is not None and results.stiffness.steps:
         yield make_steps_table(results.stiffness, results.duration)
     if known := results.list_conditions():
         rows = tuple((NAMES[name], format_condition(at.value), f"{at.time:.6g}", at.where) for name, at in known)
-        yield TextTable(CONDITION, (*make_columns(("of", "condition", "t [s]"), 1), TextColumn("in", "left")), rows)
+        yield TextTable(
+            CONDITION, (*make_columns(("of", "condition", "t [s]"), 1), TextColumn("located in", "left")), rows
+        )
     if results.attitudes:
         sequences = tuple(results.attitudes[0].euler)
         column_heads = ("body", "half revolutions", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
@@ -84,8 +86,8 @@ def make_steps_table(stiffness: StiffnessResults, duration: float) -> TextTable:
     run.
     """
     note = (
-        f"rates of the linearised motion: decay up to {stiffness.decay:.3g} 1/s, oscillation up to "
-        f"{stiffness.oscillation:.3g} 1/s"
+        f"linearised motion: decay rates up to {stiffness.decay:.3g} 1/s, angular frequencies up to "
+        f"{stiffness.oscillation:.3g} rad/s"
     )
     if not duration:
         rows = tuple((s.method, str(s.order), format_step(s.stability, math.inf)) for s in stiffness.steps)
@@ -102,7 +104,7 @@ def make_events_table(results: Probe) -> TextTable:
     rows = [(f"{e.time:.6g}", e.kind, e.message) for e in results.events[:MAX_EVENTS]]
     omitted = len(results.events) - len(rows) + sum(count for _, _, count in results.further_events)
     notes = (f"{omitted} more; JSON lists up to 100 of each kind and place",) if omitted else ()
-    heads = (TextColumn("t [s]"), TextColumn("what", "left"), TextColumn("", "left"))
+    heads = (TextColumn("t [s]"), TextColumn("event", "left"), TextColumn("", "left"))
     return TextTable(EVENTS, heads, tuple(rows), notes)
 
 

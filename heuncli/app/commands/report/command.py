@@ -38,7 +38,7 @@ def choose_form(request: ReportRequest) -> str:
     """Return the format of the report, before any work. Raises UsageError, OutputError."""
     output = request.output
     if output is None:
-        hint = "such as -o report.html, or -o - for standard output"
+        hint = "for example -o report.html, or -o - for standard output"
         raise UsageError(Problem("bad-option", "heun report: no output file is given", hint=hint))
     if output != STDOUT:
         require_writable(output)

@@ -53,7 +53,7 @@ def require_collective(request: RunRequest) -> None:
     """Raise UsageError for an option of collectives without --collective."""
     for name in ("slope", "cycles", "bins", "repeat"):
         if getattr(request, name) is not None:
-            raise make_option_error(f"--{name} applies to load collectives", f"add {OPTION} joints.NAME.force")
+            raise make_option_error(f"--{name} applies to load spectra", f"add {OPTION} joints.NAME.force")
 
 
 def require_alone(others: Sequence[str]) -> None:
@@ -61,7 +61,7 @@ def require_alone(others: Sequence[str]) -> None:
     if others:
         words = ", ".join(f"--{name.replace('_', '-')}" for name in others)
         raise make_option_error(
-            f"{OPTION} prints load collectives only and cannot be combined with {words}",
+            f"{OPTION} prints load spectra only and cannot be combined with {words}",
             f"leave out {words}, or run twice",
         )
 
@@ -72,7 +72,7 @@ def parse_paths(words: str) -> list[str]:
     if not all(paths):
         raise make_option_error(
             f"{OPTION} '{words}': expected result paths separated by commas",
-            f"such as {OPTION} joints.NAME.force.x",
+            f"for example {OPTION} joints.NAME.force.x",
         )
     return list(dict.fromkeys(paths))
 

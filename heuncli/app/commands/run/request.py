@@ -54,9 +54,10 @@ class RunRequest(NamedTuple):
         ),
     ] = None
     at: Annotated[
-        str | None, Option(("--at",), "Show these instants instead of the extremes: times, first, last.", "WHEN,...")
+        str | None,
+        Option(("--at",), "Show values at these times instead of the extremes: seconds, first, last.", "WHEN,..."),
     ] = None
-    all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
+    all: Annotated[bool, Option(("--all",), "Show every output time, and every cut of a series of cuts.")] = False
     measure: Annotated[
         tuple[str, ...],
         Option(
@@ -70,7 +71,7 @@ class RunRequest(NamedTuple):
         str | None,
         Option(
             ("--collective",),
-            "Count load collectives of these quantities over the motion: rainflow cycles, level crossings.",
+            "Count load spectra of these quantities over the motion: rainflow cycles, level crossings.",
             "PATH,...",
             completes="collective",
         ),
@@ -83,10 +84,10 @@ class RunRequest(NamedTuple):
         float | None,
         Option(("--cycles",), "Number of cycles of the equivalent ranges. Default: one per repetition.", "N"),
     ] = None
-    bins: Annotated[int | None, Option(("--bins",), "Number of classes of ranges and means. Default: 10.", "N")] = None
+    bins: Annotated[int | None, Option(("--bins",), "Number of bins for ranges and means. Default: 10.", "N")] = None
     repeat: Annotated[
         str | None,
-        Option(("--repeat",), "Repeat the motion N times as a cycle, or for ever (closed).", "N|closed"),
+        Option(("--repeat",), "Repeat the motion N times as a cycle, or indefinitely (closed).", "N|closed"),
     ] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None

@@ -78,8 +78,8 @@ def parse_words(words: Sequence[str]) -> tuple[str, list[str]]:
 def make_recipe(request: SensitivityRequest, path: str) -> Recipe:
     """Make the recipe of all variants. Raises UsageError, SpecError."""
     if not request.measure:
-        hint = "such as --measure 'max abs joints.main.force'"
-        raise UsageError(Problem("bad-option", "sensitivity: no measure is given", hint=hint))
+        hint = "for example --measure 'max abs joints.main.force'"
+        raise UsageError(Problem("bad-option", "sensitivity: no --measure is given", hint=hint))
     options = Options(tolerance=require_tolerance(request.tolerance))
     measures = tuple(measure.parse_measures(request.measure))
     return Recipe(path, read_text(path), measures, options, parse_overrides(request.set), request.case)

@@ -72,11 +72,11 @@ def parse_output_options(request: SweepRequest) -> SweepOutput:
 def make_recipe(request: SweepRequest, path: str) -> Recipe:
     """Make the recipe of all variants. Raises UsageError, SpecError."""
     if not request.measure:
-        hint = "such as --measure 'max abs joints.main.force'"
-        raise UsageError(Problem("bad-option", "sweep: no measure is given", hint=hint))
+        hint = "for example --measure 'max abs joints.main.force'"
+        raise UsageError(Problem("bad-option", "sweep: no --measure is given", hint=hint))
     if request.jobs is not None and request.jobs < 1:
         message = f"--jobs {request.jobs}: expected 1 or more"
-        raise UsageError(Problem("bad-option", message, hint="such as --jobs 2"))
+        raise UsageError(Problem("bad-option", message, hint="for example --jobs 2"))
     if request.jobs is not None and request.dask is not None:
         hint = "leave out --jobs: a cluster uses all its workers"
         raise UsageError(Problem("bad-option", "--jobs and --dask cannot be combined", hint=hint))
@@ -90,7 +90,9 @@ def make_recipe(request: SweepRequest, path: str) -> Recipe:
 def parse_axes(request: SweepRequest, words: Sequence[str]) -> list[AxisArgument]:
     """Parse the axes: the columns of the table, then the words. Raises UsageError, SpecError."""
     if not words and request.variants is None:
-        raise UsageError(Problem("bad-option", "sweep: no parameter is varied", hint=f"{HINT}; or --variants FILE"))
+        raise UsageError(
+            Problem("bad-option", "sweep: no parameter to vary is given", hint=f"{HINT}; or --variants FILE")
+        )
     columns = read_axes(request.variants) if request.variants is not None else ()
     axes: list[AxisArgument] = []
     problems: list[Problem] = []

@@ -12,7 +12,7 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.commands.sweep.request import SweepRequest
 from heuncli.base.errors import Problem
 
-RANDOM_HINT = "such as d=normal(100,0.1)mm, r=uniform(20,60)mm, lhs(a,b) or sobol(a,b)"
+RANDOM_HINT = "for example d=normal(100,0.1)mm, r=uniform(20,60)mm, lhs(a,b) or sobol(a,b)"
 
 
 def draw_samples(laws: Sequence[RandomVariable], request: SweepRequest) -> Draws | None:

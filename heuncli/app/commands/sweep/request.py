@@ -51,10 +51,11 @@ class SweepRequest(NamedTuple):
     ] = None
     jobs: Annotated[
         int | None,
-        Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight variants on.", "N"),
+        Option(("--jobs", "-j"), "Number of processes. Default: one per processor for eight or more variants.", "N"),
     ] = None
     time_limit_each: Annotated[
-        float | None, Option(("--time-limit",), "Stop each variant after this time; the others continue.", "SECONDS")
+        float | None,
+        Option(("--time-limit",), "Stop each variant after this computing time; the others continue.", "SECONDS"),
     ] = None
     samples: Annotated[int | None, Option(("--samples",), "Number of random samples.", "N")] = None
     seed: Annotated[int | None, Option(("--seed",), "Seed of the random samples. Default: 0.", "S")] = None

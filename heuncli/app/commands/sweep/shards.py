@@ -14,5 +14,5 @@ def parse_shard(word: str | None) -> tuple[int, int]:
     numbers = [int(text) for text in (k, n) if text.isascii() and text.isdecimal() and len(text) < 10]
     if not slash or len(numbers) < 2 or not 1 <= numbers[0] <= numbers[1]:
         message = f"--shard {word}: expected K/N, the K-th part of N"
-        raise UsageError(Problem("bad-option", message, hint="such as --shard 2/8; the last is 8/8"))
+        raise UsageError(Problem("bad-option", message, hint="for example --shard 2/8; the last is 8/8"))
     return numbers[0], numbers[1]

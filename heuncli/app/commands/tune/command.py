@@ -63,7 +63,9 @@ def main(request: TuneRequest) -> int:
 def require_consistent_options(request: TuneRequest, options: TuningOptions) -> None:
     """Raise UsageError if options contradict each other, or a number is invalid."""
     if request.jobs is not None and request.jobs < 1:
-        raise UsageError(Problem("bad-option", f"--jobs {request.jobs}: expected 1 or more", hint="such as --jobs 2"))
+        raise UsageError(
+            Problem("bad-option", f"--jobs {request.jobs}: expected 1 or more", hint="for example --jobs 2")
+        )
     if request.history is None:
         return
     require_writable(request.history, "--history")

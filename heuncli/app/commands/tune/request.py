@@ -45,7 +45,7 @@ class TuneRequest(NamedTuple):
         float | None,
         Option(
             ("--precision",),
-            "Smallest gain to search for, relative to the range of the result. Default: 1e-6.",
+            "Smallest improvement to search for, relative to the range of the result. Default: 1e-6.",
             "SHARE",
         ),
     ] = None
@@ -73,7 +73,7 @@ class TuneRequest(NamedTuple):
         int | None, Option(("--jobs", "-j"), "Number of variants solved in parallel, where they are independent.", "N")
     ] = None
     strict: Annotated[
-        bool, Option(("--strict",), "Exit with 1 if the search did not converge, or nothing meets all limits.")
+        bool, Option(("--strict",), "Exit with 1 if the search did not converge, or no variant meets all limits.")
     ] = False
     time_limit: Annotated[
         float | None,

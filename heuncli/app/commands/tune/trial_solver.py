@@ -52,7 +52,7 @@ class TrialSolver:
         )
         for result in jobs.run_in_order(work, variants, job_count, make_death_result):
             if result.code == NO_NUMBER:
-                raise UsageError(Problem(result.code, result.reason, hint="such as 'max foundation.force'"))
+                raise UsageError(Problem(result.code, result.reason, hint="for example 'max foundation.force'"))
             yield to_outcome(result)
 
 

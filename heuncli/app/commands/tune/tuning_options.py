@@ -23,7 +23,7 @@ from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.queries.measure import MeasureRequest
 
 FORM = "expected MEASURE < VALUE"
-HINT = "such as 'max abs sections.web.M2 < 40 N*m'"
+HINT = "for example 'max abs sections.web.M2 < 40 N*m'"
 EVALUATIONS_PER_VARIABLE = 200  # default evaluations: for each variable, and once in addition
 MAX_EVALUATIONS = 1_000_000
 
@@ -62,7 +62,7 @@ def parse_words(words: Sequence[str]) -> tuple[str, list[Interval]]:
     intervals = [parse_interval(word) for word in assignments]
     names = [interval.name for interval in intervals]
     if not names:
-        raise UsageError(Problem("bad-option", "tune: no parameter is varied", hint=INTERVAL_HINT))
+        raise UsageError(Problem("bad-option", "tune: no parameter to vary is given", hint=INTERVAL_HINT))
     for name in names:
         if names.count(name) > 1:
             raise AxisError(name, "is varied twice", "give one interval per parameter")
@@ -114,7 +114,7 @@ def parse_max_evaluations(request: TuneRequest, variables: int) -> int:
         return EVALUATIONS_PER_VARIABLE * (variables + 1)
     if not 1 <= requested <= MAX_EVALUATIONS:
         message = f"--evaluations {requested}: expected 1 to {MAX_EVALUATIONS:,}"
-        raise UsageError(Problem("bad-option", message, hint="such as --evaluations 400"))
+        raise UsageError(Problem("bad-option", message, hint="for example --evaluations 400"))
     return requested
 
 
@@ -125,7 +125,7 @@ def parse_precision(request: TuneRequest) -> float:
         return TuneTask.precision
     if not (math.isfinite(requested) and 0.0 < requested <= 0.1):
         message = f"--precision {requested:g}: expected more than 0 and at most 0.1"
-        raise UsageError(Problem("bad-option", message, hint="such as --precision 1e-6"))
+        raise UsageError(Problem("bad-option", message, hint="for example --precision 1e-6"))
     return requested
 
 
@@ -133,5 +133,5 @@ def parse_seed(request: TuneRequest) -> int:
     """Return the seed of the random draws. Raises UsageError."""
     requested = request.seed or 0
     if requested < 0:
-        raise UsageError(Problem("bad-option", f"--seed {requested}: expected 0 or more", hint="such as --seed 1"))
+        raise UsageError(Problem("bad-option", f"--seed {requested}: expected 0 or more", hint="for example --seed 1"))
     return requested

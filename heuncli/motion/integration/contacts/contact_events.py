@@ -489,7 +489,8 @@ class Contacts:
             if not count:
                 continue
             self.notes[
-                f"{name} comes to rest {when} after {count} impact{'s' * (count > 1)}: further ones are negligible"
+                f"contact at {name} comes to rest {when} after {count} impact{'s' * (count > 1)}; "
+                "further impacts are negligible"
             ] = None
 
     def add_latch_notes(self, t: float, released_names: list[str], catches: list[LatchCatch]) -> None:

@@ -90,4 +90,4 @@ def check_unit(path: Path_, unit_text: str | None, allowed: tuple[u.Dimension, .
     if dimension is not None and allowed and dimension not in allowed:
         expected = " or ".join(u.describe(one) for one in allowed)
         units = " or ".join(u.si_unit(one) for one in allowed)
-        yield Violation(path, f"'{unit_text}' is {u.describe(dimension)}, expected {expected}", f"such as {units}")
+        yield Violation(path, f"'{unit_text}' is {u.describe(dimension)}, expected {expected}", f"for example {units}")

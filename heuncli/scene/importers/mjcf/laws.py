@@ -112,7 +112,7 @@ class _LawBuilder:
         law_note = (
             ""
             if coupling.leader is None
-            else f"; for a motion, put the law of {self.steps[coupling.leader].name} into this formula"
+            else f"; for a motion, use the function of {self.steps[coupling.leader].name} here as well"
         )
         self.add_drive(coupling.follower, law, f"{c.describe_part('equality', coupling.equality)}{law_note}")
 

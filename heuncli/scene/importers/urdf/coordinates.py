@@ -128,7 +128,7 @@ class RobotCoordinates:
                 quantity.key: format_mimic(leader, relation.multiplier, relation.offset, same_quantity)
             }
             return
-        remark = f"mimic: follows {leader}; for a motion, put the law of hold_{leader} into this formula"
+        remark = f"mimic: follows {leader}; for a motion, use the function of hold_{leader} here as well"
         self._add_drive(
             name, quantity, format_mimic(leader, relation.multiplier, relation.offset, same_quantity), remark
         )

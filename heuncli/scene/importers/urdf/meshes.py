@@ -105,6 +105,6 @@ def find_mesh_file(name: str, model: str) -> Path:
         found = None
     if found is None:
         raise Finding(
-            "import-shape", "there is no such file", "put it at the path given in the model; package://NAME is NAME/"
+            "import-shape", "file not found", "put it at the path given in the model; package://NAME is NAME/"
         )
     return found

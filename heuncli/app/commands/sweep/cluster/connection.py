@@ -19,7 +19,7 @@ from heuncli.base.errors import LimitError, Problem
 
 PATIENCE = 10.0  # seconds for an answer of the scheduler
 SCHEMES = ("tcp", "tls")
-EXAMPLE = "such as --dask tcp://127.0.0.1:8786; `dask scheduler` prints its address at start"
+EXAMPLE = "for example --dask tcp://127.0.0.1:8786; `dask scheduler` prints its address at start"
 INSTALL = 'pip install "heuncli[dask]"'
 TLS = "tls:// takes certificates: DASK_DISTRIBUTED__COMM__TLS__CA_FILE and the other keys of distributed.comm.tls"
 # Hints for addresses with another scheme.
