@@ -92,7 +92,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         small = format_error(collective.below_error.range * size)
         yield (
             f"not counted: {format_cycles(collective.below_error.cycles)} of at most "
-            f"{small}{unit_suffix}, below the numerical error"
+            f"{append_unit(small, unit)}, below the numerical error"
         )
     if collective.history.is_magnitude:
         yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE

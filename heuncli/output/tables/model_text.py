@@ -47,7 +47,6 @@ def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
     grubler = model.get("grubler")
     spins = int(model.get("undetermined", 0))
     among = f", including {format_count(spins, 'undetermined spin')}" if spins else ""
-    plane = "detected" if model.get("plane") == "found" else model.get("plane")
     grubler_text = f" (Grübler's count: {grubler}{among})" if grubler is not None else ""
     return [
         ("space", str(model.get("space", "")) + (f" ({PLANE[model['plane']]})" if "plane" in model else "")),
