@@ -11,7 +11,7 @@ import pytest
 from scipy.special import ellipk, ellipkinc
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.check.changes import ConditionChanges
+from heuncli.motion.integration.check.changes import ConditionChanges, make_changes
 from heuncli.motion.integration.conditions import Conditions, evaluate_coordinates
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -345,3 +345,16 @@ def test_conditions_at_random_against_dense_samples(seed: int) -> None:
         states = np.concatenate([[found.begins], found.values])
         assert (states[np.searchsorted(found.times, times)] == (own > 0.5)).all(), texts[k]
         assert (found.error < 1e-6).all()
+
+
+@pytest.mark.parametrize(("width", "times"), [(1e-14, []), (1e-9, [0.5, 0.5 + 1e-9])])
+def test_what_is_undone_within_rounding_is_no_change(width: float, times: list[float]) -> None:
+    """An impulse that comes as its condition becomes true, and turns the motion back, leaves it true for no time."""
+    begins = np.array([0.0, 0.5, 0.5 + width, 1.0])
+    changes = make_changes("c", begins, np.array([False, True, False, False]))
+    assert changes.times.tolist() == times and not changes.begins
+
+
+def test_what_lasts_keeps_its_first_instant() -> None:
+    changes = make_changes("c", np.array([0.0, 0.5, 0.5 + 1e-14, 1.0]), np.array([False, False, True, True]))
+    assert changes.times.tolist() == [0.5] and changes.values.tolist() == [True]

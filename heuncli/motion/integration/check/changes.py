@@ -108,9 +108,14 @@ def find_branch_intervals(run: Trajectory) -> tuple[Array, Array, Array]:
 
 
 def make_changes(name: str, begins: Array, truth: Mask) -> ConditionChanges:
-    """Collect the changes from interval to interval; a change that is undone at the same instant does not count."""
-    is_last = np.append(begins[1:] != begins[:-1], True)  # of several at one instant, the value after them
-    begins, truth = begins[is_last], truth[is_last]
+    """Collect the changes from interval to interval; a change that is undone at the same instant does not count.
+
+    Instants closer than rounding are one, with the value after the last of them: where an impulse comes as its
+    condition becomes true and turns the motion back, rounding decides whether the condition is true for a moment.
+    """
+    is_apart = np.append(begins[1:] - begins[:-1] > tolerances.SIDE_BY_SIDE * begins[-1], True)
+    begins = begins[np.append(True, is_apart[:-1])]
+    truth = truth[is_apart]
     changed = np.flatnonzero(truth[1:] != truth[:-1]) + 1
     return ConditionChanges(name, bool(truth[0]), begins[changed], truth[changed], np.zeros(len(changed)))
 
