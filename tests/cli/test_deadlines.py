@@ -247,7 +247,7 @@ def test_of_several_specs_only_the_one_that_does_not_stop_is_lost(
     monkeypatch.setattr(timeout, "HARD_END", 0.2)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "0.5")
     assert done.returncode == 4
-    assert "1 passed, 0 failed, 1 spec not solved" in done.stdout
+    assert "1 check passed, 0 failed, 1 spec not solved" in done.stdout
     assert "rest.yaml: the time limit was reached, but the work did not stop [time-limit]" in done.stderr
 
 
@@ -286,7 +286,7 @@ def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pyte
     monkeypatch.setattr("heuncli.loads.equilibrium.search.make_rest_law", rung)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "60")
     assert done.returncode == 4
-    assert "1 passed, 0 failed, 1 spec not solved" in done.stdout
+    assert "1 check passed, 0 failed, 1 spec not solved" in done.stdout
     assert "rest.yaml: the time limit of 60 s was reached while the rest position was searched" in done.stderr
     done = heun("validate", "hanging.yaml", "expecting.yaml", "--time-limit", "10")
     assert done.returncode == 0

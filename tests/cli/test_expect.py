@@ -212,8 +212,8 @@ def test_where_a_run_ends_is_known_after_it(at: float, failure: str | None) -> N
 
 def test_beyond_the_longest_run_nothing_is_expected() -> None:
     """Nor between the samples of a run that nothing ends."""
-    with pytest.raises(SpecError, match="is not an instant"):
+    with pytest.raises(SpecError, match="is not an output time"):
         load("falling.yaml", FALLING + "  - {of: bodies.ball.velocity.z, at: 1.2, is: 0}\n")
-    with pytest.raises(SpecError, match="is not an instant"):
+    with pytest.raises(SpecError, match="is not an output time"):
         text = FALLING.replace(", until: t > 0.3", "")
         load("falling.yaml", text + "  - {of: bodies.ball.velocity.z, at: 0.3, is: 0}\n")

@@ -102,7 +102,7 @@ def test_what_one_of_them_lacks_is_told_by_name() -> None:
     path = next(path for path, number in run.numbers.items() if number.greatest is not None)
     others = {
         "missing": run.model_copy(update={"numbers": {k: v for k, v in run.numbers.items() if k != path}}),
-        "is open": with_number(run, path, run.numbers[path].model_copy(update={"greatest": "open"})),
+        "now open": with_number(run, path, run.numbers[path].model_copy(update={"greatest": "open"})),
         "past the horizon": with_number(run, path, run.numbers[path].model_copy(update={"last": "beyond"})),
         "became open": run.model_copy(update={"open": [*run.open, path]}),
     }
