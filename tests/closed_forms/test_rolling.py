@@ -264,4 +264,4 @@ def test_two_driven_wheels_steer_round_a_circle() -> None:
     wanted = np.stack([np.sin(angle), 1.0 - np.cos(angle), 0.1 * turning / v + 0.0 * angle], axis=1) * v / turning
     near(r.bodies["frame"]["position"], wanted, 1.0, 1e-8)
     assert r.model["method"] != "none"
-    assert [sentence for sentence in r.model["not_reduced"] if "rolls" in sentence]
+    assert [sentence for sentence in r.model["not_reduced"] if "rolling" in sentence]

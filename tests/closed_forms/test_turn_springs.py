@@ -122,7 +122,7 @@ def test_a_compliant_four_bar(middle: tuple[str, str], space: str) -> None:
     ("{type: turn_spring, joint: axle, stiffness: -1}", "negative"),
     ("{type: turn_spring, joint: axle, stiffness: 1 N/m}", "dimension"),
     ("{type: turn_spring, joint: shaft, stiffness: 1}", "unknown-joint"),
-    ("{type: torsion_spring, joint: axle, stiffness: 1}", "unknown-force-type"),
+    ("{type: torsional_spring, joint: axle, stiffness: 1}", "unknown-force-type"),
 ])  # fmt: skip
 def test_errors(spec: str, code: str) -> None:
     text = pendulum()

@@ -34,7 +34,7 @@ def spec(name: str) -> str:
 
 
 def events(s: Study) -> list[str]:
-    return [reason for reason in s.results.model["reasons"] if reason.startswith("events: ")]
+    return [reason for reason in s.results.model["reasons"] if reason.startswith("events (")]
 
 
 @pytest.mark.parametrize("name", ["bouncing_ball", "punch", "engine"])

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 
 from heuncli.app.commands.explain.pages import (
     PAGES,
-    Section,
+    ManualSection,
     find_section,
     make_request,
     read_page,
@@ -131,7 +131,7 @@ def find_mentions(word: str) -> list[str]:
     return [request for request, _ in zip(found, range(MAX_MENTIONS), strict=False)]
 
 
-def _innermost(page: str) -> Iterable[Section]:
+def _innermost(page: str) -> Iterable[ManualSection]:
     """Yield the sections of a page that contain no other one."""
     sections = read_sections(page)
     following = [*sections[1:], sections[0]]

@@ -23,7 +23,7 @@ HEADING = re.compile(r"^(#+) (.*)$", re.MULTILINE)
 CONTENTS_WIDTH = 100
 
 
-class Section(NamedTuple):
+class ManualSection(NamedTuple):
     """A section of a page: from its heading to the next heading of the same or a higher level."""
 
     page: str
@@ -53,7 +53,7 @@ def read_summary(page: str) -> str:
 
 
 @cache
-def read_sections(page: str) -> tuple[Section, ...]:
+def read_sections(page: str) -> tuple[ManualSection, ...]:
     """Return the sections of a page in their order; the first is the page itself."""
     text = read_page(page)
     plain = FENCED.sub(lambda found: "." * len(found[0]), text)  # a comment in a spec is not a heading
@@ -63,7 +63,7 @@ def read_sections(page: str) -> tuple[Section, ...]:
         for number, (_, level, _) in enumerate(headings)
     ]
     return tuple(
-        Section(page, heading, level, text[start:end].rstrip("\n") + "\n")
+        ManualSection(page, heading, level, text[start:end].rstrip("\n") + "\n")
         for (start, level, heading), end in zip(headings, ends, strict=True)
     )
 
@@ -73,7 +73,7 @@ def make_anchor(heading: str) -> str:
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
-def find_section(page: str, name: str) -> Section | None:
+def find_section(page: str, name: str) -> ManualSection | None:
     """Return the section with a heading or an anchor, in any case; else the only one that begins like that."""
     anchor = make_anchor(name.strip())
     sections = read_sections(page)[1:]
@@ -90,14 +90,14 @@ def list_sections(page: str) -> str:
     return head + "".join(f"  {line}\n" for group in wrapped for line in group)
 
 
-def _group_by_main(sections: Sequence[Section]) -> Iterator[Sequence[Section]]:
+def _group_by_main(sections: Sequence[ManualSection]) -> Iterator[Sequence[ManualSection]]:
     """Group each section of level 2 with the deeper ones in it."""
     starts = [number for number, section in enumerate(sections) if section.level == 2]
     for start, end in zip(starts, [*starts[1:], len(sections)], strict=True):
         yield sections[start:end]
 
 
-def _list_group(group: Sequence[Section]) -> Iterator[str]:
+def _list_group(group: Sequence[ManualSection]) -> Iterator[str]:
     main, *inner = (section.heading for section in group)
     yield main
     if inner:
