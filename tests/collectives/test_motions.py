@@ -226,7 +226,7 @@ def test_the_stated_error_covers_a_coarse_run() -> None:
     [
         (HANGING, "joints.pivot.force.z", "needs a motion"),
         (SHAKER.format(TONE), "bodies.table.rotation", "is 9 numbers"),
-        (SHAKER.format(TONE), "accuracy.balance_residual", "no instants"),
+        (SHAKER.format(TONE), "accuracy.balance_residual", "no time history"),
         (TWO_BALLS, "joints.pivot.force.z", "joints.pivot.force.z is open at t = 0 s"),
     ],
     ids=["state", "several", "constant", "open"],
