@@ -37,7 +37,7 @@ WARNED = {
     "flat_four_bar": [
         "singular positions",
         "extremes exclude the numerically uncertain samples near singular positions, "
-        "first at t = 0.708288, last at 1.21535 s",
+        "first t = 0.708288 s, last t = 1.21535 s",
     ],
     "cradle": ["in the impact"],
 }

@@ -67,7 +67,7 @@ def warn_left_out(unknown: Sequence[float]) -> list[str]:
     if not unknown:
         return []
     low, high = min(unknown), max(unknown)
-    times = f"first at t = {low:.6g}, last at {high:.6g} s" if f"{low:.6g}" != f"{high:.6g}" else f"t = {low:.6g} s"
+    times = f"first t = {low:.6g} s, last t = {high:.6g} s" if f"{low:.6g}" != f"{high:.6g}" else f"t = {low:.6g} s"
     return [f"extremes exclude the numerically uncertain samples near singular positions, {times}"]
 
 
