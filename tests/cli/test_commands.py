@@ -179,7 +179,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["check", "hanging.yaml", "--jobs", "0"], "expected 1 or more"),
         (["check", "hanging.yaml", "-k", "nosuch"], "none of 1 specs"),
         (["check", "hanging.yaml", "--update"], "--update without --golden"),
-        (["plot", "hanging.yaml"], "nothing to plot is given"),
+        (["plot", "hanging.yaml"], "no quantity or kind of plot is given"),
     ],
 )
 def test_bad_usage_and_bad_specs_leave_with_2(heun: Heun, words: list[str], told: str) -> None:

@@ -36,7 +36,8 @@ NAMES = [
 WARNED = {
     "flat_four_bar": [
         "singular positions",
-        "extremes exclude the numerically uncertain samples near singular positions, t = 0.708288 to 1.21535 s",
+        "extremes exclude the numerically uncertain samples near singular positions, "
+        "first t = 0.708288 s, last t = 1.21535 s",
     ],
     "cradle": ["in the impact"],
 }

@@ -127,7 +127,7 @@ def test_the_model_proposes_it(kind: str) -> None:
     """A driven pin beside a line, or beside another pin, as they are mostly drawn first."""
     text = DRIVEN.replace(", stiffness: {moment: 0}", "").replace("type: line", f"type: {kind}")
     note = describe(load("shaft.yaml", text))["notes"][-1]
-    more = "" if kind == "line" else " and loose as line"
+    more = "" if kind == "line" else " and loose of type line"
     assert note.startswith(f"statically determinate with stiffness: {{moment: 0}} on fixed{more}:")
     done = DRIVEN if kind == "line" else DRIVEN.replace("type: pin, from: ground.Q", "type: line, from: ground.Q")
     notes = describe(load("shaft.yaml", done))["notes"]

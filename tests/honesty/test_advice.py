@@ -26,7 +26,7 @@ from tests.shared.redundant_supports import door
 from tests.shared.scenes import near
 
 KEPT = (2003, 2005, 2021, 2041, 2048, 2056, 2065, 2086, 2096)  # of the random scenes: some that have an advice
-REPLACED = re.compile(r"(\w+) as (\w+)(?: \((to_axis|axis) (\[[^]]*\])\))?")
+REPLACED = re.compile(r"(\w+) of type (\w+)(?: \((to_axis|axis) (\[[^]]*\])\))?")
 
 
 def advice(text: str) -> str:
@@ -93,10 +93,10 @@ def tried(text: str) -> str:
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("door", "top as line (axis [0, 0, 1])"),
-        ("slider_crank_pins", "big as line"),
-        ("flat_four_bar", "C as line"),
-        ("bricard", "P1 as universal (to_axis [1, 0, 0])"),
+        ("door", "top of type line (axis [0, 0, 1])"),
+        ("slider_crank_pins", "big of type line"),
+        ("flat_four_bar", "C of type line"),
+        ("bricard", "P1 of type universal (to_axis [1, 0, 0])"),
     ],
 )
 def test_of_the_specs(name: str, said: str) -> None:
@@ -107,7 +107,7 @@ def test_of_the_specs(name: str, said: str) -> None:
 @pytest.mark.parametrize("name", ["crankshaft", "table"])
 def test_nothing_looser_for_one_body_on_many_supports(name: str) -> None:
     note = advice(start_of(name))
-    assert note.startswith("joints with fewer constraints do not") and "stiffness" in note
+    assert note.startswith("joint types with fewer constraints do not help") and "stiffness" in note
 
 
 def test_no_advice_where_nothing_is_held_twice() -> None:
@@ -133,7 +133,7 @@ def test_a_ball_gives_way_along_the_line_that_is_open(seed: int) -> None:
 def test_step_by_step(windows_: int) -> None:
     """More loops than are tried together."""
     note = tried(to_yaml(windows(windows_, 0.3, 1.0)))
-    assert note.startswith("statically determinate") and note.count(" as ") == windows_
+    assert note.startswith("statically determinate") and note.count(" of type ") == windows_
 
 
 @pytest.mark.parametrize("seed", KEPT)
@@ -150,7 +150,7 @@ def test_in_the_plane() -> None:
     joints = {name: {**pin, **end} for name, end in ends.items()}
     scene = {"space": "planar", "gravity": [0, -9.81, 0], "bodies": {"beam": beam}, "joints": joints}
     assert tried(to_yaml(scene)) == (
-        "statically determinate with a as line (axis [1, 0.5, 0]): same motion, no open reactions"
+        "statically determinate with a of type line (axis [1, 0.5, 0]): same motion, no open reactions"
     )
 
 

@@ -93,7 +93,7 @@ def test_hostile_titles_and_what_has_no_modes(heun: Heun, folder: Path) -> None:
     text = (folder / "drawn.svg").read_text()
     assert "<script" not in text and "\u202e" not in text and "<script>alert(1)</script>" in "".join(texts_of(text))
     for words, code, why in [
-        ((str(SPECS / "slider_crank.yaml"), "modes"), 2, "no free degrees of freedom, so no modes"),
+        ((str(SPECS / "slider_crank.yaml"), "modes"), 2, "0 degrees of freedom, so no modes"),
         (("two.yaml", "modes", "joints.hang"), 2, "draws the whole model"),
         (("two.yaml", "modes", "--view", "north"), 2, "--view north"),
         ((str(SPECS / "laval.yaml"), "modes"), 3, "no-rest-pose"),

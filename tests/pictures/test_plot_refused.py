@@ -26,7 +26,7 @@ TURNED = TWO + "forces: {f: {type: torque, joint: pivot, value: t}}\n"
 PUSHED = TWO + "forces: {f: {type: actuator, from: {body: ground, at: [1, 0, 0]}, to: bar.top, value: t}}\n"
 REFUSED = [
     ((PATH,), "no spec is given"),
-    (("hanging.yaml",), "nothing to plot is given"),
+    (("hanging.yaml",), "no quantity or kind of plot is given"),
     (("hanging.yaml", ""), "an empty argument"),
     (("", PATH), "no spec is given"),
     ((".", PATH), "this is a folder"),

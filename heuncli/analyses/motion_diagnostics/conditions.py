@@ -19,7 +19,7 @@ def find_largest_conditions(motion: MotionSearch) -> tuple[LargestCondition | No
     layout = motion.layout
     layout_coordinates, n = make_coordinates(layout), layout.velocity_count
     if not layout_coordinates.count:
-        return None, None, "no free degrees of freedom"
+        return None, None, "0 degrees of freedom"
     if n > MAX_FREEDOMS:
         return None, None, f"{n} degrees of freedom, more than {MAX_FREEDOMS}: full matrices are not formed"
     instant_limit = max(1, MAX_NUMBERS // (6 * n * len(layout.place) + n * n + n * len(layout.rows)))
@@ -27,7 +27,7 @@ def find_largest_conditions(motion: MotionSearch) -> tuple[LargestCondition | No
     recovered = motion.recover(times)
     numbers = compute_conditions(layout, layout_coordinates, recovered)
     if not numbers.lightest_motion.any():
-        return None, None, "no free degrees of freedom"
+        return None, None, "0 degrees of freedom"
     k, m = int(np.argmax(numbers.mass)), int(np.argmax(numbers.closure))
     mass = LargestCondition(float(numbers.mass[k]), float(times[k]), find_lightest(layout_coordinates, numbers, k))
     closure = LargestCondition(float(numbers.closure[m]), float(times[m])) if layout.rows else None

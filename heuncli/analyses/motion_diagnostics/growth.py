@@ -20,10 +20,10 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 
 SLOPE_SAMPLES = 200  # instants for the fit of the slope
-CONTACTS_REASON = "stops or ropes open and close at different times in each run; see the horizon reported by heun run"
-TRIGGERS_REASON = "conditional impulses act at different times in each run; see the horizon reported by heun run"
+CONTACTS_REASON = "contacts open, ropes slacken at different times in each run; heun run shows the horizon, if any"
+TRIGGERS_REASON = "conditional impulses act at different times in each run; heun run shows the horizon, if any"
 ONE_INSTANT_REASON = "one instant, no motion; for the stability of a rest position see heun modes"
-FOLLOWED_REASON = "motion fully prescribed: nothing is integrated"
+FOLLOWED_REASON = "motion fully prescribed, nothing integrated"
 
 
 def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
@@ -40,7 +40,7 @@ def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
     disturbed_runs = DisturbedRuns(runner, checked_run.run, choose_method(checked_run.run))
     Q = disturbed_runs.find_directions()
     if not Q.shape[1]:
-        return None, "no free degrees of freedom"
+        return None, "0 degrees of freedom"
     return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 

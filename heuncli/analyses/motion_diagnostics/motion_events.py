@@ -194,7 +194,7 @@ def make_lock_event(name: str, sequence: str, lock: LockApproach, motion: Motion
     """Return the event of a gimbal lock, or of a pose so near to it that digits are lost."""
     k = float(compute_condition(lock.sine))
     condition_text = (
-        f"condition number {k:.2g} of its angle matrix" if np.isfinite(k) and k < 1.0 / tolerances.EPS else "locked"
+        f"condition number {k:.2g} of its angle matrix" if np.isfinite(k) and k < 1.0 / tolerances.EPS else "singular"
     )
     message = f"{sequence} Euler angles of {name}: {condition_text}{format_duration(lock.interval, motion)}"
     return Event(lock.interval.begin, GIMBAL, f"bodies.{name}", message)

@@ -42,11 +42,11 @@ def find_stiffness(motion: MotionSearch) -> tuple[StiffnessResults | None, str]:
     runner, checked_run = study.setup.runner, motion.checked
     n = runner.integrated_scene.layout.n_state
     if checked_run is not None and checked_run.run.method.is_determined:
-        return None, "motion fully prescribed: nothing is integrated"
+        return None, "motion fully prescribed, nothing integrated"
     if n > MAX_STATE_SIZE:
         return None, f"{n} state variables, more than {MAX_STATE_SIZE}: the full tangent matrix is not formed"
     if not DisturbanceScale(runner.integrated_scene.layout, 1.0).n:
-        return None, "no free degrees of freedom"
+        return None, "0 degrees of freedom"
     if checked_run is None:
         recovered = study.history.solutions
         values = compute_eigenvalues(

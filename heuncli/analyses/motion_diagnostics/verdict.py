@@ -85,7 +85,7 @@ def iter_other_troubles(result: Probe) -> Iterator[str]:
         n = len(centres) + further_counts[DEAD_CENTRE]
         joints = list_some(list(dict.fromkeys(e.where.removeprefix("joints.") for e in centres)))
         yield (
-            f"{format_count(n, 'dead centre')}: {joints} cannot drive the mechanism there; at t = "
+            f"{format_count(n, 'dead centre')} of {joints}, which cannot drive the mechanism there; at t = "
             f"{format_instants(centres)} s"
         )
     if by_kind[NO_MASS] or (result.mass is not None and math.isinf(result.mass.value)):

@@ -263,7 +263,7 @@ def _plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> f
 def _missing_side_problem(names: list[str], location: SourceLocation) -> Problem:
     """Make the problem of a single cut with something in its plane and no side given."""
     what = " and ".join(names) if names else "a point mass or rod of the body"
-    hint = "add side: before (cut just before it: it is on the far side) or side: beyond (cut just past it)"
+    hint = "add side: before (it is then on the far side of the cut) or side: beyond (on the near side)"
     return Problem(
         "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", location, hint
     )

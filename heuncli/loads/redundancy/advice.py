@@ -179,7 +179,7 @@ def format_replacements(scene: PreparedScene, replacements: Mapping[int, Joint],
     for k, replacement in replacements.items():
         original = scene.mechanism.joints[k]
         kind = JOINTS[replacement.kind]
-        text = f"{replacement.name} as {kind.display_name or kind.name}"
+        text = f"{replacement.name} of type {kind.display_name or kind.name}"
         if replacement.kind == original.kind:
             text = f"stiffness: {{moment: 0}} on {replacement.name}"
         elif kind.to_axis == "required":

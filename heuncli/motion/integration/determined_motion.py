@@ -13,7 +13,7 @@ from heuncli.results.results import Block
 BY_DRIVES = "motion fully prescribed: solved at each instant, nothing integrated"
 BY_JOINTS = "nothing can move: the joints leave 0 degrees of freedom, nothing integrated"
 SINGULAR = "integrated despite 0 degrees of freedom: the motion passes a singular position, such as a dead centre"
-CONTACTS = "integrated despite 0 degrees of freedom: a rope or a stop may open and close"
+CONTACTS = "integrated despite 0 degrees of freedom: a contact may open or a rope slacken"
 ROLLS = "integrated despite 0 degrees of freedom: rolling determines speeds at each instant, not positions"
 
 

@@ -15,7 +15,7 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows, vector_from_rotation
 
-COUPLING_ORIGIN = "after adjustment to the couplings"
+COUPLING_ORIGIN = "adjusted to satisfy the couplings"
 
 
 def format_coupling_changes(scene: PreparedScene, start: Assembly) -> tuple[str, ...]:

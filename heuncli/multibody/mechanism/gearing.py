@@ -343,8 +343,8 @@ def _mesh_at_point(carrier: int, first: GearMember, second: GearMember, P: Array
 def _require_pitch_point(P: Array, offset: Array, size: float) -> None:
     if _length(offset) > tolerances.TYPED_POINT * size:
         where = ", ".join(f"{x:.6g}" for x in P)
-        raise Finding(MISFIT, f"the given pitch point is {_length(offset):.3g} m from the one given by axes and "
-                      f"ratio, ({where})", "leave out `at` or the ratio, or move an axis")  # fmt: skip
+        raise Finding(MISFIT, f"the given pitch point is {_length(offset):.3g} m from the one that axes and "
+                      f"ratio require, ({where})", "leave out `at` or the ratio, or move an axis")  # fmt: skip
 
 
 def _find_apex(first: GearMember, second: GearMember) -> Array:

@@ -349,7 +349,7 @@ def draw_joint_actions(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
         seen_axis = posed_machine.project_direction(look.a, axis, k)
         symbol = action.symbols[int(posed_machine.find_depth_component(look.a, axis, k) < 0.0)]
         symbol_axis = to_pair(seen_axis) if action.slides and seen_axis.any() else (1.0, 0.0)
-        label = f"{action.name}: {action.load_kind} in {action.joint}"
+        label = f"{action.name}: {action.load_kind} on {action.joint}"
         yield Symbol(*to_pair(posed_machine.project(look.b, look.q, k)), symbol, symbol_axis, LOAD_PEN, label)
 
 

@@ -58,7 +58,7 @@ def make_mode_shapes(moved_bodies: BodyModes, machine: Machine, view: SceneView)
     """Make the figure of a scene's modes, a panel each. Raises NotDrawable if nothing is free to oscillate."""
     modes = moved_bodies.modes.modes
     if not modes:
-        raise NotDrawable("modes: no free degrees of freedom, so no modes", "driven motion: heun run")
+        raise NotDrawable("modes: 0 degrees of freedom, so no modes", "driven motion: heun run")
     lines = list(_iter_lines(moved_bodies, machine))
     resting = np.concatenate([line.points for line in lines])
     extent = float(np.ptp(view.project(resting), axis=0).max()) or 1.0

@@ -22,8 +22,8 @@ MIN_LABELLED = 1e-3  # of the largest bar: smaller bars have no label
 COUNTERBALANCED = "with counterweights"
 PEN, COUNTERBALANCED_PEN = 0, 1
 LETTERS = {"force": "F", "moment": "M", "torque": "T"}  # of quantities whose orders are compared by their sizes
-SIZES_TITLE = "ORDERS  by their sizes"
-SIZES_LABEL = "of the largest order of its kind"
+SIZES_TITLE = "ORDERS  by amplitude"
+SIZES_LABEL = "relative to the largest order of its kind"
 LEAST_SIZE = 1e-4  # of the largest of its kind: smaller orders are not compared
 ROW_HEIGHT = 14.2  # pixels of an order, which are a line of a terminal
 

@@ -238,7 +238,7 @@ def _make_notes(posed_machine: PosedMachine, loads: ActingLoads) -> list[str]:
     if spread:
         notes.append(f"drawn as the ellipsoid of the same inertia: {', '.join(spread)}")
     forces = posed_machine.spec.forces.items()
-    acting = [f"{n} ({LOAD_KINDS[f.type].display_name} in {f.joint})" for n, f in forces if isinstance(f, JointForce)]
+    acting = [f"{n} ({LOAD_KINDS[f.type].display_name} on {f.joint})" for n, f in forces if isinstance(f, JointForce)]
     acting += [f"{n} (drive of {drive.joint})" for n, drive in posed_machine.spec.drives.items()]
     if acting and posed_machine.has_names:
         notes.append(f"acting in joints: {', '.join(acting)}")

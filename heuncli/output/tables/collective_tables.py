@@ -83,7 +83,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         collective.history.error * size,
     )
     yield (
-        f"{format_cycles(collective.total_cycles)} of {collective.points} reversals between {low} "
+        f"{format_cycles(collective.total_cycles)} from {collective.points} reversals between {low} "
         f"and {append_unit(high, unit)}"
     )
     if not collective.total_cycles:

@@ -23,7 +23,7 @@ def describe_modes(scene_modes: SceneModes) -> list[str]:
     if scene_modes.omitted_paths:
         lines.append(f"without {', '.join(map(describe_excluded, scene_modes.omitted_paths))}")
     if not scene_modes.modes:
-        return [*lines, "no free degrees of freedom, so no modes"]
+        return [*lines, "0 degrees of freedom, so no modes"]
     unstable = any(mode.growth > 0.0 for mode in scene_modes.modes)
     has_free = any(mode.kind == "free" for mode in scene_modes.modes)
     return [*lines, "unstable" if unstable else "stable, except for unrestrained motions" if has_free else "stable"]

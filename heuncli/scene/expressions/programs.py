@@ -63,7 +63,7 @@ class TableFunction:
 def out_of_range_texts(table: TableFunction) -> tuple[str, str]:
     """Return the message and the hint for an argument outside a table's range."""
     message = f"table {table.name} covers x from {table.x[0]:.9g} to {table.x[-1]:.9g} (SI)"
-    return message, "extend the table, or set a period or outside: hold"
+    return message, "extend the table, or set period or outside: hold"
 
 
 @record

@@ -67,8 +67,8 @@ def warn_left_out(unknown: Sequence[float]) -> list[str]:
     if not unknown:
         return []
     low, high = min(unknown), max(unknown)
-    end = f" to {high:.6g}" if f"{low:.6g}" != f"{high:.6g}" else ""
-    return [f"extremes exclude the numerically uncertain samples near singular positions, t = {low:.6g}{end} s"]
+    times = f"first t = {low:.6g} s, last t = {high:.6g} s" if f"{low:.6g}" != f"{high:.6g}" else f"t = {low:.6g} s"
+    return [f"extremes exclude the numerically uncertain samples near singular positions, {times}"]
 
 
 def warn_unbalanced(residual: float) -> list[str]:

@@ -57,7 +57,7 @@ class UnfitCounting(NamedTuple):
 
 SLOPES = UnfitCounting("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
 CYCLES = UnfitCounting(
-    "cycles", f"number of cycles of the equivalent ranges, {LEAST_CYCLES:g} to {MOST_CYCLES:g}", "1e6"
+    "cycles", f"number of cycles for the equivalent ranges, {LEAST_CYCLES:g} to {MOST_CYCLES:g}", "1e6"
 )
 CLASSES = UnfitCounting("bins", f"a number of classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
 REPEATS = UnfitCounting(

@@ -135,13 +135,13 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
         sentences.append(f"driven: {list_some(driven)}")
     bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]
     if bushings:
-        sentences.append(f"bushings, elastic without constraints: {list_some(bushings)}")
+        sentences.append(f"elastic bushings, without constraints: {list_some(bushings)}")
     ropes = [own.name for own in mechanism.couplings if own.stretched_row is not None]
     if ropes:
         sentences.append(f"elastic ropes, without constraints: {list_some(ropes)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.links if h.joint < 0]
     if floating:
-        sentences.append(f"free bodies: {list_some(floating)}")
+        sentences.append(f"bodies without a joint in the tree: {list_some(floating)}")
     spins = f" and {format_count(scene.undetermined_count, 'undetermined spin')}" if scene.undetermined_count else ""
     if model["redundant"]:
         sentences.append(

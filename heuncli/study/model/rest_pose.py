@@ -125,7 +125,7 @@ def describe_rest(mechanism: Mechanism, stability: Stability, without_slope: lis
         swings = f", lowest natural frequency {stability.frequency:.4g} Hz" if stability.frequency else ""
         texts.append(f"stable{' except where indifferent' if indifferent_motions else ''}: {least}{swings}")
     elif not indifferent_motions:
-        texts.append("no free degrees of freedom")
+        texts.append("0 degrees of freedom")
     if stability.indifferent:
         what = f"{list_motions(stability.indifferent)}, without restoring force{describe_lone_motion(stability)}"
         texts.append(f"indifferent: {what}; the position along it depends on the path")

@@ -31,7 +31,7 @@ def require_alone(request: CheckRequest) -> None:
     """Raise UsageError for options that have no meaning together with --references."""
     for word, field in EXCLUDED_OPTIONS:
         if getattr(request, field):
-            hint = "--references only compares published cases with their printed results"
+            hint = "--references only compares published cases with their published results"
             raise UsageError(Problem("bad-option", f"--references and {word} cannot be combined", hint=hint))
 
 

@@ -11,7 +11,7 @@ FORMATS = ("table", "json", "markdown", "github")
 class CheckRequest(NamedTuple):
     """Check specs, and folders of specs, against their `expect` values and golden files.
 
-    With --references: check published cases against their printed results.
+    With --references: check published cases against their published results.
     """
 
     paths: Annotated[
@@ -24,7 +24,7 @@ class CheckRequest(NamedTuple):
         ),
     ] = ()
     references: Annotated[
-        bool, Option(("--references",), "Compare published cases with their printed results; PATH: names of cases.")
+        bool, Option(("--references",), "Compare published cases with their published results; PATH: names of cases.")
     ] = False
     format: Annotated[str | None, Option(("--format",), "Output format. Default: table.", "|".join(FORMATS))] = None
     output: Annotated[str | None, OUTPUT] = None
@@ -36,7 +36,7 @@ class CheckRequest(NamedTuple):
         Option(
             ("--golden-tolerance",),
             "Allowed difference relative to the largest value of its kind, in place of the stated errors.",
-            "SHARE",
+            "FRACTION",
         ),
     ] = None
     update: Annotated[bool, Option(("--update",), "Rewrite golden files whose results changed.")] = False

@@ -28,7 +28,7 @@ def main(request: NewRequest) -> int:
     known = list_kinds()
     published = {name: read_text(name).splitlines()[0].removeprefix("# ") for name in list_names()}
     if request.kind is None:
-        emit(f"{_format_list(known)}\npublished cases, which heun check --references compares with printed results:\n"
+        emit(f"{_format_list(known)}\npublished cases, which heun check --references compares with published results:\n"
              f"{_format_list(published)}")  # fmt: skip
         return 0
     if request.kind not in {**known, **published}:

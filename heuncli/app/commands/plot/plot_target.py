@@ -40,7 +40,7 @@ def parse_words(words: Sequence[str]) -> PlotTarget:
             raise _make_error(f"{', '.join(files)}: specs and sweeps cannot share one plot", "call it once for each")
         return PlotTarget(files, SWEEP_KIND, others)
     if not others:
-        raise _make_error("nothing to plot is given", USAGE)
+        raise _make_error("no quantity or kind of plot is given", USAGE)
     kinds = [word for word in others if word in NAMED_KINDS]
     if len(kinds) > 1 or (kinds and kinds[0] != others[0]):
         raise _make_error(f"{', '.join(others)}: one kind of plot at a time", "call it once for each")

@@ -17,10 +17,11 @@ STEPS = "STEPS  of explicit methods: smallest stability limit; approximate step 
 STEPS_HERE = "STEPS  of explicit methods: stability limit here"
 CONDITION = "CONDITION NUMBER  largest / smallest singular value; displacements relative to the model size"
 ATTITUDES = (
-    "ORIENTATIONS  bodies free to rotate about any axis: half revolutions, condition of Euler angle matrices (max.)"
+    "ORIENTATIONS  bodies with three rotational coordinates: half revolutions, condition of Euler angle matrices (max.)"
 )
 EVENTS = "EVENTS"
 NAMES = {"mass": "mass matrix", "closure": "loop closures"}
+REASON_NAMES = {"condition": "condition number"}  # where a key is not the term
 
 
 def render_page(results: Probe) -> str:
@@ -53,7 +54,7 @@ def format_reasons(results: Probe) -> list[str]:
     """List why results are missing, each reason once with the keys that it holds for."""
     keys_by_reason: dict[str, list[str]] = {}
     for key, text in results.reasons.items():
-        keys_by_reason.setdefault(text, []).append(key.replace("_", " "))
+        keys_by_reason.setdefault(text, []).append(REASON_NAMES.get(key, key.replace("_", " ")))
     return [f"{', '.join(keys)}: {text}" for text, keys in keys_by_reason.items()]
 
 

@@ -82,7 +82,7 @@ class RunRequest(NamedTuple):
     ] = None
     cycles: Annotated[
         float | None,
-        Option(("--cycles",), "Number of cycles of the equivalent ranges. Default: one per repetition.", "N"),
+        Option(("--cycles",), "Number of cycles for the equivalent ranges. Default: one per repetition.", "N"),
     ] = None
     bins: Annotated[int | None, Option(("--bins",), "Number of bins for ranges and means. Default: 10.", "N")] = None
     repeat: Annotated[

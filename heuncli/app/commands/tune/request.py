@@ -46,7 +46,7 @@ class TuneRequest(NamedTuple):
         Option(
             ("--precision",),
             "Smallest improvement to search for, relative to the range of the result. Default: 1e-6.",
-            "SHARE",
+            "FRACTION",
         ),
     ] = None
     seed: Annotated[

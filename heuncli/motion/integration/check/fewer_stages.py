@@ -12,7 +12,7 @@ from heuncli.motion.integration.run.event_frequency import FEW_STAGES
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
 
 MESSAGE = (
-    "events (contact, condition, jump, table point): {cut} of the first {steps} steps end at one; up to t = {t:.3g} s "
+    "events (contact, condition, jump, table point) end {cut} of the first {steps} steps; up to t = {t:.3g} s "
     "{name} takes {few} evaluations, {method} {many}"
 )
 

@@ -225,7 +225,7 @@ def check_inertia_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "deviation"),
                 "deviation given with a full tensor",
-                "the tensor contains them: element = -D",
+                "the tensor contains them: off-diagonal element = -product",
                 key=True,
             )
         if isinstance(inertia, tuple) and isinstance(inertia[0], tuple):
@@ -272,7 +272,7 @@ def check_inertia_physical(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 path,
                 message,
-                "check that it is about the centre of mass, and the signs of the products of inertia (element = -D)",
+                "check that it is about the centre of mass, and the signs (off-diagonal element = -product of inertia)",
             )
 
 

@@ -97,7 +97,7 @@ def check_friction_with_teeth(draft: DraftDocument) -> Iterator[Violation]:
         return
     for name, gear in draft.document.couplings.items():
         if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
-            message = "friction by a coefficient does not yet account for the separating force of gear teeth"
+            message = "friction given by a coefficient does not yet account for the separating force of gear teeth"
             hint = "set pressure_angle: 0 to neglect this force, or give the friction as a torque"
             yield Violation(("couplings", name), message, hint, key=True)
 

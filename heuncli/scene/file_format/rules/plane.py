@@ -14,7 +14,7 @@ from heuncli.scene.file_format.rotations import IDENTITY, unit_vector
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import orientation_matrix
 
-SPATIAL_HINT = "or declare space: spatial"
+SPATIAL_HINT = "for a spatial model declare space: spatial"
 # Vectors of bodies and of loads with the components that they cannot have in the plane.
 FORBIDDEN_VELOCITY = {"velocity": ("z",), "angular_velocity": ("x", "y")}
 FORBIDDEN_LOAD = {"N": ("z",), "N·m": ("x", "y")}  # by its unit

@@ -120,7 +120,7 @@ def check_ground_use(draft: DraftDocument) -> Iterator[Violation]:
         if body == GROUND and not may_be_ground:
             thing = "a section" if path[0] == "sections" else "an applied load"
             yield Violation(
-                path, f"the ground cannot have {thing}", "the ground does not move and has no mass: give a body"
+                path, f"the ground cannot have {thing}", "the ground does not move and has no mass: name a body"
             )
         elif path[0] == "foundation" and body != GROUND:
             yield Violation(

@@ -100,7 +100,7 @@ def check_wheel_planar(path: tuple[str, str], wheel: RollingEntry) -> Iterator[V
         x, y, z = unit_vector(direction)
         if (math.hypot(x, y) if is_along_z else abs(z)) > tolerances.PARALLEL:
             requirement = "must be the z axis" if is_along_z else "must lie in the xy plane"
-            hint = "or declare space: spatial"
+            hint = "for a spatial model declare space: spatial"
             yield Violation((*path, key), f"in a planar model the {key} of a wheel {requirement}", hint)
     if wheel.slides is not None:
         message = "in a planar model a wheel that slides along its track only keeps its distance"
