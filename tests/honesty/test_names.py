@@ -105,7 +105,9 @@ def test_what_is_told_by_one_name_shares_none(heun: Heun, folder: Path, block: s
     head = SHARED.partition("drives:")[0].format()
     (folder / "one.yaml").write_text(f"{head}{block}: {{m: {entry}}}\ncouplings: {{m: {coupling}}}\n")
     done = heun("validate", "one.yaml")
-    assert done.returncode == 2 and f"{block}.m: 'm' is taken" in done.stderr and "hint: call it m_1" in done.stderr
+    assert (
+        done.returncode == 2 and f"{block}.m: 'm' is already used" in done.stderr and "hint: call it m_1" in done.stderr
+    )
 
 
 def test_a_key_that_stands_twice_is_found() -> None:

@@ -133,7 +133,7 @@ def test_a_measure_in_json_says_so(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.parametrize(("words", "heading"), [
-    (["--axes", "to"], 'axes of the "to" body, moment about'), (["--axes", "world"], "world axes, moment about"),
+    (["--axes", "to"], 'axes of the "to" body,'), (["--axes", "world"], "world axes, moment about"),
 ])  # fmt: skip
 def test_the_heading_says_so(words: list[str], heading: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", str(SPECS / "double.yaml"), "--only", "joints", *words]) == 0

@@ -17,7 +17,7 @@ def told(x: float) -> str:
     try:
         require_independent(["a.angle", "b.angle"], np.array([rates["a.angle"], rates["b.angle"]]), 2, rates)
     except SolveError as error:
-        assert "b.angle cannot tell" in str(error) and "c.angle moves" in str(error)
+        assert "b.angle cannot describe" in str(error) and "c.angle moves" in str(error)
         return "refused"
     return "told"
 

@@ -72,7 +72,7 @@ PART = Part(
         Row("KERNEL.independent", flat_by, "warned: singular position", "warned: nearly singular position"),
         Row("PUSHED", across, "warned: singular position", "refused: singular-pose"),
         Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular position", "fine"),
-        Row("SINGULAR_MET", beside_flat, "warned: passes through a", "fine", (1 / 3, 3.0)),
+        Row("SINGULAR_MET", beside_flat, "warned: singular position", "fine", (1 / 3, 3.0)),
         Row("UNKNOWN_NEAR_SINGULAR", moved_by, "told", "not known"),
     ),
     exempt={
