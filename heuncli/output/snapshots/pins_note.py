@@ -11,8 +11,8 @@ from heuncli.study.quantities.digits import OPEN_NOTE
 from heuncli.study.queries.study import Study
 
 PINS_NOTE = (
-    "pins in a spatial model constrain more than the motion requires: try `space: planar`, or `line` or `ball` in place "
-    "of some pins; heun model lists what helps, heun explain open says why"
+    "pins in a spatial model constrain more than the motion requires: try `space: planar`, or `line` or `ball` in "
+    "place of some pins; heun model lists what helps, heun explain open says why"
 )
 HEADING = "JOINTS"  # as tables of joints begin
 PARALLEL = 1e-6  # largest sine between the axes
