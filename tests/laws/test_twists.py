@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.analyses.motion_diagnostics.motion_events import MotionSearch
 from heuncli.analyses.motion_diagnostics.numerics.twists import closure_rows, compute_twists, mass_matrix
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.motion.integration.evaluator import Evaluation
@@ -12,9 +13,13 @@ from heuncli.motion.linearisation.linearise import linearise
 from heuncli.multibody.response import jacobian
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import Setup, set_up
+from tests.oracle.values import to_yaml
+from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.folders import SPECS
+from tests.shared.scenes import study
 
 SCENES = ("bricard", "cardan", "crane", "double", "excavator", "lift", "slider_crank_pins", "spatial_crank", "swing")
+COUPLED = ("belt_drive", "hoist_stop", "planetary", "screw_press", "tower_crane", "valve_train")
 ROUNDED = 1e-13  # hundreds of roundings of sums whose terms are of the order of 1
 
 
@@ -46,7 +51,7 @@ def test_velocities_are_twists_times_rates(name: str) -> None:
     assert np.abs(v - bodies["v"] - np.cross(bodies["omega"], arm)).max() <= ROUNDED * size
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", (*SCENES, *COUPLED))
 def test_closure_rows_are_the_kernels(name: str) -> None:
     """The kernel gives what is driven no entry."""
     found, at = moving(name)
@@ -59,6 +64,25 @@ def test_closure_rows_are_the_kernels(name: str) -> None:
     kernel = jacobian(found.runner.workspace, layout, at.times, at.states)
     whole = kernel.block(np.arange(len(layout.rows)), np.arange(layout.velocity_count))
     assert np.abs(J - whole).max() <= ROUNDED * max(1.0, float(np.abs(whole).max()))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_closure_rows_annul_the_velocities(seed: int) -> None:
+    """Of gears, belts, screws, ropes, cams and joints along a motion, without open stops and driven lengths."""
+    found = study(to_yaml({**coupled_scene(seed), "analysis": {"times": [0, 0.02, 0.05]}}), reduce=False)
+    motion = MotionSearch(found)
+    at, layout = motion.recover(motion.times[:: max(1, len(motion.times) // 6)]), motion.layout
+    rates = np.zeros((len(at.times), layout.velocity_count))
+    for k in np.flatnonzero(layout.bodies["ball"]):
+        first = int(layout.bodies["answer_at"][k])
+        rates[:, first : first + 3] = at.bodies["omega"][:, k]
+    rates[:, layout.tables["freedoms"]["answer_at"]] = at.freedoms["u"]
+    J = closure_rows(compute_twists(layout, at), at)
+    counts = (at.rows["closed"] > 0.0) & (layout.tables["closures"]["program"]["count"] == 0)
+    off = np.abs(np.einsum("tri,ti->tr", J, rates))[counts]
+    size = np.einsum("tri,ti->tr", np.abs(J), np.abs(rates))[counts]
+    assert len(size) and (np.abs(J).max(axis=2)[counts] > 0.0).all()
+    assert (off <= 1e-9 * np.maximum(size, 1.0)).all()
 
 
 @pytest.mark.parametrize("name", ["crane", "double", "spatial_crank", "swing"])

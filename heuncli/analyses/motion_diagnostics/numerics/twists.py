@@ -112,16 +112,37 @@ def closure_rows(body_twists: Twists, recovered: Evaluation) -> Array:
     layout = body_twists.layout
     closures = layout.tables["closures"]
     J = np.zeros((len(body_twists.turn), len(closures), layout.velocity_count))
-    order = [hang.body for hang in layout.spanning.links]
     for i, row in enumerate(closures):
-        a, b = (order[k] if k >= 0 else GROUND for k in (int(row["a"]), int(row["b"])))
+        if row["part_count"]:
+            for k in range(int(row["part"]), int(row["part"] + row["part_count"])):
+                J[:, i] += compute_part_row(body_twists, recovered, k)
+            continue
+        a, b = find_bodies(layout, row)
         q = np.array(row["q"].tolist())
         Q = (
             body_twists.locate_point(b, q + layout.reference[layout.place[b]])
             if b != GROUND
             else np.broadcast_to(q, (len(J), 3))
         )
-        (turn_a, shift_a), (turn_b, shift_b) = body_twists.point_twist(a, Q), body_twists.point_twist(b, Q)
-        J[:, i] = np.einsum("tni,ti->tn", shift_b - shift_a, recovered.rows["f"][:, i])
-        J[:, i] += np.einsum("tni,ti->tn", turn_b - turn_a, recovered.rows["m"][:, i])
+        J[:, i] = compute_power(body_twists, (a, b), Q, recovered.rows["f"][:, i], recovered.rows["m"][:, i])
     return J
+
+
+def compute_part_row(body_twists: Twists, recovered: Evaluation, k: int) -> Array:
+    """Return what part k of a coupling's row adds to it, (n_t, n): gear meshes, strands of ropes, cam contacts."""
+    layout, parts = body_twists.layout, recovered.parts
+    ends = find_bodies(layout, layout.tables["parts"][k])
+    return compute_power(body_twists, ends, parts["Q"][:, k], parts["f"][:, k], parts["m"][:, k])
+
+
+def compute_power(body_twists: Twists, ends: tuple[int, int], Q: Array, f: Array, m: Array) -> Array:
+    """Return the power of a unit load f, m at Q on the second body, opposite on the first, per freedom (n_t, n)."""
+    (turn_a, shift_a), (turn_b, shift_b) = (body_twists.point_twist(body, Q) for body in ends)
+    return np.asarray(np.einsum("tni,ti->tn", shift_b - shift_a, f) + np.einsum("tni,ti->tn", turn_b - turn_a, m))
+
+
+def find_bodies(layout: Layout, row: np.void) -> tuple[int, int]:
+    """Return the two bodies of a closure row or a part, GROUND for the ground."""
+    order = [hang.body for hang in layout.spanning.links]
+    a, b = (order[k] if k >= 0 else GROUND for k in (int(row["a"]), int(row["b"])))
+    return a, b
