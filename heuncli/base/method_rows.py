@@ -59,11 +59,11 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's section 20: rotation relative to the start; fails at 180 deg", "rodrigues.DOP853_GLOBAL",
+        "Heun's section 20: rotation from the start; fails at 180 deg", "rodrigues.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "rotation relative to the step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
+        "rotation from the step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",

@@ -230,7 +230,7 @@ def test_one_instant_has_nothing_to_play(browser: Chromium, page: Pages) -> None
 def test_without_scripts_it_says_so(browser: Chromium, double: Path) -> None:
     tab = browser.tab()
     tab.go(double.resolve().as_uri(), scripts=False)
-    assert "draws the machine by a script" in tab.evaluate("document.body.innerText")
+    assert "needs JavaScript" in tab.evaluate("document.body.innerText")
     browser.send("Target.closeTarget", targetId=tab.target)
 
 

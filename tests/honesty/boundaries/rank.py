@@ -58,7 +58,7 @@ def beside_flat(x: float) -> str:
         near(math.sqrt(float(np.sum((ends[1] - ends[0]) ** 2))), b, 1.0, 1e-11)
 
     tail = "analysis: {duration: 0.3, samples: 3}"
-    return verdict(four_bar(p, q, ", angular_velocity: [0, 0, 4]", tail), right).split(" singular")[0]
+    return verdict(four_bar(p, q, ", angular_velocity: [0, 0, 4]", tail), right)
 
 
 def flat_by(x: float) -> str:
