@@ -134,7 +134,7 @@ def _describe_run(results: Results) -> str:
     else:
         parts = [f"{times[0]:.6g} to {times[-1]:.6g} s, {len(times)} samples"]
     if work.get("steps"):
-        method = f"{results.model['method']}, ".removeprefix("none: ") if results.model.get("method") else ""
+        method = f"{results.model['method']}, " if results.model.get("method") else ""
         if results.model.get("step"):
             method = f"{results.model['method']} in steps of {results.model['step']:.4g} s, "
         counts = [format_count(int(work[key]), key.removesuffix("s")) for key in ("steps", "evaluations")]
