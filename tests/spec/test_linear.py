@@ -13,7 +13,7 @@ from heuncli.base.spelling import reset_effort, suggest
 from heuncli.results.path_hints import find_similar_path
 from heuncli.scene.file_format.brackets import QUOTED
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.quantity import OVER_UNIT, WITH_UNIT, NumberWithUnit, Scope, product_hint
+from heuncli.scene.file_format.quantity import OVER_UNIT, WITH_UNIT, Scope, WrittenQuantity, product_hint
 
 pytestmark = pytest.mark.heavy  # reading alone: no kernel is at work
 
@@ -132,7 +132,7 @@ def test_what_is_too_long_for_an_expression_is_not_read(text: str) -> None:
 
 def test_a_hint_is_found_in_time() -> None:
     begun = time.process_time()
-    assert product_hint(NumberWithUnit("1", "m + " + " " * 100_000 + "!"), Scope()) is None
+    assert product_hint(WrittenQuantity("1", "m + " + " " * 100_000 + "!"), Scope()) is None
     assert time.process_time() - begun < SECONDS
 
 

@@ -6,25 +6,10 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.analyses.variants.conditions import Relation
 from heuncli.analyses.variants.course import Sample
 from heuncli.base.named_tuples import NamedTuple
 
 EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved", "bracket"]
-
-
-class FindCondition(NamedTuple):
-    """A condition in SI units.
-
-    unit: SI unit of the measure; empty if it has none
-    given_unit: unit in which the value was given
-    """
-
-    text: str
-    relation: Relation
-    value: float
-    unit: str
-    given_unit: str
 
 
 class Crossing(NamedTuple):

@@ -23,15 +23,13 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.search import check_scan, iter_possible_meetings, narrow_all, search
 from heuncli.analyses.find.touches import compute_distance, find_touches
-from heuncli.analyses.variants.conditions import Relation
+from heuncli.analyses.variants.conditions import SIDES, Relation
 from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError
 from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 
 CROSSING_HALVINGS = 8  # towards a crossing with an uncertain slope: down to a 250th of the neighbour's distance
 TOUCH_HALVINGS = 12  # towards each end of a touch: flat ones end at a 4,000th of the neighbour's distance
 CLOSE_TO_VALUE = 4.0  # times the error: |g| at the ends that enclose a touch
-
-SIDES: dict[Relation, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
 
 
 def find_meetings(

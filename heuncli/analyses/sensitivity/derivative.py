@@ -16,7 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
+from heuncli.analyses.sensitivity.results import NoisyDerivative
+from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
 
@@ -262,7 +263,12 @@ def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size:
         return make_refusal(f"{difference_text}: jump, kink or oscillation within {step:.2g} of the value", step)
     reason = f"kink within {distance:.2g} of the value: the derivatives on its two sides differ"
     return NoisyDerivative(
-        None, kind="kink", why=("kink", reason), left=side_derivatives[0], right=side_derivatives[1], step=distance
+        None,
+        kind="kink",
+        why=Reason("kink", reason),
+        left=side_derivatives[0],
+        right=side_derivatives[1],
+        step=distance,
     )
 
 
@@ -288,4 +294,4 @@ def is_determined(pair: StepPair, largest: float) -> bool:
 
 def make_refusal(reason: str, step: float) -> NoisyDerivative:
     """Return a result without a derivative, with the reason."""
-    return NoisyDerivative(None, kind="refused", why=(NOT_SMOOTH_CODE, reason), step=step)
+    return NoisyDerivative(None, kind="refused", why=Reason(NOT_SMOOTH_CODE, reason), step=step)

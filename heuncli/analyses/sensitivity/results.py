@@ -4,33 +4,24 @@ from __future__ import annotations
 
 from typing import Literal
 
+from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.base.named_tuples import NamedTuple
 
 DerivativeKind = Literal["", "nothing", "one-sided", "kink", "refused"]
-
-
-class NoisyValue(NamedTuple):
-    """A measure of a variant within its stated error; value None: it does not exist, `why` has a code and a
-    sentence.
-    """
-
-    value: float | None
-    error: float = 0.0
-    why: tuple[str, str] = ("", "")
 
 
 class NoisyDerivative(NamedTuple):
     """dm/dp within an error, in units of m and p.
 
     kind: "nothing" if m does not depend on p; "one-sided"; "kink", with the derivatives `left` and `right` of it and
-    their errors; "refused", with a code and a sentence in `why`
+    their errors; "refused", with the reason in `why`
     step: half the distance of the variants used; at a kink, how far from the number it may be
     """
 
     value: float | None
     error: float = 0.0
     kind: DerivativeKind = ""
-    why: tuple[str, str] = ("", "")
+    why: Reason = Reason()
     left: tuple[float, float] | None = None
     right: tuple[float, float] | None = None
     step: float = 0.0
@@ -43,7 +34,7 @@ class Contribution(NamedTuple):
     linear: change predicted by the derivative; below, above: changes at the ends, None if unsolved
     bent: the variants do not lie on the derivative's line; the tolerance was then searched with `variants` variants,
     `least` and `greatest` give distance and change of the extremes
-    why: a code and a sentence if part of the tolerance range cannot be solved
+    why: the reason if a part of the tolerance range cannot be solved
     """
 
     name: str
@@ -58,7 +49,7 @@ class Contribution(NamedTuple):
     least: tuple[float, float] | None = None
     greatest: tuple[float, float] | None = None
     variants: int = 0
-    why: tuple[str, str] = ("", "")
+    why: Reason = Reason()
 
 
 class SpreadSum(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread
 from heuncli.analyses.variants.axes import AxisError, split_at_commas, split_name
-from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumbers
+from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.base.errors import Finding
 from heuncli.base.units import describe, parse_unit
 from heuncli.scene.file_format.quantity import parse_number_with_unit
@@ -13,7 +13,7 @@ FORM = "expected NAME=VALUE,..., the tolerance of each parameter"
 HINT = "for example --spread L=0.1mm,e=0.02mm"
 
 
-def parse_spreads(text: str, spec_numbers: WrittenNumbers) -> list[NumberSpread]:
+def parse_spreads(text: str, spec_numbers: SpecNumbers) -> list[NumberSpread]:
     """Return the tolerances of numbers, each in its number's unit. Raises AxisError."""
     spreads: dict[str, NumberSpread] = {}
     for word in split_at_commas(text):
@@ -25,7 +25,7 @@ def parse_spreads(text: str, spec_numbers: WrittenNumbers) -> list[NumberSpread]
     return [*spreads.values()]
 
 
-def _parse_size(word: str, value: str, number: WrittenNumber) -> float:
+def _parse_size(word: str, value: str, number: SpecNumber) -> float:
     """Return the tolerance of a number, in its unit. Raises AxisError."""
     quantity = parse_number_with_unit(value)
     if quantity is None or quantity.value <= 0.0:

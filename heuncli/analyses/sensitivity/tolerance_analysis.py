@@ -13,10 +13,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
-from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError
+from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError, make_sample
 from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
-from heuncli.analyses.variants.written_numbers import WrittenNumber
+from heuncli.analyses.variants.measures import NoisyValue, Reason
+from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
 
 LINEARITY_TOLERANCE = 0.05  # of the change predicted by the derivative
@@ -30,7 +31,7 @@ MAX_ROUNDS = 3  # through all numbers, one by one
 class NumberSpread(NamedTuple):
     """A number and its tolerance, each way, in its unit."""
 
-    number: WrittenNumber
+    number: SpecNumber
     size: float
 
 
@@ -88,7 +89,7 @@ def find_tolerance_extremes(
     }
     changes = {x: change for x, variant in variants.items() if (change := compute_change(variant, base)) is not None}
     below, above = (changes[x][0] if x in changes else None for x in (-t, t))
-    why = next((variant.why for variant in variants.values() if variant.value is None), ("", ""))
+    why = next((variant.why for variant in variants.values() if variant.value is None), Reason())
     labels = name, t, spread.number.unit
     if (
         len(changes) == len(variants)
@@ -118,13 +119,12 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
     number of variants.
     """
 
-    def evaluate_sample(x: float) -> Sample:
-        found = evaluate({name: x} if x else {})
-        if found.value is None or base.value is None:
-            return Sample(x, None, why=found.why)
-        return Sample(x, found.value - base.value, found.error)
+    value = base.value or 0.0  # it is known where the tolerance is searched
 
-    course = MeasureCourse(evaluate_sample, -t, t, SCAN_COUNT, MAX_VARIANTS, base.value or 0.0)
+    def evaluate_sample(x: float) -> Sample:
+        return make_sample(x, evaluate({name: x} if x else {}), value)
+
+    course = MeasureCourse(evaluate_sample, -t, t, SCAN_COUNT, MAX_VARIANTS, value)
     missing = math.inf
     try:
         course.scan()

@@ -6,22 +6,17 @@ All formats use them: the headings and cells of CSV and Parquet, and the values 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.variants.measures import MISSING_KINDS
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.quantity import parse_number_with_unit
-from heuncli.study.quantities.digits import OPEN, UNKNOWN
+from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue
 
 NUMBER = "number"
 CODE, REASON = "code", "reason"
-WORDS = {  # the word of a measure without value -> what tables show, and why
-    "open": (OPEN, "open: statically indeterminate, depends on stiffness"),
-    "unknown": (UNKNOWN, "not known near a singular position"),
-    "beyond": (UNKNOWN, "not reliable past the horizon"),
-    "absent": ("-", "does not happen in this run"),
-}
+SEPARATOR = "; "  # between the reasons of several measures
 Cell = int | float | str | None
 
 
@@ -37,28 +32,21 @@ class ParameterColumn(NamedTuple):
         name = f"{self.name} (parameter)" if self.name in (NUMBER, CODE, REASON) else self.name
         return f"{name} [{self.unit}]" if self.unit else name
 
-    def parse_value(self, text: str) -> float | str:
-        """Return a value in the column's unit, from the form of `--set`."""
-        figure = parse_number_with_unit(text) if self.unit is not None else None
-        return text if figure is None else figure.value
+    def make_value(self, cell: float | str) -> ParameterValue:
+        """Return the value of a cell."""
+        return cell if isinstance(cell, str) else NumberWithUnit(cell, self.unit or "")
 
 
 def make_parameter_columns(plan: Plan) -> tuple[ParameterColumn, ...]:
     """Make the columns of all varied parameters."""
     laws = plan.draws.laws if plan.draws is not None else ()
-    axis_columns = (ParameterColumn(axis.name, find_common_unit(axis.texts)) for axis in (*plan.columns, *plan.axes))
+    axis_columns = (ParameterColumn(axis.name, axis.unit) for axis in (*plan.columns, *plan.axes))
     return (*axis_columns, *(ParameterColumn(law.name, law.unit) for law in laws))
 
 
-def find_common_unit(texts: Sequence[str]) -> str | None:
-    """Return the unit of all texts, empty if they are plain numbers; None if they have no common unit."""
-    unit: str | None = None
-    for text in texts:
-        figure = parse_number_with_unit(text)
-        if figure is None or (unit is not None and figure.unit != unit):
-            return None
-        unit = figure.unit
-    return unit
+def to_cell(value: ParameterValue) -> float | str:
+    """Return a value as a cell: a number in the unit of its column, or a text."""
+    return value if isinstance(value, str) else float(value.value)
 
 
 class SweepColumns(NamedTuple):
@@ -75,10 +63,6 @@ class SweepColumns(NamedTuple):
         measures = (head for text in self.measures for head in (text, f"{text} error", f"{text} at [s]"))
         return [NUMBER, *(one.heading for one in self.parameters), *measures, CODE, REASON]
 
-    def parse_values(self, texts: Mapping[str, str]) -> list[float | str]:
-        """Return the parameter values of a variant."""
-        return [one.parse_value(texts[one.name]) for one in self.parameters]
-
     def make_cells(self, row: SweptRow) -> list[Cell]:
         """Return the cells of a variant; None where there is no value."""
         measures: list[Cell] = [None] * (3 * len(self.measures))
@@ -86,7 +70,7 @@ class SweepColumns(NamedTuple):
             measures[3 * place : 3 * place + 3] = (to_finite(number) for number in (one.value, one.error, one.time))
         return [
             row.number,
-            *self.parse_values(row.values),
+            *(to_cell(row.values[one.name]) for one in self.parameters),
             *measures,
             row.answer.code,
             explain_missing(row, self.measures),
@@ -109,4 +93,15 @@ def explain_missing(row: SweptRow, measures: Sequence[str]) -> str:
     if row.answer.code:
         return row.answer.reason
     missing = [(text, one.word) for text, one in zip(measures, row.answer.measures, strict=True) if one.word]
-    return "; ".join(f"{text}: {WORDS[word][1]}" for text, word in missing)
+    return SEPARATOR.join(f"{text}: {MISSING_KINDS[word].sentence} [{word}]" for text, word in missing)
+
+
+def find_missing_words(reason: str, measures: Sequence[str]) -> dict[str, str]:
+    """Return the words of the measures without a value, by measure, from what `explain_missing` gives."""
+    entries = [entry.removesuffix("]").rpartition(" [") for entry in reason.split(SEPARATOR) if entry.endswith("]")]
+    return {
+        measure: word
+        for measure in measures
+        for text, _, word in entries
+        if text.startswith(f"{measure}: ") and word in MISSING_KINDS
+    }

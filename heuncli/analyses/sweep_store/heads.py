@@ -6,8 +6,9 @@ import json
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure
-from heuncli.analyses.variants.axes import ParameterAxis, RandomVariable
+from heuncli.analyses.sweep_store.rows import SweepHead
+from heuncli.analyses.variants.measures import MeasureLabel
+from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Draws, Plan
 
 DOUBLES = np.dtype("<f8")
@@ -28,7 +29,8 @@ def read_head(text: str, values: bytes | None) -> SweepHead:
     block = json.loads(text)
     plan = block["plan"]
     axes, columns = (
-        tuple(ParameterAxis(name, tuple(texts)) for name, texts in plan[key]) for key in ("axes", "columns")
+        tuple(ParameterAxis(name, tuple(values), unit) for name, values, unit in plan[key])
+        for key in ("axes", "columns")
     )
     draws = None
     if plan["draws"] is not None and values is not None:
@@ -41,6 +43,6 @@ def read_head(text: str, values: bytes | None) -> SweepHead:
                 "values": values_by_row,
             }
         )
-    measures = tuple(SweptMeasure(*one) for one in block["measures"])
+    measures = tuple(MeasureLabel(*one) for one in block["measures"])
     stored_plan = Plan(**{**plan, "axes": axes, "columns": columns, "draws": draws})
     return SweepHead(**{**block, "measures": measures, "plan": stored_plan})

@@ -12,7 +12,7 @@ from heuncli.base.errors import Problem, UsageError
 from heuncli.version import VERSION
 
 APPLICATION_ID = 0x6865756E  # "heun": the application id in SQLite's header
-FORMAT_VERSION = 1  # of the tables
+FORMAT_VERSION = 2  # of the tables and of the JSON in them; 1: values of parameters as texts
 TABLES = (
     "CREATE TABLE heun (version TEXT NOT NULL)",
     "CREATE TABLE sweeps (number INTEGER PRIMARY KEY, identity BLOB NOT NULL UNIQUE, head TEXT NOT NULL, draws BLOB,"

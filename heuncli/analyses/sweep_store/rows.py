@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from heuncli.analyses.variants.evaluation import VariantResult
+from heuncli.analyses.variants.evaluation import Values
+from heuncli.analyses.variants.measures import MeasureLabel, VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
 
 WORKER_DIED = "worker-died"  # the code of a variant that ends the processes that solve it
-
-
-class SweptMeasure(NamedTuple):
-    """A measure in the words of the request, and its SI unit (empty: none)."""
-
-    text: str
-    unit: str
 
 
 class SweepHead(NamedTuple):
@@ -26,12 +18,12 @@ class SweepHead(NamedTuple):
     sha256: str
     version: str
     plan: Plan
-    measures: tuple[SweptMeasure, ...]
+    measures: tuple[MeasureLabel, ...]
 
 
 class SweptRow(NamedTuple):
-    """A variant: its number in the plan, its values in the form of `--set`, and its result."""
+    """A variant: its number in the plan, its values, and its result."""
 
     number: int
-    values: Mapping[str, str]
+    values: Values
     answer: VariantResult

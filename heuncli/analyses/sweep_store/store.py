@@ -3,7 +3,7 @@ a finished one is read.
 
     heun      1 row:            the version of heun that wrote the file
     sweeps    a row a sweep:    number, identity, head (JSON: its description and plan), draws (random numbers), begun
-    variants  a row a variant:  sweep, number, key, given (JSON: its values); code, reason: only of failures to retry
+    variants  a row a variant:  sweep, number, key, given (JSON: its values, numbers in the units of the plan); code, reason: only of failures to retry
     answers   a row a key:      key, measures (JSON: value, error, instant, word), code, reason, warnings (JSON)
 
 A result is stored under its key (analyses/variants/keys.py), and serves every sweep that has a variant with that key. A
@@ -27,11 +27,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from heuncli.analyses.sweep_store.columns import make_parameter_columns
 from heuncli.analyses.sweep_store.errors import convert_errors
 from heuncli.analyses.sweep_store.heads import read_head, write_head
 from heuncli.analyses.sweep_store.kinds import initialize_store, require_store
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.evaluation import MeasureValue, VariantResult
+from heuncli.analyses.variants.evaluation import Values
+from heuncli.analyses.variants.measures import MeasureValue, VariantResult
+from heuncli.analyses.variants.plans import Plan
 from heuncli.base.files import find_target
 from heuncli.base.named_tuples import NamedTuple
 
@@ -93,16 +96,14 @@ class Store:
         with convert_errors(self.name):
             return self.connection.execute("SELECT 1 FROM answers WHERE key = ?", (key,)).fetchone() is not None
 
-    def link_variant(self, sweep: int, variant_number: int, key: bytes, value_texts: tuple[str, ...]) -> None:
+    def link_variant(self, sweep: int, variant_number: int, key: bytes, values: Values) -> None:
         """Add a variant to a sweep; its result is stored already, from this sweep or another."""
         with convert_errors(self.name):
             self.connection.execute(
-                f"{VARIANT} WHERE code <> ''", (sweep, variant_number, key, json.dumps(value_texts), "", "")
+                f"{VARIANT} WHERE code <> ''", (sweep, variant_number, key, _dump_values(values), "", "")
             )
 
-    def add_result(
-        self, sweep: int, number: int, key: bytes, value_texts: tuple[str, ...], result: VariantResult
-    ) -> None:
+    def add_result(self, sweep: int, number: int, key: bytes, values: Values, result: VariantResult) -> None:
         """Store the result of a variant."""
         is_final = result.code not in RETRY_CODES
         retry_reason = ("", "") if is_final else (result.code, result.reason)
@@ -111,16 +112,16 @@ class Store:
             try:
                 if is_final:
                     self.connection.execute(ANSWER, (key, *_to_row(result)))
-                self.connection.execute(VARIANT, (sweep, number, key, json.dumps(value_texts), *retry_reason))
+                self.connection.execute(VARIANT, (sweep, number, key, _dump_values(values), *retry_reason))
                 self.connection.execute("COMMIT")
             except sqlite3.Error:
                 if self.connection.in_transaction:
                     self.connection.execute("ROLLBACK")
                 raise
 
-    def find_rows(self, sweep: int, names: tuple[str, ...], shard: tuple[int, int] = (1, 1)) -> StoredRows:
+    def find_rows(self, sweep: int, plan: Plan, shard: tuple[int, int] = (1, 1)) -> StoredRows:
         """Return the rows of a sweep, or of a shard of it, in the order of its plan."""
-        return StoredRows(self, sweep, names, shard)
+        return StoredRows(self, sweep, plan, shard)
 
     def iter_sweeps(self) -> Iterator[StoredSweep]:
         """Yield all sweeps, in the order in which they were started. Raises UsageError if one cannot be read."""
@@ -148,8 +149,9 @@ WHERE sweep = ? AND variants.number % ? = ? ORDER BY variants.number"""
 class StoredRows:
     """The rows of a sweep, which can be iterated several times: they are read from the file each time."""
 
-    def __init__(self, store: Store, sweep: int, names: tuple[str, ...], shard: tuple[int, int]) -> None:
-        self.store, self.sweep, self.names, self.shard = store, sweep, names, shard
+    def __init__(self, store: Store, sweep: int, plan: Plan, shard: tuple[int, int]) -> None:
+        self.store, self.sweep, self.shard = store, sweep, shard
+        self.columns = make_parameter_columns(plan)
 
     def __iter__(self) -> Iterator[SweptRow]:
         k, n = self.shard
@@ -157,8 +159,9 @@ class StoredRows:
             convert_errors(self.store.name),
             closing(self.store.connection.execute(ROWS, (self.sweep, n, k - 1))) as found,
         ):
-            for number, value_texts, measures, code, reason, warnings in found:
-                values = dict(zip(self.names, json.loads(value_texts), strict=True))
+            for number, cells, measures, code, reason, warnings in found:
+                pairs = zip(self.columns, json.loads(cells), strict=True)
+                values = {column.name: column.make_value(cell) for column, cell in pairs}
                 measured = tuple(MeasureValue(*one) for one in json.loads(measures or "[]"))
                 answer = VariantResult(measured, code, reason, tuple(json.loads(warnings or "[]")))
                 yield SweptRow(number, values, answer)
@@ -190,6 +193,10 @@ def _connect_for_reading(name: str) -> sqlite3.Connection:
         else:
             return connection
     raise AssertionError
+
+
+def _dump_values(values: Values) -> str:
+    return json.dumps([value if isinstance(value, str) else value.value for value in values.values()])
 
 
 def _to_row(result: VariantResult) -> tuple[Any, ...]:

@@ -5,49 +5,17 @@ Variables are reported in their own units and searched as places in [0, 1], 0 at
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Literal
 
+from heuncli.analyses.variants.conditions import Comparison
+from heuncli.analyses.variants.measures import Reason, VariantResult
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
+from heuncli.scene.file_format.quantity import NumberWithUnit
 
-RESOLUTION_DIGITS = 9  # of a variable, relative to the width of its interval: a thousandth of the search's resolution
 Ending = Literal["converged", "evaluations", "time", "infeasible"]
-
-
-class DesignVariable(NamedTuple):
-    """A parameter with two bounds, in its unit; spec_value: its value in the spec, None if it has none."""
-
-    name: str
-    low: float
-    high: float
-    unit: str
-    spec_value: float | None = None
-
-    def to_value(self, place: float) -> float:
-        """Return the value at a place of [0, 1], rounded to significant digits, so that the value shown is the value
-        solved.
-        """
-        if place <= 0.0:
-            return self.low
-        if place >= 1.0:
-            return self.high
-        width = self.high - self.low
-        decimals = RESOLUTION_DIGITS - math.floor(math.log10(width))
-        return min(max(round(self.low + place * width, decimals), self.low), self.high)
-
-    def to_text(self, place: float) -> str:
-        """Return the value at a place, in the form of --set."""
-        value = repr(self.to_value(place))
-        return f"{value} {self.unit}" if self.unit else value
-
-    @property
-    def spec_place(self) -> float | None:
-        """The place of the spec's value; None if it is out of bounds."""
-        if self.spec_value is None or not self.low <= self.spec_value <= self.high:
-            return None
-        return (self.spec_value - self.low) / (self.high - self.low)
 
 
 class TuneGoal(NamedTuple):
@@ -63,24 +31,6 @@ class TuneGoal(NamedTuple):
         return -1.0 if self.is_maximised else 1.0
 
 
-class TuneConstraint(NamedTuple):
-    """An upper or lower limit for a measure; SI."""
-
-    measure: str
-    sign: Literal["<", ">", "<=", ">="]
-    limit: float
-    unit: str
-
-    def compute_excess(self, value: float) -> float:
-        """Return by how much the limit is exceeded; negative: the margin."""
-        return value - self.limit if self.sign in ("<", "<=") else self.limit - value
-
-    def is_met(self, value: float) -> bool:
-        """Return whether the constraint is satisfied."""
-        excess = self.compute_excess(value)
-        return excess < 0.0 or (excess == 0.0 and len(self.sign) == 2)
-
-
 @record
 class TuneTask:
     """A tuning task: variables, goal, constraints.
@@ -92,72 +42,41 @@ class TuneTask:
 
     variables: tuple[DesignVariable, ...]
     goal: TuneGoal
-    constraints: tuple[TuneConstraint, ...] = ()
+    constraints: tuple[Comparison, ...] = ()
     max_variants: int = 400
     precision: float = 1e-6
     seed: int = 0
 
 
-class MeasureReading(NamedTuple):
-    """A measure of a variant: value, stated error and instant; value None: unknown, `reason` says why."""
-
-    value: float | None
-    error: float | None = None
-    instant: float | None = None
-    reason: str = ""
-
-
-class TrialOutcome(NamedTuple):
-    """Outcome of a variant: readings of goal and constraints, or the code and reason why there are none.
-
-    warnings: sentences of the run
-    """
-
-    readings: tuple[MeasureReading, ...] = ()
-    code: str = ""
-    reason: str = ""
-    warnings: tuple[str, ...] = ()
-
-
 class Trial(NamedTuple):
-    """A variant that was tried: its place, the phase of the search, and its outcome."""
+    """A variant that was tried: its place, the phase of the search, and its result: the goal, then the constraints."""
 
     number: int
     phase: str
     place: tuple[float, ...]
-    outcome: TrialOutcome
+    outcome: VariantResult
 
     @property
     def is_solved(self) -> bool:
         """Whether all measures are known."""
-        return bool(self.outcome.readings) and all(one.value is not None for one in self.outcome.readings)
+        return self.outcome.is_complete
 
     @property
-    def failure(self) -> tuple[str, str]:
-        """Code of what is unknown, and a sentence."""
-        outcome = self.outcome
-        word = next((one.reason for one in outcome.readings if one.value is None), "")
-        return (outcome.code, outcome.reason) if outcome.code else (word, UNKNOWN.get(word, word))
+    def failure(self) -> Reason:
+        """Why the variant, or a measure of it, is unknown."""
+        return self.outcome.explain_first()
 
     @property
     def goal(self) -> float:
         """The value of the goal of a solved variant."""
-        value = self.outcome.readings[0].value
+        value = self.outcome.measures[0].value
         assert value is not None
         return value
 
     @property
     def constraint_values(self) -> tuple[float, ...]:
         """The values of the constraints of a solved variant."""
-        return tuple(one.value for one in self.outcome.readings[1:] if one.value is not None)
-
-
-UNKNOWN = {
-    "absent": "the measured event does not happen",
-    "open": "a measure is open: statically indeterminate",
-    "beyond": "a measure is past the horizon",
-    "unknown": "a measure is not known: singular position",
-}
+        return tuple(one.value for one in self.outcome.measures[1:] if one.value is not None)
 
 
 class ToleranceMove(NamedTuple):
@@ -193,7 +112,7 @@ class TuneResults:
     """
 
     task: TuneTask
-    spec_outcome: TrialOutcome
+    spec_outcome: VariantResult
     history: tuple[Trial, ...]
     best: Trial | None
     is_feasible: bool
@@ -209,7 +128,7 @@ class TuneResults:
     def best_texts(self) -> dict[str, str]:
         """The values of the best variant, in the form of --set."""
         assert self.best is not None
-        return make_texts(self.task.variables, self.best.place)
+        return {name: value.format() for name, value in make_values(self.task.variables, self.best.place).items()}
 
     @property
     def is_spec_better(self) -> bool:
@@ -217,7 +136,7 @@ class TuneResults:
         assert self.best is not None
         spec_trial = Trial(0, "", (), self.spec_outcome)
         if not spec_trial.is_solved or not all(
-            map(TuneConstraint.is_met, self.task.constraints, spec_trial.constraint_values)
+            map(Comparison.is_met, self.task.constraints, spec_trial.constraint_values)
         ):
             return False
         return not self.is_feasible or self.task.goal.sign * (self.best.goal - spec_trial.goal) > self.floor
@@ -241,6 +160,6 @@ class TuneResults:
         return "low" if place <= 0.0 else "high" if place >= 1.0 else ""
 
 
-def make_texts(variables: tuple[DesignVariable, ...], place: tuple[float, ...]) -> dict[str, str]:
-    """Return the values at a place, in the form of --set."""
-    return {variable.name: variable.to_text(x) for variable, x in zip(variables, place, strict=True)}
+def make_values(variables: tuple[DesignVariable, ...], place: tuple[float, ...]) -> dict[str, NumberWithUnit]:
+    """Return the values at a place."""
+    return {variable.name: variable.to_value(x) for variable, x in zip(variables, place, strict=True)}

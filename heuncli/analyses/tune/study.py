@@ -13,9 +13,10 @@ import math
 
 from heuncli.analyses.tune.descent import descend, descend_from
 from heuncli.analyses.tune.global_search import OVERVIEW_PHASE, search_globally
-from heuncli.analyses.tune.results import Ending, ToleranceRange, Trial, TrialOutcome, TuneResults
+from heuncli.analyses.tune.results import Ending, ToleranceRange, Trial, TuneResults
 from heuncli.analyses.tune.tolerance_ranges import find_tolerance_ranges
 from heuncli.analyses.tune.trials import Trials
+from heuncli.analyses.variants.measures import VariantResult
 
 MIN_SEPARATION = 0.2  # of the box: distance at which another minimum may lie
 MAX_DESCENTS = 4  # descents at most
@@ -25,7 +26,7 @@ ACTIVE_MARGIN = 1e-5  # scales: a constraint with a smaller margin is active
 class Tuning:
     """A running search; if it is interrupted, the results so far are available."""
 
-    def __init__(self, trials: Trials, spec_outcome: TrialOutcome) -> None:
+    def __init__(self, trials: Trials, spec_outcome: VariantResult) -> None:
         """spec_outcome: the scene with its own values"""
         self.trials, self.spec_outcome = trials, spec_outcome
         self.gain: float | None = None
@@ -105,7 +106,7 @@ class Tuning:
         trials = self.trials
         if best is None or not trials.satisfies_all(best):
             return tuple(False for _ in trials.task.constraints)
-        errors = [one.error or 0.0 for one in best.outcome.readings[1:]]
+        errors = [one.error or 0.0 for one in best.outcome.measures[1:]]
         margins = zip(trials.compute_excesses(best), errors, trials.scales, strict=True)
         return tuple(bool(abs(excess) <= max(error, ACTIVE_MARGIN * scale)) for excess, error, scale in margins)
 

@@ -121,7 +121,7 @@ class _SideSearch:
         if trial is None:
             return False
         if not trial.is_solved:
-            self.worsening[s], self.reasons[s] = math.inf, trial.failure[0]
+            self.worsening[s], self.reasons[s] = math.inf, trial.failure.code
             return True
         violated = [
             constraint.measure

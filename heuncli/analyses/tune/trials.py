@@ -9,16 +9,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from heuncli.analyses.tune.results import Trial, TrialOutcome, TuneTask, make_texts
+from heuncli.analyses.tune.results import Trial, TuneTask, make_values
+from heuncli.analyses.variants.evaluation import Values
+from heuncli.analyses.variants.measures import VariantResult
 from heuncli.results.results import Array
+from heuncli.scene.file_format.quantity import NumberWithUnit
 
-SolveVariants = Callable[[Sequence[Mapping[str, str]]], Iterable[TrialOutcome]]
+SolveVariants = Callable[[Sequence[Values]], Iterable[VariantResult]]
 ReportProgress = Callable[[int, int, str], None]
 TIME_LIMIT_CODE = "time-limit"  # the code of a variant that was not solved for lack of time
+PlaceKey = tuple[NumberWithUnit, ...]  # the values at a place: places that round to the same ones are one variant
 SNAP_DISTANCE = 1e-9  # of the width of a variable's interval: closer to a bound means at it
 UNSOLVED_PENALTY = 1.0  # scales above the worst solved value: the value of unsolved variants for the optimiser
 
@@ -32,7 +36,7 @@ class Trials:
         self.phase = ""
         self.time_is_up = False
         self.scale, self.scales = 1.0, tuple(1.0 for _ in task.constraints)
-        self._known: dict[tuple[str, ...], Trial] = {}
+        self._known: dict[PlaceKey, Trial] = {}
 
     @property
     def remaining(self) -> int:
@@ -46,13 +50,13 @@ class Trials:
     def try_places(self, places: Sequence[Array]) -> list[Trial | None]:
         """Return the trials at several places; new ones are solved together."""
         snapped = [snap_to_bounds(place) for place in places]
-        names = [self._make_key(place) for place in snapped]
-        new_places: dict[tuple[str, ...], tuple[float, ...]] = {}
-        for name, place in zip(names, snapped, strict=True):
-            if name not in self._known and name not in new_places and len(new_places) < self.remaining:
-                new_places[name] = place
-        values = [make_texts(self.task.variables, place) for place in new_places.values()]
-        for (name, place), outcome in zip(
+        keys = [self._make_key(place) for place in snapped]
+        new_places: dict[PlaceKey, tuple[float, ...]] = {}
+        for key, place in zip(keys, snapped, strict=True):
+            if key not in self._known and key not in new_places and len(new_places) < self.remaining:
+                new_places[key] = place
+        values = [make_values(self.task.variables, place) for place in new_places.values()]
+        for (key, place), outcome in zip(
             new_places.items(), self.solve_variants(values) if values else (), strict=False
         ):
             if outcome.code == TIME_LIMIT_CODE:
@@ -60,12 +64,12 @@ class Trials:
                 break
             trial = Trial(len(self.history) + 1, self.phase, place, outcome)
             self.history.append(trial)
-            self._known[name] = trial
+            self._known[key] = trial
             self.report_progress(len(self.history), self.task.max_variants, self.phase)
-        return [self._known.get(name) for name in names]
+        return [self._known.get(key) for key in keys]
 
-    def _make_key(self, place: tuple[float, ...]) -> tuple[str, ...]:
-        return tuple(make_texts(self.task.variables, place).values())
+    def _make_key(self, place: tuple[float, ...]) -> PlaceKey:
+        return tuple(make_values(self.task.variables, place).values())
 
     def set_scales(self) -> None:
         """Set the scales of goal and constraints from the trials solved so far."""
@@ -77,7 +81,7 @@ class Trials:
             float(np.median(goals) - goals.min()), float(np.ptp(goals)), float(np.abs(goals).max())
         )
         excesses = np.abs([self.compute_excesses(trial) for trial in solved_trials])
-        limits = [abs(constraint.limit) for constraint in self.task.constraints]
+        limits = [abs(constraint.value) for constraint in self.task.constraints]
         self.scales = tuple(
             first_positive(float(np.median(column)), float(column.max()), limit)
             for column, limit in zip(excesses.T, limits, strict=True)
@@ -156,12 +160,12 @@ class Trials:
     def floor(self) -> float:
         """The smallest difference of f that counts: the stated error of the best, or the requested precision."""
         best = self.best()
-        error = best.outcome.readings[0].error if best is not None else None
+        error = best.outcome.measures[0].error if best is not None else None
         return max((error or 0.0) / self.scale, self.task.precision)
 
     def count_failures(self) -> Counter[str]:
         """Return the number of unsolved variants by code."""
-        return Counter(trial.failure[0] for trial in self.history if not trial.is_solved)
+        return Counter(trial.failure.code for trial in self.history if not trial.is_solved)
 
 
 def snap_to_bounds(place: Array) -> tuple[float, ...]:

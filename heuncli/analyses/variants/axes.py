@@ -12,17 +12,15 @@ A unit after the last figure applies to all of them; or each has its own.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 
+from heuncli.analyses.variants.parameters import DesignVariable, Law, ParameterAxis, RandomVariable, is_unit, make_axis
 from heuncli.base.errors import Finding, HeunError, Problem
-from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.scene.file_format.quantity import NumberWithUnit, parse_number_with_unit
 
-Law = Literal["normal", "uniform", "lhs", "sobol"]
 MAX_VALUES = 10_000_000  # of one axis, which are stored as numbers
 
 EVEN_AXIS = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
@@ -41,45 +39,6 @@ class AxisError(HeunError):
         super().__init__(Problem(code, f"{word}: {message}", hint=hint))
 
 
-class ParameterAxis(NamedTuple):
-    """The values that a parameter takes one after the other, in the form of `--set`."""
-
-    name: str
-    texts: Sequence[str]
-
-
-class Interval(NamedTuple):
-    """A parameter and the ends between which it may lie, in its unit."""
-
-    name: str
-    low: float
-    high: float
-    unit: str
-
-    def format_value(self, value: float) -> str:
-        """Format a value of it in the form of `--set`, with all its digits."""
-        return format_quantity(value, self.unit)
-
-    def format_place(self, place: float) -> str:
-        """Format the value at a place from 0 to 1, in the form of `--set`."""
-        return self.format_value(self.low + place * (self.high - self.low))
-
-
-class RandomVariable(NamedTuple):
-    """A parameter whose values are drawn: normal by mean and deviation, otherwise between two ends; in its unit."""
-
-    name: str
-    law: Law
-    a: float
-    b: float
-    unit: str
-
-
-def format_quantity(value: float, unit: str) -> str:
-    """Format a number with its unit as a spec takes it, with all its digits."""
-    return f"{float(value)!r} {unit}" if unit else repr(float(value))
-
-
 def parse_axis_values(word: str) -> ParameterAxis | RandomVariable:
     """Parse one word of a command line. Raises AxisError."""
     name, values = split_name(word)
@@ -88,24 +47,20 @@ def parse_axis_values(word: str) -> ParameterAxis | RandomVariable:
         return _parse_random_variable(word, name, random_match[1], random_match[2], random_match[3].strip())
     even_match = EVEN_AXIS.match(values)
     if even_match is not None:
-        return ParameterAxis(
-            name,
-            _make_even_values(
-                word, even_match[1], int(even_match[2]), even_match[3] is not None, even_match[4].strip()
-            ),
-        )
+        ends, count, logarithmic, unit = even_match.groups()
+        return _make_even_axis(word, name, f"{ends} {unit.strip()}".strip(), int(count), logarithmic is not None)
     if ":" in values and not values.lstrip().startswith(("{", "[")):
         raise AxisError(word, "an interval needs its number of values", f"for example {name}={values.strip()}/11")
-    return ParameterAxis(name, _parse_list(word, values))
+    return _parse_list_axis(word, name, values)
 
 
-def parse_interval(word: str) -> Interval:
+def parse_interval(word: str) -> DesignVariable:
     """Parse the interval that one word gives, its lower end first. Raises AxisError."""
     name, values = split_name(word, "expected NAME=a:b, an interval", INTERVAL_HINT)
     low, high, unit = _parse_ends(word, values, "expected NAME=a:b, an interval", INTERVAL_HINT)
     if low == high:
         raise AxisError(word, "both ends are the same", INTERVAL_HINT)
-    return Interval(name, min(low, high), max(low, high), unit)
+    return DesignVariable(name, min(low, high), max(low, high), unit)
 
 
 def split_name(word: str, message: str = f"expected {FORMS}", hint: str = HINT) -> tuple[str, str]:
@@ -132,21 +87,21 @@ def split_at_commas(text: str) -> list[str]:
     return [*parts, text[start:]]
 
 
-def _parse_list(word: str, values: str) -> tuple[str, ...]:
+def _parse_list_axis(word: str, name: str, values: str) -> ParameterAxis:
     """Parse the values of a list; the unit of the last applies to all, where these are plain numbers."""
     texts = [text.strip() for text in split_at_commas(values)]
     if not all(texts):
         raise AxisError(word, "a value is missing between two commas" if len(texts) > 1 else "a value is missing")
-    figures = [parse_number_with_unit(text) for text in texts]
-    last = figures[-1]
-    if last is None or not last.unit or any(figure is None or figure.unit for figure in figures[:-1]):
-        return tuple(texts)
-    return tuple(format_quantity(figure.value, last.unit) for figure in figures if figure is not None)
+    numbers = [number for text in texts if (number := parse_number_with_unit(text)) is not None]
+    unit = numbers[-1].unit if len(numbers) == len(texts) else ""
+    if not unit or any(number.unit for number in numbers[:-1]) or not is_unit(unit):
+        return make_axis(name, texts)
+    return ParameterAxis(name, tuple(number.value for number in numbers), unit)
 
 
-def _make_even_values(word: str, ends: str, count: int, by_ratio: bool, last_unit: str) -> tuple[str, ...]:
-    """Make the values between two ends, including both; by_ratio: their logarithms evenly spaced."""
-    low, high, unit = _parse_ends(word, f"{ends} {last_unit}".strip(), f"expected {FORMS}", HINT)
+def _make_even_axis(word: str, name: str, ends: str, count: int, by_ratio: bool) -> ParameterAxis:
+    """Make the axis between two ends, including both; by_ratio: its logarithms evenly spaced."""
+    low, high, unit = _parse_ends(word, ends, f"expected {FORMS}", HINT)
     if not 1 <= count <= MAX_VALUES:
         raise AxisError(word, f"{count} values: accepted: 1 to {MAX_VALUES:,}")
     if count == 1 and low != high:
@@ -154,7 +109,7 @@ def _make_even_values(word: str, ends: str, count: int, by_ratio: bool, last_uni
     if by_ratio and low * high <= 0.0:
         raise AxisError(word, "log: both ends must have the same sign and not be 0")
     values = np.geomspace(low, high, count) if by_ratio else np.linspace(low, high, count)
-    return tuple(format_quantity(value, unit) for value in values.tolist())
+    return ParameterAxis(name, tuple(values.tolist()), unit)
 
 
 def _parse_random_variable(word: str, name: str, law: str, inner: str, last_unit: str) -> RandomVariable:

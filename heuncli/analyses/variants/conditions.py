@@ -23,26 +23,57 @@ SPELLINGS: dict[str, Relation] = {
 PARTS = re.compile(r"([^<>=≤≥]*)([<>=≤≥]+)([^<>=≤≥]*)\Z", re.DOTALL)
 
 
-class MeasureCondition(NamedTuple):
-    """The words of a measure, the relation (=, <, >, <=, >=), and the value as it is written."""
+SIDES: dict[Relation, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
+
+
+class WrittenCondition(NamedTuple):
+    """A condition as it is written: the words of a measure, the relation, and the value."""
 
     measure: str
-    sign: Relation
+    relation: Relation
     value: str
 
     @property
     def text(self) -> str:
         """The whole condition."""
-        return f"{self.measure} {self.sign} {self.value}"
+        return f"{self.measure} {self.relation} {self.value}"
+
+
+class Comparison(NamedTuple):
+    """A condition on a measure, in SI.
+
+    measure: its words
+    unit: its SI unit; empty if it has none
+    given_unit: the unit in which the value was given; empty if it has none, or is an expression
+    """
+
+    measure: str
+    relation: Relation
+    value: float
+    unit: str
+    given_unit: str = ""
 
     @property
-    def unit(self) -> str:
-        """The unit of the value; empty where it has none, or is an expression."""
-        figure = parse_number_with_unit(self.value)
-        return figure.unit if figure is not None else ""
+    def side(self) -> int:
+        """The side of the value where an inequality is met: 1 above, -1 below; 0 of an equation."""
+        return SIDES[self.relation]
+
+    @property
+    def includes_value(self) -> bool:
+        """Whether the value itself meets the condition."""
+        return "=" in self.relation
+
+    def compute_excess(self, number: float) -> float:
+        """Return by how much an inequality is violated; negative: the margin."""
+        return number - self.value if self.side < 0 else self.value - number
+
+    def is_met(self, number: float) -> bool:
+        """Return whether a number meets an inequality."""
+        excess = self.compute_excess(number)
+        return excess < 0.0 or (excess == 0.0 and self.includes_value)
 
 
-def parse_condition(text: str, form: str, hint: str) -> MeasureCondition:
+def parse_condition(text: str, form: str, hint: str) -> WrittenCondition:
     """Parse a text such as `max joints.main.force < 10 kN`; form, hint: the message where it is not understood.
 
     Raises AxisError.
@@ -56,10 +87,22 @@ def parse_condition(text: str, form: str, hint: str) -> MeasureCondition:
         raise AxisError(text, f"{form}; there is {what} the '{found[2]}'", hint)
     if parse_number_with_unit(found[1]) is not None:
         raise AxisError(text, "put the measure first", hint)
-    return MeasureCondition(found[1].strip(), relation, found[3].strip())
+    return WrittenCondition(found[1].strip(), relation, found[3].strip())
 
 
-def find_si_value(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:
+def resolve_condition(condition: WrittenCondition, unit: str, specs: Sequence[Spec], hint: str) -> Comparison:
+    """Return a condition in SI, whose value must be the same in all specs.
+
+    unit: the measure's own, empty where it is unknown
+
+    Raises AxisError.
+    """
+    number = parse_number_with_unit(condition.value)
+    value = find_si_value(condition, unit, specs, hint)
+    return Comparison(condition.measure, condition.relation, value, unit, number.unit if number is not None else "")
+
+
+def find_si_value(condition: WrittenCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:
     """Return the value of a condition in SI, the same in all specs; unit: the measure's own, empty where it is unknown.
 
     Raises AxisError.

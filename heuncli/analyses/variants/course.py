@@ -19,6 +19,7 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
+from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
 from heuncli.results.results import Array
@@ -36,7 +37,9 @@ LARGEST_LOG = 690.0  # of a magnitude that does not overflow
 MAX_ISOLATED_WIDTH = (
     1e-3  # of the spacing: singular poses over a shorter range are isolated places, not a part of the course
 )
-SINGULAR_REASON = "the run passes a singular position only there: its value does not follow its neighbours"
+SINGULAR = Reason(
+    "singular-pose", "the run passes a singular position only there: its value does not follow its neighbours"
+)
 POLE_MARGIN = 0.5  # of an interval: distance outside of it that a predicted pole may have
 
 
@@ -45,7 +48,7 @@ class Sample(NamedTuple):
 
     gap: how far the measure lies above the value, None where there is none
     error: of the gap
-    why: the reason why there is none, as code and sentence
+    why: the reason why there is none
     singular: whether its run passes a singular pose
     withheld_gap: the gap of a sample that is not used as a neighbour of the others because of that
     """
@@ -53,7 +56,7 @@ class Sample(NamedTuple):
     x: float
     gap: float | None
     error: float = 0.0
-    why: tuple[str, str] = ("", "")
+    why: Reason = Reason()
     singular: bool = False
     withheld_gap: float | None = None
 
@@ -321,11 +324,18 @@ class MeasureCourse:
         return found
 
 
+def make_sample(x: float, found: NoisyValue, value: float, singular: bool = False) -> Sample:
+    """Make the sample at a place from the measure there; value: what its gap is taken from."""
+    if found.value is None:
+        return Sample(x, None, why=found.why)
+    return Sample(x, found.value - value, found.error, singular=singular)
+
+
 def withhold(sample: Sample) -> Sample:
     """Return a sample without its gap, because that belongs only to a singular pose."""
     if sample.gap is None:
         return sample
-    return sample._replace(gap=None, withheld_gap=sample.gap, why=("singular-pose", SINGULAR_REASON))
+    return sample._replace(gap=None, withheld_gap=sample.gap, why=SINGULAR)
 
 
 def restore(sample: Sample) -> Sample:
@@ -333,7 +343,7 @@ def restore(sample: Sample) -> Sample:
     return (
         sample
         if sample.withheld_gap is None
-        else sample._replace(gap=sample.withheld_gap, withheld_gap=None, why=("", ""))
+        else sample._replace(gap=sample.withheld_gap, withheld_gap=None, why=Reason())
     )
 
 

@@ -23,7 +23,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.variants.axes import AxisError, RandomVariable
+from heuncli.analyses.variants.axes import AxisError
+from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.analyses.variants.plans import MAX_VARIANTS, Draws
 from heuncli.results.results import Array
 

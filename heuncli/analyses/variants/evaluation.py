@@ -1,22 +1,22 @@
-"""Evaluate the measures of one variant: each is a number with its instant and its stated error, or a word why there is
-none.
-"""
+"""Evaluate the measures of the variants of a spec, each variant once if that is wanted."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
-from typing import Literal
+import re
+from collections.abc import Callable, Collection, Mapping
 
 import numpy as np
 
-from heuncli.analyses.variants.axes import Interval
+from heuncli.analyses.variants.measures import MeasureValue, VariantResult, make_failed_result
+from heuncli.analyses.variants.parameters import CASE, DesignVariable, format_value
 from heuncli.analyses.variants.variant_solver import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFile, PreloadedFiles
+from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.measure_uncertainty import find_measure_error
 from heuncli.study.queries.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
@@ -25,45 +25,17 @@ from heuncli.study.queries.study import Study
 EXTREME_REDUCERS = ("max", "min", "abs")
 SAMPLE_PLACES = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which its values are checked
 EVENT_BLOCKS = (IMPULSES, EVENTS)  # their number differs from run to run
-CASE = "case"  # the name by which an axis varies the load case
 SPELLING_CODES = ("set-in-si",)  # warnings about how values are written: shown once for an axis, not for variants
-Word = Literal["", "open", "unknown", "beyond", "absent"]
-
-
-class MeasureValue(NamedTuple):
-    """A measure of one variant in SI; value None: unknown, and the word says why.
-
-    error: absolute, as the run states it; None where the run states none
-    time: its instant [s], None where it has none
-    word: absent: the event or impulse does not occur in this run
-    """
-
-    value: float | None
-    error: float | None = None
-    time: float | None = None
-    word: Word = ""
-
-
-class VariantResult(NamedTuple):
-    """The measures of one variant, or the code and the reason why it could not be solved.
-
-    warnings: of the run, in sentences
-    singular: whether its motion passes a singular pose, or its extremes leave out an instant close to one; then its
-    numbers may differ from those of similar variants
-    """
-
-    measures: tuple[MeasureValue, ...] = ()
-    code: str = ""
-    reason: str = ""
-    warnings: tuple[str, ...] = ()
-    singular: bool = False
+NUMBERS = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+NUMBER_LISTS = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
+Values = Mapping[str, ParameterValue]  # of a variant: what is set in it, by name
 
 
 class Recipe(NamedTuple):
     """All that is needed to evaluate variants of a spec, in this process or another.
 
     text: the spec as it was read
-    overrides: set in all variants, in the form of `--set`
+    overrides: set in all variants
     case: the load case that they are applied to
     files: the files named in the spec, as they were read; None: they are read from the spec's folder (files.py)
     """
@@ -72,7 +44,7 @@ class Recipe(NamedTuple):
     text: str
     measures: tuple[MeasureRequest, ...]
     options: Options
-    overrides: Mapping[str, str]
+    overrides: Values
     case: str | None = None
     files: Mapping[str, NamedFile] | None = None
 
@@ -99,28 +71,28 @@ class VariantEvaluator:
             self._prepared[case] = solver
         return solver
 
-    def solve(self, values: Mapping[str, str]) -> Study:
-        """Solve a variant; values: by name, in the form of `--set`, with the load case under its own name.
+    def solve(self, values: Values) -> Study:
+        """Solve a variant; values: with the load case under its own name.
 
         Raises SpecError, SolveError, LimitError.
         """
         variants, overrides = self._split_case(values)
         return variants.solve(overrides)
 
-    def load(self, values: Mapping[str, str]) -> Spec:
+    def load(self, values: Values) -> Spec:
         """Load the scene of a variant. Raises SpecError."""
         variants, overrides = self._split_case(values)
         return variants.load(overrides)
 
-    def load_samples(self, interval: Interval) -> list[Spec]:
-        """Load the scenes at some places of an interval, leaving out those that are invalid. Raises SpecError if all
+    def load_samples(self, variable: DesignVariable) -> list[Spec]:
+        """Load the scenes at some places between the bounds of a variable, leaving out those that are invalid. Raises SpecError if all
         are.
         """
         specs: list[Spec] = []
         errors: list[SpecError] = []
         for place in SAMPLE_PLACES:
             try:
-                specs.append(self.load({interval.name: interval.format_place(place)}))
+                specs.append(self.load({variable.name: variable.to_value(place)}))
             except SpecError as error:
                 errors.append(error)
         if not specs:
@@ -131,14 +103,14 @@ class VariantEvaluator:
         """Return the parameters among some names that nothing depends on, in none of the load cases solved so far."""
         return frozenset.intersection(*(variants.find_unused_parameters(names) for variants in self._prepared.values()))
 
-    def answer(self, values: Mapping[str, str]) -> VariantResult:
+    def answer(self, values: Values) -> VariantResult:
         """Evaluate the measures of a variant, or return the reason why there are none."""
         try:
             return self.measure(values)
         except HeunError as error:
             return make_failed_result(error)
 
-    def measure(self, values: Mapping[str, str]) -> VariantResult:
+    def measure(self, values: Values) -> VariantResult:
         """Evaluate the measures of a variant; unlike `answer`, which turns errors into a result, it raises them.
 
         Raises what `solve` does; for a measure that is no number of this scene NotOneNumber, SpecError [unknown-path].
@@ -150,17 +122,47 @@ class VariantEvaluator:
         singular = bool(len(study.history.singular) or study.left_out or study.unknown)
         return VariantResult(measures, warnings=warnings, singular=singular)
 
-    def _split_case(self, values: Mapping[str, str]) -> tuple[VariantSolver, Mapping[str, str]]:
+    def _split_case(self, values: Values) -> tuple[VariantSolver, Values]:
         case = values.get(CASE) if varies_cases(self.spec) else None
         if case is None:
             return self.find_solver(self.recipe.case), values
-        return self.find_solver(case), {name: text for name, text in values.items() if name != CASE}
+        return self.find_solver(format_value(case)), {name: value for name, value in values.items() if name != CASE}
 
 
-def make_failed_result(error: HeunError) -> VariantResult:
-    """Make the result of a variant that could not be solved."""
-    problem = error.problems[0]
-    return VariantResult(code=problem.code, reason=problem.message)
+class CachedEvaluator:
+    """The results of an evaluator by their values: no variant is solved twice."""
+
+    def __init__(self, evaluator: VariantEvaluator, report_run: Callable[[int], None] = lambda runs: None) -> None:
+        """report_run: called before each variant is solved, with the number of those before it"""
+        self.evaluator, self._report_run = evaluator, report_run
+        self._known: dict[tuple[tuple[str, ParameterValue], ...], VariantResult] = {}
+
+    @property
+    def runs(self) -> int:
+        """How many variants were evaluated, including those that could not be solved."""
+        return len(self._known)
+
+    def evaluate(self, values: Values) -> VariantResult:
+        """Return the result of a variant."""
+        key = tuple(sorted(values.items()))
+        if key not in self._known:
+            self._report_run(self.runs)
+            self._known[key] = self.evaluator.answer(values)
+        return self._known[key]
+
+    def count_warnings(self) -> dict[str, int]:
+        """Return the first warning of each kind, and how many variants gave one."""
+        warnings_by_kind: dict[str, tuple[str, int]] = {}
+        for result in self._known.values():
+            for kind, text in {strip_numbers(text): text for text in result.warnings}.items():
+                first, so_far = warnings_by_kind.get(kind, (text, 0))
+                warnings_by_kind[kind] = first, so_far + 1
+        return dict(warnings_by_kind.values())
+
+
+def strip_numbers(text: str) -> str:
+    """Return a warning with its numbers replaced by `#`: they differ from variant to variant."""
+    return NUMBER_LISTS.sub("#", NUMBERS.sub("#", text))
 
 
 def varies_cases(spec: Spec) -> bool:

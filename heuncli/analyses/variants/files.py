@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.variants.evaluation import CASE, Recipe
+from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.analyses.variants.parameters import CASE
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.errors import HeunError
 from heuncli.scene.file_format.named_files import NamedFiles, TrackedFiles
@@ -39,7 +40,7 @@ def add_named_files(recipe: Recipe, names: Iterable[str]) -> Recipe:
 
 def _iter_cases(plan: Plan, cases: Iterable[str]) -> Iterator[str]:
     """Yield the load cases that the plan varies."""
-    texts = {text for axis in (*plan.columns, *plan.axes) if axis.name == CASE for text in axis.texts}
+    texts = {text for axis in (*plan.columns, *plan.axes) if axis.name == CASE for text in axis.values}
     return (case for case in cases if case in texts)
 
 
@@ -47,6 +48,6 @@ def _iter_set_files(plan: Plan) -> Iterator[str]:
     """Yield the files that axes name."""
     for axis in (*plan.columns, *plan.axes):
         if axis.name.endswith(FILE_KEYS):
-            for text in axis.texts:
-                settings, _ = parse_settings({axis.name: text})
+            for text in axis.values if axis.unit is None else ():
+                settings, _ = parse_settings({axis.name: str(text)})
                 yield from (setting.value for setting in settings if isinstance(setting.value, str))

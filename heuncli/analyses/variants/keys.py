@@ -16,11 +16,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from heuncli.analyses.variants.evaluation import CASE, Recipe
+from heuncli.analyses.variants.evaluation import Recipe, Values
+from heuncli.analyses.variants.parameters import CASE, format_value
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.named_tuples import NamedTuple
@@ -28,7 +29,7 @@ from heuncli.scene.file_format.cases import list_case_settings
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.names import as_mapping
 from heuncli.scene.file_format.overrides import Setting, apply_settings, parse_settings
-from heuncli.scene.file_format.quantity import Scope, evaluate_quantity, match_quantity
+from heuncli.scene.file_format.quantity import ParameterValue, Scope, evaluate_quantity, match_quantity
 from heuncli.scene.file_format.source import FLOAT, INTEGER, SourceFile, read_source
 from heuncli.study.model.options import Options
 from heuncli.version import VERSION
@@ -61,14 +62,17 @@ class VariantKeys:
         self.cases: dict[str | None, CaseData] = {}
         self.texts: dict[str, Any] = {}
 
-    def make_key(self, values: Mapping[str, str]) -> bytes:
+    def make_key(self, values: Values) -> bytes:
         """Return the key of a variant, 32 bytes. Raises SpecError for an unknown load case."""
         case, overrides = self.recipe.case, values
         if self.varies_cases and CASE in values:
-            case, overrides = values[CASE], {name: text for name, text in values.items() if name != CASE}
+            case, overrides = (
+                format_value(values[CASE]),
+                {name: value for name, value in values.items() if name != CASE},
+            )
         case_data = self.find_case_data(case)
         data, _, problems = apply_settings(
-            case_data.data, [self.make_setting(name, text) for name, text in overrides.items()]
+            case_data.data, [self.make_setting(name, value) for name, value in overrides.items()]
         )
         key = hashlib.sha256(self.head)
         for block in sorted(data):
@@ -94,13 +98,15 @@ class VariantKeys:
             self.cases[name] = CaseData(data, digests)
         return self.cases[name]
 
-    def make_setting(self, name: str, text: str) -> Setting:
+    def make_setting(self, name: str, value: ParameterValue) -> Setting:
         """Return the setting of one value of a variant."""
-        if text not in self.texts:
+        if not isinstance(value, str):
+            return Setting(name, value.to_entry(), NO_LOCATION, NO_LOCATION)
+        if value not in self.texts:
             if len(self.texts) >= MAX_CACHED:
                 self.texts.clear()
-            self.texts[text] = parse_value(text)
-        return Setting(name, self.texts[text], NO_LOCATION, NO_LOCATION)
+            self.texts[value] = parse_value(value)
+        return Setting(name, self.texts[value], NO_LOCATION, NO_LOCATION)
 
     def digest_block(self, block: str, value: Any) -> bytes:
         """Return the digest of a block."""

@@ -6,18 +6,13 @@ A plan of many variants holds its axes and its random numbers, not its rows.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
-from heuncli.analyses.variants.axes import (
-    HINT,
-    AxisError,
-    ParameterAxis,
-    RandomVariable,
-    format_quantity,
-)
+from heuncli.analyses.variants.axes import HINT, AxisError
+from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
-from heuncli.scene.file_format.quantity import parse_number_with_unit
+from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue
 
 MAX_VARIANTS = 10_000_000
 
@@ -66,26 +61,26 @@ class Plan(NamedTuple):
 
     @property
     def _combinations(self) -> int:
-        rows = len(self.columns[0].texts) if self.columns else 1
+        rows = len(self.columns[0].values) if self.columns else 1
         if self.together:
-            return rows * (len(self.axes[0].texts) if self.axes else 1)
-        return rows * math.prod(len(axis.texts) for axis in self.axes)
+            return rows * (len(self.axes[0].values) if self.axes else 1)
+        return rows * math.prod(len(axis.values) for axis in self.axes)
 
-    def find_values(self, number: int) -> dict[str, str]:
-        """Return the values of a variant, in the form of `--set`."""
-        drawn_values: dict[str, str] = {}
+    def find_values(self, number: int) -> dict[str, ParameterValue]:
+        """Return the values of a variant."""
+        drawn_values: dict[str, ParameterValue] = {}
         if self.draws is not None:
             number, row = divmod(number, len(self.draws.values))
             drawn = zip(self.draws.laws, self.draws.values[row].tolist(), strict=True)
-            drawn_values = {law.name: format_quantity(value, law.unit) for law, value in drawn}
-        axis_values: dict[str, str] = {}
+            drawn_values = {law.name: NumberWithUnit(value, law.unit) for law, value in drawn}
+        axis_values: dict[str, ParameterValue] = {}
         if self.together and self.axes:
-            number, place = divmod(number, len(self.axes[0].texts))
-            axis_values = {axis.name: axis.texts[place] for axis in self.axes}
+            number, place = divmod(number, len(self.axes[0].values))
+            axis_values = {axis.name: axis.find_value(place) for axis in self.axes}
         for axis in reversed(self.axes) if not self.together else ():
-            number, place = divmod(number, len(axis.texts))
-            axis_values[axis.name] = axis.texts[place]
-        row_values = {axis.name: axis.texts[number] for axis in self.columns}
+            number, place = divmod(number, len(axis.values))
+            axis_values[axis.name] = axis.find_value(place)
+        row_values = {axis.name: axis.find_value(number) for axis in self.columns}
         return row_values | {axis.name: axis_values[axis.name] for axis in self.axes} | drawn_values
 
     def iter_numbers(self, shard: tuple[int, int] = (1, 1)) -> Iterator[int]:
@@ -108,8 +103,8 @@ def make_axes_plan(
     for name in names:
         if names.count(name) > 1:
             raise AxisError(name, "is varied twice", "give one axis per parameter")
-    if together and len({len(axis.texts) for axis in axes}) > 1:
-        counts = ", ".join(f"{axis.name} {len(axis.texts)}" for axis in axes)
+    if together and len({len(axis.values) for axis in axes}) > 1:
+        counts = ", ".join(f"{axis.name} {len(axis.values)}" for axis in axes)
         raise AxisError(
             "--zip", f"the axes have different numbers of values: {counts}", "leave --zip out for all combinations"
         )
@@ -117,16 +112,3 @@ def make_axes_plan(
     if plan.size > MAX_VARIANTS:
         raise AxisError(" ".join(names), f"{plan.size:,} variants; at most {MAX_VARIANTS:,}", HINT)
     return plan
-
-
-def parse_numbers(texts: Sequence[str]) -> Mapping[str, float]:
-    """Return the figures of values by their texts, if all are numbers of one unit; otherwise empty."""
-    figures = {text: parse_number_with_unit(text) for text in texts}
-    if any(figure is None for figure in figures.values()):
-        return {}
-    known_figures = {text: figure for text, figure in figures.items() if figure is not None}
-    return (
-        {text: figure.value for text, figure in known_figures.items()}
-        if len({f.unit for f in known_figures.values()}) == 1
-        else {}
-    )

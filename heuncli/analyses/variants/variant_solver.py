@@ -1,7 +1,7 @@
 """Solve a scene again and again with other values; stages that depend on none of them are cached from the first set-up.
 
     solver = VariantSolver("specs/slider_crank.yaml", options=Options(requested_reports=frozenset({"joints"})))
-    study = solver.solve({"w": "1500 rpm", "r": "0.06"})
+    study = solver.solve({"w": "1500 rpm", "r": NumberWithUnit(60.0, "mm")})
 
 A cached stage has the very same bits that the variant would compute: this is decided by what each entry, rule and stage
 has looked up (scene/file_format/variants.py). So a variant equals the result of `heun run --set` to the bit, whatever
@@ -19,6 +19,7 @@ from heuncli.base.records import replace
 from heuncli.multibody.stage_cache import RecordingStages, ReusingStages
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
+from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.scene.file_format.variants import SpecVariants
 from heuncli.study.model.options import Options, apply_options
 from heuncli.study.model.selection import select_paths
@@ -35,7 +36,7 @@ class VariantSolver:
         text: str | None = None,
         *,
         options: Options | None = None,
-        overrides: Mapping[str, str] | None = None,
+        overrides: Mapping[str, ParameterValue] | None = None,
         case: str | None = None,
         measures: Sequence[str] = (),
         files: NamedFiles | None = None,
@@ -69,12 +70,12 @@ class VariantSolver:
         """Return the parameters among some names that nothing of the scene depends on."""
         return self._specs.unused_parameters(names)
 
-    def load(self, values: Mapping[str, str]) -> Spec:
-        """Load the scene with other values, by name and in the form of `--set`. Raises SpecError."""
+    def load(self, values: Mapping[str, ParameterValue]) -> Spec:
+        """Load the scene with other values, by name. Raises SpecError."""
         return self._specs.load(values)
 
-    def solve(self, values: Mapping[str, str]) -> Study:
-        """Solve the scene with other values, by name and in the form of `--set`.
+    def solve(self, values: Mapping[str, ParameterValue]) -> Study:
+        """Solve the scene with other values, by name: numbers with their units, or texts in the form of `--set`.
 
         Raises what `load` and `solve` raise: SpecError, SolveError, LimitError; the next variant is not affected.
         """

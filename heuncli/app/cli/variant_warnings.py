@@ -4,7 +4,7 @@ for.
 
 from __future__ import annotations
 
-from heuncli.analyses.variants.cached_evaluator import CachedEvaluator
+from heuncli.analyses.variants.evaluation import CachedEvaluator
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import print_warnings
 from heuncli.scene.file_format.models import Spec

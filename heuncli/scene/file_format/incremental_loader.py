@@ -23,7 +23,7 @@ from heuncli.scene.file_format.lookups import Lookup, iter_changed, iter_changed
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import SceneNames, as_mapping
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
-from heuncli.scene.file_format.quantity import Scope
+from heuncli.scene.file_format.quantity import ParameterValue, Scope
 from heuncli.scene.file_format.recording_loader import RecordingLoader
 from heuncli.scene.file_format.resolve import ResolveInputs, Resolver, resolve
 from heuncli.scene.file_format.rules.every import DraftDocument, Rule, Violation
@@ -50,7 +50,7 @@ WHOLE_FIELDS = (
 class IncrementalLoader(SpecLoader):
     """Loads a spec with other values and reuses what is unchanged from the first loading."""
 
-    def __init__(self, first: RecordingLoader, overrides: Mapping[str, str]) -> None:
+    def __init__(self, first: RecordingLoader, overrides: Mapping[str, ParameterValue]) -> None:
         self.first = first
         super().__init__(first.path, first.source, overrides, first.checking, first.case, first.files)
 

@@ -23,7 +23,7 @@ from heuncli.scene.file_format.overrides import Setting, apply_settings, iter_si
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
 from heuncli.scene.file_format.planar import complete_planar_scene
 from heuncli.scene.file_format.pydantic_errors import is_primary
-from heuncli.scene.file_format.quantity import Scope, describe_kind
+from heuncli.scene.file_format.quantity import ParameterValue, Scope, describe_kind
 from heuncli.scene.file_format.resolve import ResolveInputs, resolve
 from heuncli.scene.file_format.rules.every import RULES, DraftDocument, Rule, Violation, iter_violations
 from heuncli.scene.file_format.semantics import list_instants
@@ -47,7 +47,7 @@ LOCATED_BLOCKS = (
 )  # blocks in which later stages can locate every value
 
 
-Overrides = Mapping[str, str] | Sequence[Setting]
+Overrides = Mapping[str, ParameterValue] | Sequence[Setting]
 
 
 def load(

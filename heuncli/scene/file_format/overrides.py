@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
@@ -13,6 +13,9 @@ from heuncli.base.spelling import suggest
 from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.names import NAMED_BLOCKS, as_mapping
 from heuncli.scene.file_format.source import Path_, parse_plain_scalar, parse_source
+
+if TYPE_CHECKING:
+    from heuncli.scene.file_format.quantity import ParameterValue
 
 # a number that YAML reads the same way
 PLAIN_NUMBER = re.compile(r"[+-]?[0-9]{1,18}(\.[0-9]{0,18})?([eE][+-]?[0-9]{1,3})?")
@@ -30,24 +33,28 @@ class Setting(NamedTuple):
     key_location: SourceLocation
 
 
-def parse_settings(texts_by_key: Mapping[str, str]) -> tuple[list[Setting], list[Problem]]:
-    """Parse what the command line sets, as YAML; return the settings and what cannot be parsed."""
+def parse_settings(values_by_key: Mapping[str, ParameterValue]) -> tuple[list[Setting], list[Problem]]:
+    """Parse what the command line or a variant sets, texts as YAML; return the settings and what cannot be parsed."""
     settings: list[Setting] = []
     problems: list[Problem] = []
-    for key, text in texts_by_key.items():
+    for key, new_value in values_by_key.items():
+        text = new_value if isinstance(new_value, str) else new_value.format()
         option = f"--set {key}={text}"
         location = SourceLocation(option, 1, len(key) + 2, key)
         try:
-            value = (
-                parse_plain_scalar(text)
-                if PLAIN_NUMBER.fullmatch(text)
-                else parse_source(option, text if text.strip() else "''", "").data
-            )
+            value = new_value.to_entry() if not isinstance(new_value, str) else _parse_text(option, new_value)
         except SpecError as error:
             problems += [Problem(p.code, p.message, location, p.hint) for p in error.problems]
             continue
         settings.append(Setting(key, value, location, SourceLocation(option, 1, 1)))
     return settings, problems
+
+
+def _parse_text(option: str, text: str) -> Any:
+    """Parse a value in the form of `--set`. Raises SpecError."""
+    if PLAIN_NUMBER.fullmatch(text):
+        return parse_plain_scalar(text)
+    return parse_source(option, text if text.strip() else "''", "").data
 
 
 def apply_settings(

@@ -35,8 +35,8 @@ CONDITIONS_HINT = "for example guide.travel > 0.2, shaft.rate < 0 and t > 1, or 
 NOT_A_NUMBER = re.compile(r"[+-]?\.?(?:inf|nan)(?:inity)?\Z", re.IGNORECASE)
 
 
-class NumberWithUnit(NamedTuple):
-    """A number as it is written, and its unit (empty: none)."""
+class WrittenQuantity(NamedTuple):
+    """A number with a unit as it is written."""
 
     figure: str
     unit: str
@@ -45,6 +45,24 @@ class NumberWithUnit(NamedTuple):
     def value(self) -> float:
         """The number, in its unit."""
         return float(self.figure.replace(" ", ""))
+
+
+class NumberWithUnit(NamedTuple):
+    """A number and its unit (empty: SI, or none)."""
+
+    value: float
+    unit: str = ""
+
+    def format(self) -> str:
+        """Format the number with all its digits, as a spec and `--set` take it."""
+        return f"{self.value!r} {self.unit}" if self.unit else repr(self.value)
+
+    def to_entry(self) -> float | str:
+        """Return the number as the data of a spec hold it: with a unit as text."""
+        return self.format() if self.unit else self.value
+
+
+ParameterValue = NumberWithUnit | str  # what is set in a spec: a number, or a text in the form of `--set`
 
 
 def read_number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
@@ -103,12 +121,12 @@ def compile_text(text: str, scope: Scope) -> Expression:
         raise Finding(finding.code, finding.message, f"give it with a unit: {division[1].strip()} {unit}") from None
 
 
-def match_quantity(text: str) -> NumberWithUnit | None:
+def match_quantity(text: str) -> WrittenQuantity | None:
     """Return figure and unit of a value of a spec that is a number with a unit; None for any other."""
     found = WITH_UNIT.match(text)
     if found is None or re.split(r"\W", found[2], maxsplit=1)[0] in WORDS:
         return None
-    return NumberWithUnit(found[1], found[2].strip())
+    return WrittenQuantity(found[1], found[2].strip())
 
 
 def parse_number_with_unit(text: str) -> NumberWithUnit | None:
@@ -116,8 +134,8 @@ def parse_number_with_unit(text: str) -> NumberWithUnit | None:
     found = PLAIN_OR_WITH_UNIT.match(text)
     if found is None:
         return None
-    number = NumberWithUnit(found[1], (found[2] or "").strip())
-    return number if math.isfinite(number.value) else None
+    value = WrittenQuantity(found[1], "").value
+    return NumberWithUnit(value, (found[2] or "").strip()) if math.isfinite(value) else None
 
 
 def require_dimension(expression: Expression, dimension: Dimension | None, scope: Scope) -> Expression:
@@ -158,7 +176,7 @@ def read_condition(value: Any, scope: Scope) -> Expression:
     return expression
 
 
-def evaluate_quantity(number: NumberWithUnit, scope: Scope) -> tuple[float, Dimension]:
+def evaluate_quantity(number: WrittenQuantity, scope: Scope) -> tuple[float, Dimension]:
     """Return SI value and dimension of a number with a unit. Raises Finding."""
     try:
         size, dimension = parse_unit(number.unit)
@@ -170,7 +188,7 @@ def evaluate_quantity(number: NumberWithUnit, scope: Scope) -> tuple[float, Dime
     return require_finite(number.value * size), dimension
 
 
-def product_hint(number: NumberWithUnit, scope: Scope) -> str | None:
+def product_hint(number: WrittenQuantity, scope: Scope) -> str | None:
     """Return a hint for '2 L' with a parameter L, or '2 t': a product was meant."""
     figure, unit = number.figure.strip(), number.unit
     name = re.split(r"\W", unit, maxsplit=1)[0]
@@ -184,7 +202,7 @@ def product_hint(number: NumberWithUnit, scope: Scope) -> str | None:
     return None
 
 
-def expression_hint(number: NumberWithUnit) -> str | None:
+def expression_hint(number: WrittenQuantity) -> str | None:
     """Return a hint for '40 mm * 2': text after the unit makes it an expression, and expressions contain no units."""
     parts = re.match(r"([^\W\d]+)(\s*[-+*/].*)", number.unit)
     return si_expression_hint(number.figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None

@@ -26,7 +26,7 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.names import SceneNames
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
-from heuncli.scene.file_format.quantity import Scope
+from heuncli.scene.file_format.quantity import ParameterValue, Scope
 from heuncli.scene.file_format.resolve import ResolveInputs, Resolver, resolve
 from heuncli.scene.file_format.rules.every import DraftDocument, Rule, Violation
 from heuncli.scene.file_format.sharing import is_same
@@ -92,7 +92,7 @@ class RecordingLoader(SpecLoader):
         self,
         path: str,
         source: SourceFile,
-        overrides: Mapping[str, str],
+        overrides: Mapping[str, ParameterValue],
         checking: bool,
         case: str | None,
         files: NamedFiles | None,

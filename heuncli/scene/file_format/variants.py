@@ -22,6 +22,7 @@ from heuncli.scene.file_format.incremental_loader import IncrementalLoader
 from heuncli.scene.file_format.load import SpecLoader
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
+from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.scene.file_format.recording_loader import RecordingLoader
 from heuncli.scene.file_format.source import read_source
 
@@ -33,7 +34,7 @@ class SpecVariants:
         self,
         path: str | Path,
         text: str | None = None,
-        overrides: Mapping[str, str] | None = None,
+        overrides: Mapping[str, ParameterValue] | None = None,
         checking: bool = True,
         case: str | None = None,
         files: NamedFiles | None = None,
@@ -51,10 +52,10 @@ class SpecVariants:
         self._first = RecordingLoader(str(path), source, self.overrides, checking, case, files)
         self.spec = self._first.load_spec()
 
-    def load(self, overrides: Mapping[str, str]) -> Spec:
+    def load(self, overrides: Mapping[str, ParameterValue]) -> Spec:
         """Load the scene with other values; the result equals that of a plain `load`, bit by bit.
 
-        overrides: parameters or dotted keys with their values as text
+        overrides: parameters or dotted keys with their values
 
         Values that are unchanged from the first reading are the same objects. Raises SpecError with all problems.
         """

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from heuncli.analyses.find.results import FindCondition, IntervalFindings
-from heuncli.analyses.find.study import SIDES, find_meetings
-from heuncli.analyses.variants.axes import Interval, parse_interval
-from heuncli.analyses.variants.cached_evaluator import REASONS, ROUNDING, CachedEvaluator
-from heuncli.analyses.variants.conditions import find_si_value, parse_condition
-from heuncli.analyses.variants.course import Sample
-from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
+from heuncli.analyses.find.results import IntervalFindings
+from heuncli.analyses.find.study import find_meetings
+from heuncli.analyses.variants.axes import parse_interval
+from heuncli.analyses.variants.conditions import Comparison, parse_condition, resolve_condition
+from heuncli.analyses.variants.course import Sample, make_sample
+from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
@@ -56,8 +56,7 @@ def main(request: FindRequest) -> int:
     )[0]
     require_other_file(request.output, [request.spec])
     unit = find_unit(measure_request.path, evaluator.spec)
-    value = find_si_value(words, unit, scenes, HINT)
-    condition = FindCondition(words.measure, words.sign, value, unit, words.unit)
+    condition = resolve_condition(words, unit, scenes, HINT)
     with show_progress(request.quiet) as report:
         cached = CachedEvaluator(evaluator, lambda runs: report(min(runs, 2 * scan), 2 * scan, "variants"))
         sample_at = make_sampler(cached, interval, condition)
@@ -68,7 +67,7 @@ def main(request: FindRequest) -> int:
             condition.relation,
             scan_count=scan,
             max_evaluations=max_variants,
-            value=value,
+            value=condition.value,
         )
     require_known_measure(findings)
     page_units = units_shown if request.units else use_condition_unit(units_shown, condition)
@@ -92,19 +91,15 @@ def parse_counts(request: FindRequest) -> tuple[int, int]:
     return scan, max_variants
 
 
-def make_sampler(evaluator: CachedEvaluator, interval: Interval, condition: FindCondition) -> Callable[[float], Sample]:
+def make_sampler(
+    evaluator: CachedEvaluator, variable: DesignVariable, condition: Comparison
+) -> Callable[[float], Sample]:
     """Make the function that samples the measure at a value of the unknown."""
 
     def sample_at(x: float) -> Sample:
-        answer = evaluator.evaluate({interval.name: interval.format_value(x)})
-        if answer.code:
-            return Sample(x, None, why=(answer.code, answer.reason))
-        (found,) = answer.measures
-        if found.value is None:
-            return Sample(x, None, why=(found.word, REASONS[found.word]))
-        rounding = ROUNDING * (abs(found.value) + abs(condition.value))
-        error = max(found.error or 0.0, rounding)
-        return Sample(x, found.value - condition.value, error, singular=answer.singular)
+        result = evaluator.evaluate({variable.name: variable.make_value(x)})
+        found = result.find_noisy_value(0, magnitude=abs(condition.value))
+        return make_sample(x, found, condition.value, singular=result.singular)
 
     return sample_at
 
@@ -119,7 +114,7 @@ def require_known_measure(findings: IntervalFindings) -> None:
         )
 
 
-def use_condition_unit(units_shown: Units, condition: FindCondition) -> Units:
+def use_condition_unit(units_shown: Units, condition: Comparison) -> Units:
     """Return the display units with the measure in the unit in which its value was given."""
     if not condition.given_unit or not condition.unit:
         return units_shown
@@ -127,10 +122,10 @@ def use_condition_unit(units_shown: Units, condition: FindCondition) -> Units:
     return Units({**units_shown.display_units, condition.unit: (condition.given_unit, of_si / size)})
 
 
-def is_met(findings: IntervalFindings, condition: FindCondition) -> bool:
+def is_met(findings: IntervalFindings, condition: Comparison) -> bool:
     """Return whether the condition is met anywhere."""
-    if SIDES[condition.relation]:
+    if condition.side:
         return bool(findings.met_stretches) or (
-            "=" in condition.relation and bool(findings.crossings or findings.touches)
+            condition.includes_value and bool(findings.crossings or findings.touches)
         )
     return bool(findings.crossings or findings.touches)

@@ -9,7 +9,6 @@ from typing import Any
 
 from heuncli.analyses.find.results import (
     Crossing,
-    FindCondition,
     IntervalFindings,
     MeasureJump,
     MetEdge,
@@ -18,9 +17,9 @@ from heuncli.analyses.find.results import (
     UnresolvedBracket,
     UnsolvedStretch,
 )
-from heuncli.analyses.find.study import SIDES
-from heuncli.analyses.variants.axes import Interval
+from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.output.tables.export import dump_json
@@ -59,8 +58,8 @@ class FindPage(NamedTuple):
     """
 
     title: str
-    condition: FindCondition
-    interval: Interval
+    condition: Comparison
+    interval: DesignVariable
     findings: IntervalFindings
     scan: int
     max_variants: int
@@ -100,7 +99,7 @@ def format_heading(page: FindPage) -> list[tuple[str, str]]:
     scan = SCAN.format(page.scan, f"{findings.spacing:.4g} {interval.unit}".rstrip())
     return [
         ("heun", f"{VERSION}  {page.title}"),
-        ("find", f"{condition.text} {condition.relation} {value}, {interval.name} from {ends}"),
+        ("find", f"{condition.measure} {condition.relation} {value}, {interval.name} from {ends}"),
         ("runs", f"{format_count(len(findings.samples), 'variant')}: {scan}"),
     ]
 
@@ -159,13 +158,11 @@ def _format_edge(page: FindPage, edge: MetEdge) -> tuple[str, str]:
 def format_notes(page: FindPage) -> Iterator[str]:
     """Yield sentences on findings that are not rows of a table."""
     findings, condition = page.findings, page.condition
-    if SIDES[condition.relation] and not (
-        findings.met_stretches or ("=" in condition.relation and not findings.is_met_nowhere)
-    ):
+    if condition.side and not (findings.met_stretches or ("=" in condition.relation and not findings.is_met_nowhere)):
         is_whole = findings.is_complete and not findings.not_excluded
         yield ("met nowhere" if is_whole else "not met in the searched part") + _format_extremes(page)
     elif findings.is_met_nowhere:
-        yield ("no crossing" if SIDES[condition.relation] else "met nowhere") + _format_extremes(page)
+        yield ("no crossing" if condition.side else "met nowhere") + _format_extremes(page)
     elif not (findings.crossings or findings.touches or findings.brackets or findings.not_excluded):
         yield "not met in the searched part" + _format_extremes(page)
     yield from (_describe_touch(page, each) for each in findings.touches)
@@ -252,7 +249,7 @@ def to_json(page: FindPage) -> str:
         {
             "heun": 1,
             "title": page.title,
-            "measure": condition.text,
+            "measure": condition.measure,
             "relation": condition.relation,
             "value": condition.value,
             "unit": condition.unit,

@@ -5,18 +5,25 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from itertools import islice
 from pathlib import PurePath
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.columns import CODE, NUMBER, REASON, WORDS, make_parameter_columns
+from heuncli.analyses.sweep_store.columns import (
+    CODE,
+    NUMBER,
+    REASON,
+    find_missing_words,
+    make_parameter_columns,
+    to_cell,
+)
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
 from heuncli.analyses.sweep_store.store import open_store
 from heuncli.analyses.sweep_store.which import choose_sweep, split_store_argument
-from heuncli.analyses.variants.evaluation import MeasureValue
+from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.base import tolerances
@@ -31,8 +38,7 @@ MAX_BYTES = 1_000_000_000  # bytes
 MAX_NUMBER = tolerances.MOST_MAGNITUDE**2  # the largest product of two numbers in range
 ERROR, AT = " error", " at [s]"  # suffixes of a measure's other columns
 WRITES_ONE = "heun sweep SPEC ... -o sweep.csv writes one"
-NO_NUMBER = MeasureValue(None)
-UNKNOWN_TEXT = "not known"
+UNKNOWN_TEXT = MISSING_KINDS["unknown"].short
 
 
 def read_sweep(word: str) -> SweepTable:
@@ -44,23 +50,23 @@ def read_sweep(word: str) -> SweepTable:
     with closing(store.connection):
         sweeps = list(store.iter_sweeps())
         sweep = choose_sweep(name, number, sweeps, COMMAND)
-        table = _make_table(sweep.head, store.find_rows(sweep.number, sweep.head.plan.names))
+        table = _make_table(sweep.head, store.find_rows(sweep.number, sweep.head.plan))
     sweep_text = f", sweep {sweep.number} of {len(sweeps)}" if len(sweeps) > 1 else ""
     return table._replace(origin=f"{name}{sweep_text}: {sweep.head.path}")
 
 
 def _make_table(head: SweepHead, rows: Iterable[SweptRow]) -> SweepTable:
     """Make the table from the rows of a store."""
-    parameters, count = make_parameter_columns(head.plan), len(head.measures)
+    parameters = make_parameter_columns(head.plan)
     cells: list[list[float | str]] = [[] for _ in parameters]
     results: list[list[MeasureValue]] = [[] for _ in head.measures]
     codes: list[str] = []
     for row in rows:
         codes.append(row.answer.code)
         for column, one in zip(cells, parameters, strict=True):
-            column.append(one.parse_value(row.values[one.name]))
-        for measure, answer in zip(results, row.answer.measures or (NO_NUMBER,) * count, strict=True):
-            measure.append(answer)
+            column.append(to_cell(row.values[one.name]))
+        for k, measure in enumerate(results):
+            measure.append(row.answer.get_measure(k))
     variables = tuple(
         _make_variable(one.name, one.unit or "", column) for one, column in zip(parameters, cells, strict=True)
     )
@@ -69,7 +75,7 @@ def _make_table(head: SweepHead, rows: Iterable[SweptRow]) -> SweepTable:
             head_measure.text, head_measure.unit,
             np.array([math.nan if one.value is None else one.value for one in column_results], dtype=np.float64),
             np.array([one.error or 0.0 for one in column_results], dtype=np.float64),
-            tuple(_shorten(one.word) for one in column_results),
+            tuple(MISSING_KINDS[one.word].short if one.word else "" for one in column_results),
         )
         for head_measure, column_results in zip(head.measures, results, strict=True)
     )  # fmt: skip
@@ -122,12 +128,15 @@ def _read_csv(path: str) -> SweepTable:
         _require_in_range(path, columns.heads[k], np.array(cells))
         variables.append(_make_variable(name, unit, cells if numbers else list(by_column[k])))
     measures = []
+    heads = [columns.heads[k] for k in columns.measures]
+    words_by_row = [find_missing_words(reason, heads) for reason in reasons]
     for k in columns.measures:
         text, unit = _split_unit(columns.heads[k])
         values, errors = (np.array([_parse_number(cell) for cell in by_column[k + j]]) for j in (0, 1))
         _require_in_range(path, columns.heads[k], values, errors)
         missing_words = tuple(
-            _find_missing_word(columns.heads[k], *why) for why in zip(values, codes, reasons, strict=True)
+            _find_missing_word(words, columns.heads[k], value, code)
+            for words, value, code in zip(words_by_row, values, codes, strict=True)
         )
         measures.append(SweepNumbers(text, unit, values, np.nan_to_num(errors), missing_words))
     origin = f"{path}: {len(table):,} variants"
@@ -190,13 +199,8 @@ def _parse_number(cell: str) -> float:
     return value if math.isfinite(value) else math.nan
 
 
-def _find_missing_word(measure: str, value: float, code: str, reason: str) -> str:
-    """Return the word for why a solved variant has no number; empty if it has one."""
+def _find_missing_word(words: Mapping[str, str], measure: str, value: float, code: str) -> str:
+    """Return why a solved variant has no number, in short; empty if it has one."""
     if code or not math.isnan(value):
         return ""
-    return next((_shorten(word) for word, (_, why) in WORDS.items() if f"{measure}: {why}" in reason), UNKNOWN_TEXT)
-
-
-def _shorten(word: str) -> str:
-    """Return the word for a missing number as the notes of the figure spell it."""
-    return {"unknown": UNKNOWN_TEXT, "beyond": "past the horizon"}.get(word, word)
+    return MISSING_KINDS[words[measure]].short if measure in words else UNKNOWN_TEXT

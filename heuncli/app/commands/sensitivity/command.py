@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from heuncli.analyses.sensitivity.derivative import compute_derivative
-from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
+from heuncli.analyses.sensitivity.results import NoisyDerivative
 from heuncli.analyses.sensitivity.spread_option import parse_spreads
 from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread, combine_tolerances
-from heuncli.analyses.variants.cached_evaluator import REASONS, ROUNDING, CachedEvaluator
-from heuncli.analyses.variants.evaluation import MeasureValue, Recipe, VariantEvaluator
-from heuncli.analyses.variants.written_numbers import WrittenNumber, WrittenNumbers
+from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
+from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue, Reason
+from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
@@ -30,7 +30,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.quantities.measure_uncertainty import find_unit
 
 VARIANTS_PER_NUMBER = 10  # usual number
-NO_ERROR = ("no-error", "the run states no error for it (as for counts), so no step can be chosen")
+NO_ERROR = Reason("no-error", "the run states no error for it (as for counts), so no step can be chosen")
 
 
 def main(request: SensitivityRequest) -> int:
@@ -42,20 +42,20 @@ def main(request: SensitivityRequest) -> int:
     evaluator = VariantEvaluator(make_recipe(request, path))
     recipe, spec = evaluator.recipe, evaluator.spec
     require_other_file(request.output, [path])
-    written = WrittenNumbers(recipe, spec)
+    written = SpecNumbers(recipe, spec)
     measure.check_with_others(recipe.measures, spec, [partial(written.find_number, name) for name in names])
     spreads = parse_spreads(request.spread, written) if request.spread is not None else []
     numbers = select_numbers(names, spreads, written)
     # raises SpecError for a wrong dimension, or a key that cannot be set
-    collect_results(partial(evaluator.load, {number.name: number.format_value(number.value)}) for number in numbers)
+    collect_results(partial(evaluator.load, {number.name: number.make_value(number.value)}) for number in numbers)
     texts = zip(request.measure, recipe.measures, strict=True)
-    heads = [(text, find_unit(measure_request.path, spec)) for text, measure_request in texts]
+    heads = [MeasureLabel(text, find_unit(measure_request.path, spec)) for text, measure_request in texts]
     variant_count = 1 + VARIANTS_PER_NUMBER * len(numbers)
     with show_progress(request.quiet) as report:
         cached = CachedEvaluator(evaluator, lambda runs: report(min(runs, variant_count), variant_count, "variants"))
         if cached.evaluate({}).code:
             evaluator.solve({})  # raises the error with its location
-        all_findings = [analyse_measure(cached, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
+        all_findings = [analyse_measure(cached, k, head, numbers, spreads) for k, head in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(all_findings), cached.runs, units_shown)
     emit(FORMS[form](page), request.output)
     note_si_format(request.units, form, request.quiet)
@@ -86,8 +86,8 @@ def make_recipe(request: SensitivityRequest, path: str) -> Recipe:
 
 
 def select_numbers(
-    names: Sequence[str], spreads: Sequence[NumberSpread], spec_numbers: WrittenNumbers
-) -> list[WrittenNumber]:
+    names: Sequence[str], spreads: Sequence[NumberSpread], spec_numbers: SpecNumbers
+) -> list[SpecNumber]:
     """Return the named numbers and those with a tolerance; if there are none, all parameters."""
     by_name = {name: spec_numbers.find_number(name) for name in names} | {
         each.number.name: each.number for each in spreads
@@ -101,47 +101,34 @@ def select_numbers(
 
 def analyse_measure(
     evaluator: CachedEvaluator,
-    measure_key: tuple[int, str],
-    numbers: Sequence[WrittenNumber],
+    index: int,
+    label: MeasureLabel,
+    numbers: Sequence[SpecNumber],
     spreads: Sequence[NumberSpread],
 ) -> MeasureFindings:
-    """Compute derivatives and tolerance effects of one measure.
-
-    measure_key: its index and its unit
-    """
-    evaluate = make_evaluation(evaluator, measure_key, {number.name: number for number in numbers})
+    """Compute derivatives and tolerance effects of one measure."""
+    evaluate = make_evaluation(evaluator, index, label, {number.name: number for number in numbers})
     slopes = {number.name: compute_slope(evaluate, number) for number in numbers}
     total = combine_tolerances(evaluate, spreads, slopes) if spreads else None
     return MeasureFindings(evaluate({}), slopes, total)
 
 
-def compute_slope(evaluate: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> NoisyDerivative:
+def compute_slope(evaluate: Callable[[Mapping[str, float]], NoisyValue], number: SpecNumber) -> NoisyDerivative:
     """Compute the derivative by one number; a number that is 0 is varied on the scale of its unit."""
     return compute_derivative(lambda x: evaluate({number.name: x} if x else {}), number.value, abs(number.value) or 1.0)
 
 
 def make_evaluation(
-    evaluator: CachedEvaluator, measure_key: tuple[int, str], numbers: Mapping[str, WrittenNumber]
+    evaluator: CachedEvaluator, index: int, label: MeasureLabel, numbers: Mapping[str, SpecNumber]
 ) -> Callable[[Mapping[str, float]], NoisyValue]:
     """Make the function that evaluates a measure at distances of numbers from their values.
 
-    measure_key: its index and its unit; an empty unit means that it is a count
+    label: if its unit is empty the measure is a count, for which a run states no error
     """
 
     def evaluate_at(distances: Mapping[str, float]) -> NoisyValue:
-        values = {name: numbers[name].format_value(numbers[name].value + x) for name, x in distances.items()}
-        answer = evaluator.evaluate(values)
-        if answer.code:
-            return NoisyValue(None, why=(answer.code, answer.reason))
-        return to_noisy_value(answer.measures[measure_key[0]], measure_key[1])
+        values = {name: numbers[name].make_value(numbers[name].value + x) for name, x in distances.items()}
+        found = evaluator.evaluate(values).find_noisy_value(index)
+        return found if label.unit or found.value is None else NoisyValue(None, why=NO_ERROR)
 
     return evaluate_at
-
-
-def to_noisy_value(measure_value: MeasureValue, unit: str) -> NoisyValue:
-    """Convert a measure to a value with an error no smaller than its rounding."""
-    if measure_value.value is None:
-        return NoisyValue(None, why=(measure_value.word, REASONS[measure_value.word]))
-    if not unit:
-        return NoisyValue(None, why=NO_ERROR)
-    return NoisyValue(measure_value.value, max(measure_value.error or 0.0, ROUNDING * abs(measure_value.value)))

@@ -7,8 +7,9 @@ import io
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
-from heuncli.analyses.variants.written_numbers import WrittenNumber
+from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
+from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.export import dump_json
 from heuncli.output.tables.page_width import split_to_width
@@ -64,14 +65,14 @@ class SensitivityPage(NamedTuple):
     """
 
     title: str
-    numbers: tuple[WrittenNumber, ...]
-    heads: tuple[tuple[str, str], ...]
+    numbers: tuple[SpecNumber, ...]
+    heads: tuple[MeasureLabel, ...]
     findings: tuple[MeasureFindings, ...]
     runs: int
     units: Units
 
 
-def compute_elasticity(number: WrittenNumber, findings: MeasureFindings) -> tuple[float, float] | None:
+def compute_elasticity(number: SpecNumber, findings: MeasureFindings) -> tuple[float, float] | None:
     """Return the change of the measure in per cent per per cent of the number, and its error; None if one is 0 or
     unknown.
     """
@@ -83,10 +84,10 @@ def compute_elasticity(number: WrittenNumber, findings: MeasureFindings) -> tupl
     return value, abs(factor) * slope.error + abs(value / base.value) * base.error
 
 
-def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[WrittenNumber]:
+def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[SpecNumber]:
     """Sort the numbers by their influence on the measure, the largest first, unknown ones last."""
 
-    def weight(number: WrittenNumber) -> tuple[bool, float]:
+    def weight(number: SpecNumber) -> tuple[bool, float]:
         told = compute_elasticity(number, findings)
         return told is None, -abs(told[0]) if told else 0.0
 
@@ -127,7 +128,7 @@ def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings
 
 
 def _make_rows(
-    page: SensitivityPage, number: WrittenNumber, findings: MeasureFindings, unit: str, size: float
+    page: SensitivityPage, number: SpecNumber, findings: MeasureFindings, unit: str, size: float
 ) -> Iterator[tuple[str, ...]]:
     """Yield the row of a number; two rows, one for each side, if the measure has a kink there."""
     slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
@@ -240,7 +241,7 @@ def to_json(page: SensitivityPage) -> str:
     return dump_json({"heun": 1, "title": page.title, "runs": page.runs, "measures": measures})
 
 
-def _make_block(number: WrittenNumber, findings: MeasureFindings) -> dict[str, Any]:
+def _make_block(number: SpecNumber, findings: MeasureFindings) -> dict[str, Any]:
     slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
     known = slope.value is not None
     block: dict[str, Any] = {

@@ -6,15 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.analyses.variants.axes import (
-    ParameterAxis,
-    RandomVariable,
-    format_quantity,
-    parse_axis_values,
-)
+from heuncli.analyses.variants.axes import parse_axis_values
+from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.quantity import parse_number_with_unit
+from heuncli.scene.file_format.names import ALL_CASES
+from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue, parse_number_with_unit
 
 MAX_SAMPLES = 1000  # of an axis; each is read twice before the first variant runs
 
@@ -42,20 +39,27 @@ class AxisArgument(NamedTuple):
         return self.axis.name
 
     @property
-    def texts(self) -> Sequence[str]:
-        """Its values; for a random variable one typical value."""
-        axis = self.axis
-        return (format_quantity(axis.a, axis.unit),) if isinstance(axis, RandomVariable) else axis.texts
+    def is_all_cases(self) -> bool:
+        """Whether it is the word `case=all`."""
+        if self.name != CASE or self.column is not None or isinstance(self.axis, RandomVariable):
+            return False
+        return [*self.axis.values] == [ALL_CASES]
 
-    def list_samples(self) -> dict[str, int]:
-        """Return one value of each kind (numbers of each unit, and all other texts), with its index among the
-        values.
+    def list_samples(self) -> dict[ParameterValue, int]:
+        """Return one value of each kind (numbers of each unit, and all other texts), with its index among the values;
+        of a random variable one typical value.
         """
+        axis = self.axis
+        if isinstance(axis, RandomVariable):
+            return {NumberWithUnit(axis.a, axis.unit): 0}
+        if axis.unit is not None:
+            return {axis.find_value(0): 0}
         known_kinds: set[str] = set()
-        samples: dict[str, int] = {}
-        for k, text in enumerate(self.texts):
-            figure = parse_number_with_unit(text)
-            kind = f"number {figure.unit}" if figure is not None else text
+        samples: dict[ParameterValue, int] = {}
+        for k, value in enumerate(axis.values):
+            text = str(value)
+            number = parse_number_with_unit(text)
+            kind = f"number {number.unit}" if number is not None else text
             if kind not in known_kinds:
                 known_kinds.add(kind)
                 samples[text] = k

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 
-from heuncli.analyses.variants.evaluation import CASE, SPELLING_CODES, VariantEvaluator, varies_cases
+from heuncli.analyses.variants.evaluation import SPELLING_CODES, VariantEvaluator, varies_cases
+from heuncli.analyses.variants.parameters import CASE, format_value
+from heuncli.analyses.variants.spec_numbers import SpecNumbers
 from heuncli.app.commands.sweep.axis_arguments import AxisArgument
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.spelling import suggest
-from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.overrides import parse_path
 
 # Codes of problems that do not depend on a value's size, besides those that begin with unknown-.
@@ -63,8 +64,9 @@ def _find_duplicates(
 def _check_cases(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Problem]:
     """Yield load cases that do not exist."""
     known = evaluator.spec.cases
-    for text, k in one.list_samples().items():
-        if text not in known and (text != ALL_CASES or len(one.texts) > 1 or one.column is not None):
+    for value, k in one.list_samples().items():
+        text = format_value(value)
+        if text not in known and not one.is_all_cases:
             hint = suggest(text, known, "cases")
             yield one.locate_problem(Problem("unknown-case", f"there is no load case '{text}'", hint=hint), k)
 
@@ -73,9 +75,9 @@ def _check_values(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Pr
     """Yield the problems of an axis that do not depend on the size of its values, at the first location of each
     kind.
     """
-    for text, k in one.list_samples().items():
+    for value, k in one.list_samples().items():
         try:
-            evaluator.load({one.name: text})
+            evaluator.load({one.name: value})
         except SpecError as error:
             relevant = [each for each in error.problems if each.code in NAME_CODES or each.code.startswith("unknown-")]
             count_text = f"; {len(relevant)} places in all" if len(relevant) > 1 else ""
@@ -88,20 +90,20 @@ def find_warnings(axes: Sequence[AxisArgument], evaluator: VariantEvaluator) -> 
     """Return warnings about the axes, one sentence each, before their variants are solved."""
     warnings = []
     for one in axes:
-        for text, k in one.list_samples().items():
+        for value, k in one.list_samples().items():
             with suppress(SpecError):
-                spec = evaluator.load({one.name: text})
+                spec = evaluator.load({one.name: value})
                 located = [
                     one.locate_problem(problem, k) for problem in spec.warnings if problem.code in SPELLING_CODES
                 ]
-                warnings += [str(problem._replace(hint=_make_unit_hint(one, problem))) for problem in located]
+                warnings += [str(problem._replace(hint=_make_unit_hint(one, evaluator))) for problem in located]
     unused = evaluator.find_unused_parameters([one.name for one in axes])
     warnings += [f"{one.word}: {one.name} has no effect" for one in axes if one.name in unused]
     return list(dict.fromkeys(warnings))
 
 
-def _make_unit_hint(one: AxisArgument, problem: Problem) -> str:
-    unit = problem.message.rpartition(" in ")[2]
+def _make_unit_hint(one: AxisArgument, evaluator: VariantEvaluator) -> str:
+    unit = SpecNumbers(evaluator.recipe, evaluator.spec).find_number(one.name).unit
     return (
         f"in the head of the column: {one.name} [{unit}]"
         if one.column is not None

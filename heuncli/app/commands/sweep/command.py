@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure
+from heuncli.analyses.sweep_store.rows import SweepHead
 from heuncli.analyses.sweep_store.store import Store
-from heuncli.analyses.variants.axes import HINT, AxisError, ParameterAxis, RandomVariable
-from heuncli.analyses.variants.evaluation import CASE, Recipe, VariantEvaluator, varies_cases
+from heuncli.analyses.variants.axes import HINT, AxisError
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, varies_cases
 from heuncli.analyses.variants.keys import VariantKeys
+from heuncli.analyses.variants.measures import MeasureLabel
+from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Draws, Plan, make_axes_plan
 from heuncli.app.cli import jobs, memory
 from heuncli.app.cli.entry import UsageError
@@ -30,7 +32,6 @@ from heuncli.app.commands.sweep.table import read_axes
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.records import replace
 from heuncli.output.snapshots import measure
-from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.memory_estimate import MemoryBudget
 from heuncli.study.quantities.measure_uncertainty import find_unit
@@ -111,7 +112,7 @@ def make_plan(axis_arguments: Sequence[AxisArgument], request: SweepRequest) -> 
     AxisError.
     """
     draws = draw_samples([one.axis for one in axis_arguments if isinstance(one.axis, RandomVariable)], request)
-    return combine_axes([one for one in axis_arguments if not is_all_cases_axis(one)], request, draws)
+    return combine_axes([one for one in axis_arguments if not one.is_all_cases], request, draws)
 
 
 def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, draws: Draws | None) -> Plan:
@@ -119,11 +120,6 @@ def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, 
     columns = [one.axis for one in axis_arguments if one.column is not None and isinstance(one.axis, ParameterAxis)]
     axes = [one.axis for one in axis_arguments if one.column is None and not isinstance(one.axis, RandomVariable)]
     return make_axes_plan(axes, together=request.zip, draws=draws, columns=columns)
-
-
-def is_all_cases_axis(axis_argument: AxisArgument) -> bool:
-    """Return whether an axis is the word `case=all`."""
-    return axis_argument.name == CASE and axis_argument.column is None and [*axis_argument.texts] == [ALL_CASES]
 
 
 def make_evaluator(recipe: Recipe, plan: Plan) -> VariantEvaluator:
@@ -150,12 +146,11 @@ def expand_cases(
     plan: Plan, axis_arguments: Sequence[AxisArgument], request: SweepRequest, evaluator: VariantEvaluator
 ) -> Plan:
     """Return the plan with `case=all` replaced by every load case. Raises AxisError."""
-    if not any(map(is_all_cases_axis, axis_arguments)):
+    if not any(one.is_all_cases for one in axis_arguments):
         return plan
     case_axis = ParameterAxis(CASE, tuple(evaluator.spec.cases)) if varies_cases(evaluator.spec) else None
     expanded = [
-        one._replace(axis=case_axis) if case_axis is not None and is_all_cases_axis(one) else one
-        for one in axis_arguments
+        one._replace(axis=case_axis) if case_axis is not None and one.is_all_cases else one for one in axis_arguments
     ]
     return combine_axes(expanded, request, plan.draws)
 
@@ -164,7 +159,7 @@ def make_head(request: SweepRequest, evaluator: VariantEvaluator, plan: Plan) ->
     """Make the head of the sweep: spec, plan and measures."""
     spec = evaluator.spec
     texts = zip(request.measure, evaluator.recipe.measures, strict=True)
-    measures = tuple(SweptMeasure(text, find_unit(request_.path, spec)) for text, request_ in texts)
+    measures = tuple(MeasureLabel(text, find_unit(request_.path, spec)) for text, request_ in texts)
     return SweepHead(spec.title, spec.path, spec.sha256, VERSION, plan, measures)
 
 

@@ -13,8 +13,9 @@ from contextlib import closing
 from heuncli.analyses.sweep_store.heads import write_head
 from heuncli.analyses.sweep_store.rows import SweepHead
 from heuncli.analyses.sweep_store.store import Store, StoredRows
-from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult
+from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
 from heuncli.analyses.variants.keys import VariantKeys
+from heuncli.analyses.variants.measures import VariantResult
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG
 from heuncli.app.cli.output import print_stderr
@@ -58,7 +59,7 @@ class PendingVariant(NamedTuple):
     """A variant that is being solved: its key and its values."""
 
     key: bytes
-    values: tuple[str, ...]
+    values: Values
 
 
 def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> int:
@@ -66,7 +67,7 @@ def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> i
     number = sweep.store.find_or_add_sweep(sweep.head, sweep.compute_identity())
     with GracefulStop() as stopping:
         done_count = _solve_missing(sweep, number, request, stopping)
-    rows = sweep.store.find_rows(number, sweep.head.plan.names, sweep.shard)
+    rows = sweep.store.find_rows(number, sweep.head.plan, sweep.shard)
     if stopping.number:
         if request.store is None and done_count:
             write_sweep(sweep.head, rows, output)
@@ -96,7 +97,7 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
     def missing() -> Iterator[int]:
         for variant in plan.iter_numbers(sweep.shard):
             values = plan.find_values(variant)
-            variant_values = PendingVariant(sweep.keys.make_key(values), tuple(values.values()))
+            variant_values = PendingVariant(sweep.keys.make_key(values), values)
             if store.has_result(variant_values.key):
                 store.link_variant(number, variant, *variant_values)
                 count.stored += 1
@@ -184,7 +185,7 @@ def format_duration(seconds: float) -> str:
     return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {s:02} s" if minutes else f"{s} s"
 
 
-def _require_numbers(evaluator: VariantEvaluator, values: dict[str, str]) -> None:
+def _require_numbers(evaluator: VariantEvaluator, values: Values) -> None:
     """Raise the error of a measure that is not a number, if the scene can be solved."""
     try:
         evaluator.measure(values)

@@ -39,7 +39,7 @@ def show_stored(request: SweepRequest, output: SweepOutput) -> int:
         if len(sweeps) > 1 and sweep_number is None and not request.quiet:
             for one in sweeps:
                 print_stderr(f"heun: {escape(name)}:{one.number}  {format_sweep(one)}")
-        rows = store.find_rows(sweep.number, sweep.head.plan.names, shard)
+        rows = store.find_rows(sweep.number, sweep.head.plan, shard)
         write_sweep(sweep.head, rows, output)
         note_si_format(request.units, output.form, request.quiet)
         if sweep.variant_count < sweep.head.plan.size and not request.quiet:

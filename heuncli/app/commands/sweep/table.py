@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from heuncli.analyses.variants.axes import ParameterAxis
+from heuncli.analyses.variants.parameters import make_axis
 from heuncli.app.commands.sweep.axis_arguments import AxisArgument, AxisColumn
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
@@ -72,7 +72,7 @@ def read_axes(path: str) -> tuple[AxisArgument, ...]:
     if problems:
         raise SpecError(*problems)
     return tuple(
-        AxisArgument(ParameterAxis(name, tuple(texts[k])), name, AxisColumn(file, (n, heads[k].column), places[k]))
+        AxisArgument(make_axis(name, texts[k]), name, AxisColumn(file, (n, heads[k].column), places[k]))
         for k, (name, _) in enumerate(names)
     )
 

@@ -10,12 +10,14 @@ second process gets that as its result. Impure: processes, the clock.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import islice
 
 from heuncli.analyses.sweep_store.rows import WORKER_DIED
-from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult, make_failed_result
+from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.measures import VariantResult, make_failed_result
+from heuncli.analyses.variants.parameters import format_value
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import run_contained
@@ -64,10 +66,10 @@ def solve_batch(evaluator: VariantEvaluator, plan: Plan, numbers: Sequence[int])
     return BatchResults(results, time.monotonic() - start)
 
 
-def answer_of(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+def answer_of(evaluator: VariantEvaluator, values: Values) -> VariantResult:
     """Solve a variant; time limits, lack of memory and bugs of heun become its result."""
     limit = evaluator.recipe.options.time_limit
-    words = [evaluator.recipe.path, *(f"{name}={text}" for name, text in values.items())]
+    words = [evaluator.recipe.path, *(f"{name}={format_value(value)}" for name, value in values.items())]
     try:
         return run_contained(lambda: timeout.run_with_limit(lambda: evaluator.answer(values), limit), ("sweep", *words))
     except HeunError as error:

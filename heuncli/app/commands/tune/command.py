@@ -107,8 +107,8 @@ def run_search(request: TuneRequest, options: TuningOptions, evaluator: VariantE
 def require_result(results: TuneResults) -> None:
     """Raise SolveError if no variant could be solved."""
     if results.best is None:
-        code, times = Counter(trial.failure[0] for trial in results.history).most_common(1)[0]
-        reason = next(trial.failure[1] for trial in results.history if trial.failure[0] == code)
+        code, times = Counter(trial.failure.code for trial in results.history).most_common(1)[0]
+        reason = next(trial.failure.text for trial in results.history if trial.failure.code == code)
         message = f"none of {len(results.history)} variants could be solved; {times} of them for this reason: {reason}"
         raise SolveError(Problem(code, message, hint="try heun run --set with one of them, or other bounds"))
 

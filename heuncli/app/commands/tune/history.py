@@ -31,15 +31,15 @@ def to_csv(results: TuneResults) -> str:
     goal = f"{task.goal.measure} [{task.goal.unit}]" if task.goal.unit else task.goal.measure
     writer.writerow(["number", "phase", *names, goal, "error", "at [s]", *measures, "best so far", "code"])
     for trial, best in zip(results.history, iter_best(results), strict=True):
-        values = [repr(one.to_value(x)) for one, x in zip(task.variables, trial.place, strict=True)]
-        readings = trial.outcome.readings
+        values = [repr(one.to_number(x)) for one, x in zip(task.variables, trial.place, strict=True)]
+        found = trial.outcome.measures
         cells = (
-            [_format_number(readings[0].value), _format_number(readings[0].error), _format_number(readings[0].instant)]
-            if readings
+            [_format_number(found[0].value), _format_number(found[0].error), _format_number(found[0].time)]
+            if found
             else [""] * 3
         )
-        others = [_format_number(one.value) for one in readings[1:]] if readings else [""] * len(measures)
-        code = "" if trial.is_solved else trial.failure[0]
+        others = [_format_number(one.value) for one in found[1:]] if found else [""] * len(measures)
+        code = "" if trial.is_solved else trial.failure.code
         writer.writerow([trial.number, trial.phase, *values, *cells, *others, _format_number(best), code])
     return text.getvalue()
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.analyses.tune.results import MeasureReading, ToleranceMove, ToleranceRange, TuneResults
+from heuncli.analyses.tune.results import ToleranceMove, ToleranceRange, TuneResults
+from heuncli.analyses.variants.measures import MeasureValue
 from heuncli.app.cli import terminal
 from heuncli.app.commands.tune.result_block import TunedScene
 from heuncli.base.text_safety import escape
@@ -97,8 +98,8 @@ def describe_nearest_unmet(results: TuneResults, units: Units) -> str:
     assert index is not None and results.best is not None
     one = results.task.constraints[index]
     unit, size = units.find(one.unit)
-    excess, limit = size * one.compute_excess(results.best.constraint_values[index]), size * one.limit
-    return f"closest limit: {one.measure} {one.sign} {limit:.6g} {unit}, exceeded by {excess:.3g} {unit}".rstrip()
+    excess, limit = size * one.compute_excess(results.best.constraint_values[index]), size * one.value
+    return f"closest limit: {one.measure} {one.relation} {limit:.6g} {unit}, exceeded by {excess:.3g} {unit}".rstrip()
 
 
 def make_variables_table(results: TuneResults) -> TextTable:
@@ -112,7 +113,7 @@ def make_variables_table(results: TuneResults) -> TextTable:
     for index, one in enumerate(results.task.variables):
         label = f"{one.name} [{one.unit}]" if one.unit else one.name
         base_text = "" if one.spec_value is None else f"{one.spec_value:.6g}"
-        value = f"{one.to_value(results.best.place[index]):.6g}"
+        value = f"{one.to_number(results.best.place[index]):.6g}"
         rows.append((label, base_text, value, f"{one.low:.6g}", f"{one.high:.6g}", AT_BOUND[results.find_bound(index)]))
     return TextTable(VARIABLES, columns, tuple(rows))
 
@@ -163,12 +164,12 @@ def make_measures_table(results: TuneResults, units: Units) -> TextTable:
             if results.active_constraints[index]
             else ""
         )
-        error = results.best.outcome.readings[index + 1].error or 0.0
-        margin = choose_style(size * max(abs(excess), abs(one.limit)), size * error).write(-size * excess + 0.0)
-        limit = f"{one.sign} {size * one.limit:.6g}"
+        error = results.best.outcome.measures[index + 1].error or 0.0
+        margin = choose_style(size * max(abs(excess), abs(one.value)), size * error).write(-size * excess + 0.0)
+        limit = f"{one.relation} {size * one.value:.6g}"
         lines.append(_make_measure_row(results, index + 1, one.measure, one.unit, units, (limit, margin, word)))
     note = (
-        () if results.spec_outcome.readings else (f"spec: {results.spec_outcome.reason} [{results.spec_outcome.code}]",)
+        () if results.spec_outcome.measures else (f"spec: {results.spec_outcome.reason} [{results.spec_outcome.code}]",)
     )
     return TextTable(MEASURES, columns, tuple(lines), note)
 
@@ -180,15 +181,15 @@ def _make_measure_row(
     assert results.best is not None
     unit, size = units.find(own_unit)
     label = format_head(text, unit)
-    base = results.spec_outcome.readings[index] if results.spec_outcome.readings else MeasureReading(None)
-    best = results.best.outcome.readings[index]
+    base = results.spec_outcome.get_measure(index)
+    best = results.best.outcome.measures[index]
     error = format_error(size * best.error) if best.error is not None else ""
-    instant = "" if best.instant is None else f"{best.instant:.6g}"
+    instant = "" if best.time is None else f"{best.time:.6g}"
     return (label, _format_value(base, size), _format_value(best, size), error, instant, *limit_cells)
 
 
-def _format_value(one: MeasureReading, size: float) -> str:
+def _format_value(one: MeasureValue, size: float) -> str:
     """Format a number with its certain digits, or the word that replaces an unknown one."""
     if one.value is None:
-        return one.reason
+        return one.word
     return choose_style(size * abs(one.value), size * (one.error or 0.0)).write(size * one.value)

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
 from typing import Any
 
 from heuncli.analyses.tune.results import (
-    MeasureReading,
     ToleranceMove,
     ToleranceRange,
     Trial,
-    TrialOutcome,
     TuneResults,
-    make_texts,
+    make_values,
 )
 from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.parameters import format_value
 from heuncli.app.commands.tune.history import iter_best
 from heuncli.app.commands.tune.tuning_options import TuningOptions
 from heuncli.base.named_tuples import NamedTuple
@@ -36,8 +35,8 @@ def format_command(options: TuningOptions, recipe: Recipe, results: TuneResults)
     words = ["heun", "run", recipe.path]
     if recipe.case is not None:
         words += ["--case", recipe.case]
-    for name, text in {**recipe.overrides, **results.best_texts}.items():
-        words += ["--set", f"{name}={text}"]
+    for name, value in {**recipe.overrides, **results.best_texts}.items():
+        words += ["--set", f"{name}={format_value(value)}"]
     if recipe.options.tolerance is not None:
         words += ["--tolerance", repr(recipe.options.tolerance)]
     if not recipe.options.reduce:
@@ -63,8 +62,8 @@ def to_block(results: TuneResults, scene: TunedScene) -> dict[str, Any]:
             "measure": goal.measure,
             "unit": goal.unit,
             "kind": "maximise" if goal.is_maximised else "minimise",
-            "before": make_reading_block(results.spec_outcome, 0),
-            "best": make_reading_block(best.outcome, 0),
+            "before": make_measure_block(results.spec_outcome, 0),
+            "best": make_measure_block(best.outcome, 0),
             "gain": results.gain,
             "floor": results.floor,
         },
@@ -96,7 +95,7 @@ def make_variable_block(results: TuneResults, index: int) -> dict[str, Any]:
         "low": variable.low,
         "high": variable.high,
         "before": variable.spec_value,
-        "value": variable.to_value(results.best.place[index]),
+        "value": variable.to_number(results.best.place[index]),
         "active": results.find_bound(index) or None,
     }
     range_ = results.tolerance_ranges[index] if results.tolerance_ranges else ToleranceRange()
@@ -116,14 +115,14 @@ def make_constraint_block(results: TuneResults, index: int) -> dict[str, Any]:
     """Return one constraint as the JSON has it; `left` is the margin to its limit, negative beyond it."""
     one = results.task.constraints[index]
     assert results.best is not None
-    best = make_reading_block(results.best.outcome, index + 1)
+    best = make_measure_block(results.best.outcome, index + 1)
     value = results.best.constraint_values[index]
     return {
         "measure": one.measure,
-        "sign": one.sign,
-        "limit": one.limit,
+        "sign": one.relation,
+        "limit": one.value,
         "unit": one.unit,
-        "before": make_reading_block(results.spec_outcome, index + 1),
+        "before": make_measure_block(results.spec_outcome, index + 1),
         "best": best,
         "left": -one.compute_excess(value),
         "met": one.is_met(value),
@@ -131,21 +130,22 @@ def make_constraint_block(results: TuneResults, index: int) -> dict[str, Any]:
     }
 
 
-def make_reading_block(outcome: TrialOutcome, index: int) -> dict[str, Any] | None:
+def make_measure_block(outcome: VariantResult, index: int) -> dict[str, Any] | None:
     """Return the value of a measure, or code and reason if the variant could not be solved."""
-    if not outcome.readings:
+    if not outcome.measures:
         return {"code": outcome.code, "reason": outcome.reason}
-    one: MeasureReading = outcome.readings[index]
-    block: dict[str, Any] = {"value": one.value, "error": one.error, "at": one.instant}
-    return block | ({"word": one.reason} if one.reason else {})
+    one = outcome.measures[index]
+    block: dict[str, Any] = {"value": one.value, "error": one.error, "at": one.time}
+    return block | ({"word": one.word} if one.word else {})
 
 
 def make_trial_block(results: TuneResults, trial: Trial, best: float | None) -> dict[str, Any]:
     """Return a tried variant as the JSON has it, and the best goal so far."""
-    values: Mapping[str, str] = make_texts(results.task.variables, trial.place)
-    block: dict[str, Any] = {"number": trial.number, "phase": trial.phase, "set": values}
+    values = make_values(results.task.variables, trial.place)
+    block: dict[str, Any] = {"number": trial.number, "phase": trial.phase}
+    block["set"] = {name: value.format() for name, value in values.items()}
     if trial.is_solved:
         block |= {"goal": trial.goal, "constraints": list(trial.constraint_values)}
     else:
-        block |= {"goal": None, "code": trial.failure[0]}
+        block |= {"goal": None, "code": trial.failure.code}
     return block | {"best": best}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.results import MeasureReading, TrialOutcome
 from heuncli.analyses.tune.trials import TIME_LIMIT_CODE
-from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult, make_failed_result
+from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.measures import VariantResult, make_failed_result
+from heuncli.analyses.variants.parameters import format_value
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import UsageError, run_contained
 from heuncli.base.errors import HeunError, Problem
@@ -28,35 +29,35 @@ class TrialSolver:
         self.evaluator, self.jobs = evaluator, jobs
         self.seconds = 0.0  # solving time of the scene as it is
 
-    def solve_base(self) -> TrialOutcome:
+    def solve_base(self) -> VariantResult:
         """Solve the scene as it is. Raises UsageError if a measure is not a single number in it."""
         start = time.perf_counter()
         try:
-            return to_outcome(self.evaluator.measure({}))
+            return self.evaluator.measure({})
         except NotOneNumber as error:
             (problem,) = error.problems
             raise UsageError(problem) from None
         except HeunError as error:
-            return to_outcome(make_failed_result(error))
+            return make_failed_result(error)
         finally:
             self.seconds = time.perf_counter() - start
 
-    def __call__(self, variants: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
-        """Yield the outcomes of variants, given in the form of --set. Raises UsageError if a measure is not a single
+    def __call__(self, variants: Sequence[Values]) -> Iterator[VariantResult]:
+        """Yield the outcomes of variants, by their values. Raises UsageError if a measure is not a single
         number.
         """
         is_short = self.jobs is None and self.seconds < MIN_SECONDS
         job_count = 1 if is_short or len(variants) == 1 else jobs.choose_job_count(self.jobs, len(variants))
-        work: Callable[[Mapping[str, str]], VariantResult] = partial(
+        work: Callable[[Values], VariantResult] = partial(
             solve_in_worker if job_count > 1 else solve_variant, self.evaluator
         )
         for result in jobs.run_in_order(work, variants, job_count, make_death_result):
             if result.code == NO_NUMBER:
                 raise UsageError(Problem(result.code, result.reason, hint="for example 'max foundation.force'"))
-            yield to_outcome(result)
+            yield result
 
 
-def solve_variant(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+def solve_variant(evaluator: VariantEvaluator, values: Values) -> VariantResult:
     """Solve a variant in this process, where the time limit interrupts whatever is going on."""
     remaining = timeout.remaining_time()
     if remaining is not None and remaining <= MIN_REMAINING:
@@ -67,25 +68,19 @@ def solve_variant(evaluator: VariantEvaluator, values: Mapping[str, str]) -> Var
         return VariantResult(code=TIME_LIMIT_CODE)
 
 
-def solve_in_worker(evaluator: VariantEvaluator, values: Mapping[str, str]) -> VariantResult:
+def solve_in_worker(evaluator: VariantEvaluator, values: Values) -> VariantResult:
     """Solve a variant in a process of its own, which has no time limit but the one set here."""
     work = partial(timeout.run_with_limit, lambda: evaluator.answer(values), timeout.remaining_time())
     try:
         return run_contained(
-            work, ("tune", evaluator.recipe.path, *(f"{name}={text}" for name, text in values.items()))
+            work, ("tune", evaluator.recipe.path, *(f"{name}={format_value(value)}" for name, value in values.items()))
         )
     except HeunError as error:
         return make_failed_result(error)
 
 
-def make_death_result(values: Mapping[str, str], death: jobs.ProcessDeath) -> VariantResult:
+def make_death_result(values: Values, death: jobs.ProcessDeath) -> VariantResult:
     """Make the result of a variant whose process died."""
     if death.is_time_up:
         return VariantResult(code=TIME_LIMIT_CODE)
     return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
-
-
-def to_outcome(result: VariantResult) -> TrialOutcome:
-    """Convert the result of a variant to the outcome that the search takes."""
-    readings = tuple(MeasureReading(one.value, one.error, one.time, one.word) for one in result.measures)
-    return TrialOutcome(readings, result.code, result.reason, result.warnings)

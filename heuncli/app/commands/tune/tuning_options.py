@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from functools import partial
 from itertools import chain
 
-from heuncli.analyses.tune.results import DesignVariable, TuneConstraint, TuneGoal, TuneTask
-from heuncli.analyses.variants.axes import INTERVAL_HINT, AxisError, Interval, parse_interval
-from heuncli.analyses.variants.conditions import MeasureCondition, find_si_value, parse_condition
+from heuncli.analyses.tune.results import TuneGoal, TuneTask
+from heuncli.analyses.variants.axes import INTERVAL_HINT, AxisError, parse_interval
+from heuncli.analyses.variants.conditions import WrittenCondition, parse_condition, resolve_condition
 from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import split_spec_and_assignments
 from heuncli.app.commands.tune.request import TuneRequest
@@ -32,10 +33,10 @@ class TuningOptions(NamedTuple):
     """The options of a tuning, as far as the command line alone gives them."""
 
     path: str
-    intervals: tuple[Interval, ...]
+    variables: tuple[DesignVariable, ...]
     goal: str
     greatest: bool
-    conditions: tuple[MeasureCondition, ...]
+    conditions: tuple[WrittenCondition, ...]
 
     @property
     def measures(self) -> tuple[MeasureRequest, ...]:
@@ -45,7 +46,7 @@ class TuningOptions(NamedTuple):
 
 def parse_options(request: TuneRequest) -> TuningOptions:
     """Parse the options of a request. Raises UsageError, AxisError."""
-    path, intervals = parse_words(request.words)
+    path, variables = parse_words(request.words)
     goals = [(text, greatest) for text, greatest in ((request.minimise, False), (request.maximise, True)) if text]
     if len(goals) != 1:
         message = "both --minimise and --maximise are given" if goals else "no goal is given"
@@ -53,25 +54,25 @@ def parse_options(request: TuneRequest) -> TuningOptions:
         raise UsageError(Problem("bad-option", f"tune: {message}", hint=hint))
     ((goal, greatest),) = goals
     conditions = tuple(_parse_constraint(text) for text in request.subject_to)
-    return TuningOptions(path, tuple(intervals), goal, greatest, conditions)
+    return TuningOptions(path, tuple(variables), goal, greatest, conditions)
 
 
-def parse_words(words: Sequence[str]) -> tuple[str, list[Interval]]:
-    """Split the arguments into the spec's file and the intervals of the variables. Raises UsageError, AxisError."""
+def parse_words(words: Sequence[str]) -> tuple[str, list[DesignVariable]]:
+    """Split the arguments into the spec's file and the variables. Raises UsageError, AxisError."""
     path, assignments = split_spec_and_assignments(words, "tune", "heun tune SPEC NAME=LOW:HIGH --minimise WHAT")
-    intervals = [parse_interval(word) for word in assignments]
-    names = [interval.name for interval in intervals]
+    variables = [parse_interval(word) for word in assignments]
+    names = [variable.name for variable in variables]
     if not names:
         raise UsageError(Problem("bad-option", "tune: no parameter to vary is given", hint=INTERVAL_HINT))
     for name in names:
         if names.count(name) > 1:
             raise AxisError(name, "is varied twice", "give one interval per parameter")
-    return path, intervals
+    return path, variables
 
 
-def _parse_constraint(text: str) -> MeasureCondition:
+def _parse_constraint(text: str) -> WrittenCondition:
     condition = parse_condition(text, FORM, HINT)
-    if condition.sign == "=":
+    if condition.relation == "=":
         raise AxisError(text, "a limit has < or >: = cannot be met exactly", HINT)
     return condition
 
@@ -80,31 +81,27 @@ def make_task(request: TuneRequest, options: TuningOptions, evaluator: VariantEv
     """Make the task of the search, checked against the scene. Raises UsageError, AxisError, SpecError."""
     spec, measures = evaluator.spec, evaluator.recipe.measures
     goal, *others = measures
-    scene_makers = [partial(evaluator.load_samples, interval) for interval in options.intervals]
+    scene_makers = [partial(evaluator.load_samples, variable) for variable in options.variables]
     scene_lists = measure.check_with_others(measures, spec, scene_makers, "tune")
     scenes = [spec, *chain.from_iterable(scene_lists)]
-    constraints = []
-    for condition, one in zip(options.conditions, others, strict=True):
-        unit = find_unit(one.path, spec)
-        sign = condition.sign
-        assert sign != "="
-        constraints.append(TuneConstraint(condition.measure, sign, find_si_value(condition, unit, scenes, HINT), unit))
+    constraints = [
+        resolve_condition(condition, find_unit(one.path, spec), scenes, HINT)
+        for condition, one in zip(options.conditions, others, strict=True)
+    ]
     return TuneTask(
-        variables=tuple(make_variable(interval, spec) for interval in options.intervals),
+        variables=tuple(add_spec_value(variable, spec) for variable in options.variables),
         goal=TuneGoal(options.goal, find_unit(goal.path, spec), options.greatest),
         constraints=tuple(constraints),
-        max_variants=parse_max_evaluations(request, len(options.intervals)),
+        max_variants=parse_max_evaluations(request, len(options.variables)),
         precision=parse_precision(request),
         seed=parse_seed(request),
     )
 
 
-def make_variable(interval: Interval, spec: Spec) -> DesignVariable:
-    """Make a design variable, with its value in the spec if it is a parameter."""
-    base_value = spec.parameters.get(interval.name)
-    if base_value is not None:
-        base_value = base_value / parse_unit(interval.unit or "1")[0]
-    return DesignVariable(interval.name, interval.low, interval.high, interval.unit, base_value)
+def add_spec_value(variable: DesignVariable, spec: Spec) -> DesignVariable:
+    """Return the variable with its value in the spec, if it is a parameter."""
+    value = spec.parameters.get(variable.name)
+    return variable if value is None else variable._replace(spec_value=value / parse_unit(variable.unit or "1")[0])
 
 
 def parse_max_evaluations(request: TuneRequest, variables: int) -> int:

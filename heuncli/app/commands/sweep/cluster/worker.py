@@ -12,18 +12,19 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import heuncli
-from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, VariantResult
+from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
+from heuncli.analyses.variants.measures import VariantResult
 from heuncli.app.commands.sweep.workers import answer_of
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.form import KERNEL
 from heuncli.scene.file_format.named_files import FileNotPreloaded
 from heuncli.version import VERSION
 
-Variant = tuple[int, Mapping[str, str]]  # its number in the plan, and its values in the form of `--set`
+Variant = tuple[int, Values]  # its number in the plan, and its values
 PACKAGE = os.path.dirname(os.path.abspath(heuncli.__file__))  # noqa: PTH100, PTH120
 _TASK_LOCK = threading.Lock()
 

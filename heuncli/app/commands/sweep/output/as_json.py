@@ -6,10 +6,17 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from heuncli.analyses.sweep_store.columns import ParameterColumn, SweepColumns, explain_missing, make_columns, to_finite
+from heuncli.analyses.sweep_store.columns import (
+    ParameterColumn,
+    SweepColumns,
+    explain_missing,
+    make_columns,
+    to_cell,
+    to_finite,
+)
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.evaluation import MeasureValue
 from heuncli.analyses.variants.indices import SobolIndices
+from heuncli.analyses.variants.measures import NO_VALUE
 from heuncli.analyses.variants.sampling import CONFIDENCE
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics, iter_statistics
@@ -32,7 +39,7 @@ def iter_json(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
     if head.plan.draws is not None:
         yield ',\n "statistics": ['
         for number, statistics in enumerate(iter_statistics(head, buffer)):
-            yield f"{',' if number else ''}\n  {_to_json(_make_statistics_block(statistics, head, columns))}"
+            yield f"{',' if number else ''}\n  {_to_json(_make_statistics_block(statistics, head))}"
         yield "\n ]"
     yield "\n}\n"
 
@@ -68,24 +75,22 @@ def _make_law_block(law: Any) -> dict[str, Any]:
 
 
 def _make_row_block(row: SweptRow, columns: SweepColumns) -> dict[str, Any]:
-    names = (one.name for one in columns.parameters)
     block: dict[str, Any] = {
         "number": row.number,
-        "set": dict(zip(names, columns.parse_values(row.values), strict=True)),
+        "set": {name: to_cell(value) for name, value in row.values.items()},
     }
-    measures = row.answer.measures or (MeasureValue(None),) * len(columns.measures)
+    measures = row.answer.measures or (NO_VALUE,) * len(columns.measures)
     values = [(to_finite(one.value), to_finite(one.error), to_finite(one.time)) for one in measures]
     block["values"] = [dict(zip(("value", "error", "at"), one, strict=True)) for one in values]
     block |= {"code": row.answer.code, "reason": explain_missing(row, columns.measures)}
     return block | ({"warnings": list(row.answer.warnings)} if row.answer.warnings else {})
 
 
-def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
+def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead) -> dict[str, Any]:
     """Return the statistics of one measure at one combination of the axes."""
     measure = head.measures[statistics.measure]
-    parameters = {one.name: one for one in columns.parameters}
     block: dict[str, Any] = {
-        "set": {name: parameters[name].parse_value(text) for name, text in statistics.combination.items()},
+        "set": {name: to_cell(value) for name, value in statistics.combination.items()},
         "measure": measure.text,
         "unit": measure.unit or None,
         "variants": statistics.drawn_count,

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.columns import WORDS, ParameterColumn, make_parameter_columns
+from heuncli.analyses.sweep_store.columns import ParameterColumn, make_parameter_columns, to_cell
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.evaluation import MeasureValue
+from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.app.commands.sweep.output.extremes import MeasureExtremes
 from heuncli.app.commands.sweep.output.top_k import ShownRows
 from heuncli.output.tables.plurals import format_count
 from heuncli.output.tables.text_table import TextColumn, TextTable
+from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, choose_style, largest_magnitude, trim_zeros
 from heuncli.study.quantities.table_units import Units
 
@@ -61,13 +62,13 @@ def make_parameter_column(one: ParameterColumn) -> TextColumn:
 
 def make_parameter_cells(row: SweptRow, parameters: Sequence[ParameterColumn]) -> list[str]:
     """Format the values of a variant to six digits."""
-    return [format_parameter(one, row.values[one.name]) for one in parameters]
+    return [format_parameter(row.values[one.name]) for one in parameters]
 
 
-def format_parameter(one: ParameterColumn, text: str) -> str:
+def format_parameter(value: ParameterValue) -> str:
     """Format a value without its unit."""
-    value = one.parse_value(text)
-    return value if isinstance(value, str) else f"{value:.6g}"
+    cell = to_cell(value)
+    return cell if isinstance(cell, str) else f"{cell:.6g}"
 
 
 def insert_gaps(places: Sequence[int], cells: Sequence[Sequence[str]], size: int) -> Iterator[tuple[str, ...] | str]:
@@ -90,7 +91,7 @@ def _make_measure_columns(
     unit, size = units.find(measure.unit)
     columns = [TextColumn(f"{measure.text} [{unit}]" if unit else measure.text, vector=vector_name)]
     scale = size * largest_magnitude(selection.columns.values(k))
-    results = [row.answer.measures[k] if row.answer.measures else MeasureValue(None) for row in selection.rows.values()]
+    results = [row.answer.get_measure(k) for row in selection.rows.values()]
     cells = [[text] for text in trim_zeros([format_measure(one, size, scale) for one in results])]
     instants = {one.time for one in results if one.time is not None}
     if len(instants) > 1:
@@ -131,7 +132,7 @@ def format_measure(one: MeasureValue, size: float, scale: float) -> str:
     A value not above its error is 0 relative to a larger one, and unknown if there is none.
     """
     if one.value is None:
-        return WORDS[one.word][0] if one.word else ""
+        return MISSING_KINDS[one.word].mark if one.word else ""
     return format_number(size * one.value, size * (one.error or 0.0), scale)
 
 

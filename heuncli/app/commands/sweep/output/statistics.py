@@ -18,6 +18,7 @@ from heuncli.analyses.variants.sampling import SampleStatistics, compute_statist
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
+from heuncli.scene.file_format.quantity import ParameterValue
 
 INDEPENDENT = 2  # of the variants of a sample for Sobol indices: A and B
 
@@ -25,7 +26,7 @@ INDEPENDENT = 2  # of the variants of a sample for Sobol indices: A and B
 class MeasureStatistics(NamedTuple):
     """The statistics of one measure at one combination of the other axes.
 
-    combination: its values, in the form of `--set`
+    combination: its values
     measure: index of the measure
     drawn_count: number of variants, of which `left_out` have no value
     sample: the sample statistics, or None
@@ -35,7 +36,7 @@ class MeasureStatistics(NamedTuple):
     samples: number of samples behind the indices
     """
 
-    combination: dict[str, str]
+    combination: dict[str, ParameterValue]
     measure: int
     drawn_count: int
     left_out: int
@@ -67,14 +68,14 @@ def iter_statistics(head: SweepHead, rows: ColumnBuffer) -> Iterator[MeasureStat
             yield _compute_statistics(plan, combination, measure, numbers[begin:end] - start, values, errors)
 
 
-def find_combination(plan: Plan, number: int) -> dict[str, str]:
-    """Return the values of the axes that are not random, in the form of `--set`."""
+def find_combination(plan: Plan, number: int) -> dict[str, ParameterValue]:
+    """Return the values of the axes that are not random."""
     random_names = {law.name for law in plan.draws.laws} if plan.draws is not None else set()
-    return {name: text for name, text in plan.find_values(number).items() if name not in random_names}
+    return {name: value for name, value in plan.find_values(number).items() if name not in random_names}
 
 
 def _compute_statistics(
-    plan: Plan, combination: dict[str, str], measure: int, places: Array, values: Array, errors: Array
+    plan: Plan, combination: dict[str, ParameterValue], measure: int, places: Array, values: Array, errors: Array
 ) -> MeasureStatistics:
     """Compute the statistics of one measure at one combination.
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from heuncli.analyses.sweep_store.columns import make_parameter_columns
 from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.variants.axes import RandomVariable
 from heuncli.analyses.variants.indices import MIN_BOUNDED
+from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.analyses.variants.sampling import CONFIDENCE, BoundedEstimate
 from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, format_variant_count
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics
@@ -47,7 +47,7 @@ def make_statistics_tables(
 def format_label(head: SweepHead, one: MeasureStatistics, unit: str = "") -> str:
     """Return a measure with the combination of the axes: `max joints.main.force [N], n = 1000 rpm`."""
     known = {parameter.name: parameter for parameter in make_parameter_columns(head.plan)}
-    values = [(known[name], format_parameter(known[name], text)) for name, text in one.combination.items()]
+    values = [(known[name], format_parameter(value)) for name, value in one.combination.items()]
     axis_texts = [
         f"{parameter.name} = {text}{f' {parameter.unit}' if parameter.unit else ''}" for parameter, text in values
     ]

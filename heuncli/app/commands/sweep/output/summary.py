@@ -81,9 +81,7 @@ def format_variant(plan: Plan, parameters: tuple[ParameterColumn, ...], number: 
     if len(parameters) != 1:
         return f"variant {number}"
     (one,) = parameters
-    return (
-        f"{one.name} = {format_parameter(one, plan.find_values(number)[one.name])}{f' {one.unit}' if one.unit else ''}"
-    )
+    return f"{one.name} = {format_parameter(plan.find_values(number)[one.name])}{f' {one.unit}' if one.unit else ''}"
 
 
 def draw_courses(
@@ -124,10 +122,10 @@ def format_combination(plan: Plan, number: int) -> str:
     moving = {law.name for law in plan.draws.laws} if plan.draws is not None else {plan.axes[-1].name}
     values = plan.find_values(number)
     fixed = [one for one in make_parameter_columns(plan) if one.name not in moving]
-    texts = ((one, format_parameter(one, values[one.name])) for one in fixed)
+    texts = ((one, format_parameter(values[one.name])) for one in fixed)
     return ", ".join(f"{one.name} = {text}{f' {one.unit}' if one.unit else ''}" for one, text in texts)
 
 
 def last_axis_length(plan: Plan) -> int:
     """Return how many successive variants differ only in the last axis, or in all axes if they vary together."""
-    return plan.size if plan.together or not plan.axes else len(plan.axes[-1].texts)
+    return plan.size if plan.together or not plan.axes else len(plan.axes[-1].values)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.cached_evaluator import strip_numbers
+from heuncli.analyses.variants.evaluation import strip_numbers
 from heuncli.app.cli.output import print_stderr
 from heuncli.base.named_tuples import NamedTuple
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from heuncli.analyses.variants.axes import AxisError, format_quantity
+from heuncli.analyses.variants.axes import AxisError
 from heuncli.analyses.variants.evaluation import Recipe
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
@@ -15,13 +15,13 @@ from heuncli.scene.file_format.cases import list_case_settings
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import as_mapping
 from heuncli.scene.file_format.overrides import apply_settings, get_value, parse_path, parse_settings
-from heuncli.scene.file_format.quantity import Scope, match_quantity, read_number
+from heuncli.scene.file_format.quantity import NumberWithUnit, Scope, match_quantity, read_number
 from heuncli.scene.file_format.source import read_source
 
 EXAMPLES = "for example L, or bodies.crank.mass"
 
 
-class WrittenNumber(NamedTuple):
+class SpecNumber(NamedTuple):
     """A number by its name, in its unit (empty: SI, or none); size: of the unit in SI."""
 
     name: str
@@ -29,12 +29,12 @@ class WrittenNumber(NamedTuple):
     unit: str
     size: float
 
-    def format_value(self, value: float) -> str:
-        """Format another value of it in the form of `--set`."""
-        return format_quantity(value, self.unit)
+    def make_value(self, number: float) -> NumberWithUnit:
+        """Return another number as its value."""
+        return NumberWithUnit(float(number), self.unit)
 
 
-class WrittenNumbers:
+class SpecNumbers:
     """The numbers of a spec as a recipe gives them: with its load case, and the values set in all variants."""
 
     def __init__(self, recipe: Recipe, spec: Spec) -> None:
@@ -44,7 +44,7 @@ class WrittenNumbers:
         self._data: dict[str, Any] = apply_settings(source.data, settings)[0]
         self._spec = spec
 
-    def find_number(self, name: str) -> WrittenNumber:
+    def find_number(self, name: str) -> SpecNumber:
         """Return the number under a name; of an expression its value in SI. Raises AxisError."""
         path = parse_path(name, self._data)
         entry = get_value(self._data, path)
@@ -58,15 +58,15 @@ class WrittenNumbers:
         except Finding as finding:
             raise AxisError(name, f"not a number: {finding.message}", EXAMPLES) from None
 
-    def iter_parameters(self) -> Iterator[WrittenNumber]:
+    def iter_parameters(self) -> Iterator[SpecNumber]:
         """Yield the parameters that are given as numbers, without those that are expressions of others."""
         for name, entry in as_mapping(self._data.get("parameters")).items():
             if type(entry) in (int, float) or (type(entry) is str and match_quantity(entry) is not None):
                 yield self._parse(name, entry)
 
-    def _parse(self, name: str, entry: Any) -> WrittenNumber:
+    def _parse(self, name: str, entry: Any) -> SpecNumber:
         value = read_number(entry, None, Scope(self._spec.parameters))
         with_unit = match_quantity(entry) if type(entry) is str else None
         if with_unit is None:
-            return WrittenNumber(name, value, "", 1.0)
-        return WrittenNumber(name, with_unit.value, with_unit.unit, parse_unit(with_unit.unit)[0])
+            return SpecNumber(name, value, "", 1.0)
+        return SpecNumber(name, with_unit.value, with_unit.unit, parse_unit(with_unit.unit)[0])
