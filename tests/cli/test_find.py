@@ -10,8 +10,7 @@ from typing import get_args
 
 import pytest
 
-from heuncli.analyses.variants.cached_evaluator import REASONS
-from heuncli.analyses.variants.evaluation import Word
+from heuncli.analyses.variants.measures import MISSING_KINDS, MissingWord
 from tests.shared.command import Heun
 from tests.shared.variant_scenes import CANTILEVER, PENDULUM, ROOT, TENSION, TWO_BARS
 
@@ -147,4 +146,4 @@ def test_a_time_limit(heun: Heun) -> None:
 
 
 def test_each_word_for_what_is_not_known_has_its_reason() -> None:
-    assert REASONS.keys() == {word for word in get_args(Word) if word}
+    assert MISSING_KINDS.keys() == {word for word in get_args(MissingWord) if word}

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.evaluation import VariantEvaluator, VariantResult
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.measures import VariantResult
 from heuncli.app.cli import jobs
 from heuncli.app.commands.check import command
 from heuncli.base.errors import LimitError

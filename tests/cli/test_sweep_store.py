@@ -13,8 +13,10 @@ from pathlib import Path
 import pytest
 
 from heuncli.analyses.sweep_store.store import Store
-from heuncli.analyses.variants.evaluation import MeasureValue, VariantEvaluator, VariantResult
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.measures import MeasureValue, VariantResult
 from heuncli.base.errors import OutputError
+from heuncli.scene.file_format.quantity import NumberWithUnit
 from tests.shared import triangles
 from tests.shared.command import HANGING, Done, Heun
 from tests.shared.shell import shell
@@ -25,12 +27,12 @@ STORED = ("--store", "s.sqlite")
 
 
 @pytest.fixture
-def solved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[dict[str, str]]]:
+def solved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[dict[str, NumberWithUnit]]]:
     """The variants that were solved since it was emptied, in this process."""
-    found: list[dict[str, str]] = []
+    found: list[dict[str, NumberWithUnit]] = []
     answer = VariantEvaluator.answer
 
-    def counted(self: VariantEvaluator, values: dict[str, str]) -> object:
+    def counted(self: VariantEvaluator, values: dict[str, NumberWithUnit]) -> object:
         found.append(dict(values))
         return answer(self, values)
 
@@ -39,13 +41,13 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[dict[str, str]]]:
     yield found
 
 
-def test_a_second_call_solves_what_is_missing(heun: Heun, solved: list[dict[str, str]]) -> None:
+def test_a_second_call_solves_what_is_missing(heun: Heun, solved: list[dict[str, NumberWithUnit]]) -> None:
     first = heun(*MASSES, *STORED)
     assert len(solved) == 5
     assert heun(*MASSES, *STORED) == first
     assert len(solved) == 5
     more = heun("sweep", "hanging.yaml", "m=1:3/9", *PIVOT, *STORED)
-    assert [values["m"] for values in solved[5:]] == ["1.25", "1.75", "2.25", "2.75"]
+    assert [values["m"].value for values in solved[5:]] == [1.25, 1.75, 2.25, 2.75]
     assert more == heun("sweep", "hanging.yaml", "m=1:3/9", *PIVOT)
 
 
@@ -67,7 +69,7 @@ OTHERS = {
 
 @pytest.mark.parametrize("what", SAME)
 def test_what_changes_no_answer_solves_nothing(
-    heun: Heun, folder: Path, solved: list[dict[str, str]], what: str
+    heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]], what: str
 ) -> None:
     first = heun(*MASSES, *STORED)
     text = SAME[what].replace("'-5e-1'", "-5e-1")
@@ -78,7 +80,7 @@ def test_what_changes_no_answer_solves_nothing(
 
 @pytest.mark.parametrize("what", OTHERS)
 def test_what_may_change_an_answer_solves_all(
-    heun: Heun, folder: Path, solved: list[dict[str, str]], what: str
+    heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]], what: str
 ) -> None:
     heun(*MASSES, *STORED)
     (folder / "hanging.yaml").write_text(OTHERS[what])
@@ -90,13 +92,13 @@ def test_what_may_change_an_answer_solves_all(
 @pytest.mark.parametrize(
     "words", [("--tolerance", "1e-6"), ("--set", "gravity=[0, 0, -1]"), ("--measure", "joints.pivot.force.x")]
 )
-def test_so_do_options_and_measures(heun: Heun, solved: list[dict[str, str]], words: tuple[str, ...]) -> None:
+def test_so_do_options_and_measures(heun: Heun, solved: list[dict[str, NumberWithUnit]], words: tuple[str, ...]) -> None:
     heun(*MASSES, *STORED)
     heun(*MASSES, *STORED, *words)
     assert len(solved) == 10
 
 
-def test_values_of_one_size_are_one_variant(heun: Heun, solved: list[dict[str, str]]) -> None:
+def test_values_of_one_size_are_one_variant(heun: Heun, solved: list[dict[str, NumberWithUnit]]) -> None:
     for word in ("m=2kg,3kg", "m=2000g,3000g", "m=2.0kg,3e0 kg"):
         heun("sweep", "hanging.yaml", word, *PIVOT, *STORED)
     assert len(solved) == 2
@@ -104,7 +106,7 @@ def test_values_of_one_size_are_one_variant(heun: Heun, solved: list[dict[str, s
     assert len(solved) == 4
 
 
-def test_the_content_of_tables_counts(heun: Heun, folder: Path, solved: list[dict[str, str]]) -> None:
+def test_the_content_of_tables_counts(heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]]) -> None:
     text = (
         HANGING + "tables: {f: {file: f.csv}}\nforces: {f: {type: force, on: bar.top, vector: ['table(f, 0)', 0, 0]}}\n"
     )
@@ -118,7 +120,7 @@ def test_the_content_of_tables_counts(heun: Heun, folder: Path, solved: list[dic
     assert len(solved) == 10
 
 
-def test_the_content_of_meshes_counts(heun: Heun, folder: Path, solved: list[dict[str, str]]) -> None:
+def test_the_content_of_meshes_counts(heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]]) -> None:
     extra = "  solid: {shapes: [{type: mesh, file: solid.stl, density: 1}], points: {a: [0, 0, 0]}}\njoints:\n"
     text = HANGING.replace("expect", "#").replace("joints:\n", extra, 1)
     (folder / "hanging.yaml").write_text(text)
@@ -128,7 +130,7 @@ def test_the_content_of_meshes_counts(heun: Heun, folder: Path, solved: list[dic
         assert len(solved) == count
 
 
-def test_what_cannot_be_solved_is_kept(heun: Heun, solved: list[dict[str, str]]) -> None:
+def test_what_cannot_be_solved_is_kept(heun: Heun, solved: list[dict[str, NumberWithUnit]]) -> None:
     words = ("sweep", "hanging.yaml", "m=-1,1,2", *PIVOT, *STORED)
     first = heun(*words)
     assert first.returncode == 0
@@ -181,16 +183,17 @@ def foreign(folder: Path, kind: str) -> str:
         if kind == "another program":
             connection.execute("CREATE TABLE notes (text)")
             said = "s.sqlite: not a store of sweeps: it is a database of another program [not-a-store]"
-        elif kind == "another form":
+        elif kind in ("form 1", "form 99"):  # 1 held the values of parameters as texts
             connection.execute(f"PRAGMA application_id = {0x6865756E}")
-            connection.execute("PRAGMA user_version = 99")
+            connection.execute(f"PRAGMA user_version = {kind.split()[1]}")
             connection.execute("CREATE TABLE heun (version)")
-            said = "s.sqlite: store format 99, of another version of heun; this version uses format 1 [not-a-store]"
+            message = f"store format {kind.split()[1]}, of another version of heun; this version uses format 2"
+            said = f"s.sqlite: {message} [not-a-store]"
         connection.commit()
     return said
 
 
-@pytest.mark.parametrize("kind", ["text", "another program", "another form"])
+@pytest.mark.parametrize("kind", ["text", "another program", "form 1", "form 99"])
 def test_a_file_that_is_no_store_is_refused_by_name(heun: Heun, folder: Path, kind: str) -> None:
     said = foreign(folder, kind)
     before = (folder / "s.sqlite").read_bytes()
@@ -228,7 +231,7 @@ def test_a_store_stands_where_nothing_else_does(heun: Heun, folder: Path, words:
 @pytest.mark.parametrize(
     "name", [":memory:", "file:x.sqlite?mode=memory", "file::memory:", "a%20b#c?d.sqlite", "-s.sqlite"]
 )
-def test_whatever_its_name_a_store_is_a_file(heun: Heun, folder: Path, solved: list[dict[str, str]], name: str) -> None:
+def test_whatever_its_name_a_store_is_a_file(heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]], name: str) -> None:
     stored = f"--store={name}"
     first = heun(*MASSES, stored)
     assert first.returncode == 0

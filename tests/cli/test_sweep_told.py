@@ -17,10 +17,11 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure, SweptRow
-from heuncli.analyses.variants.axes import ParameterAxis, RandomVariable, parse_axis_values
+from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.variants.axes import parse_axis_values
 from heuncli.analyses.variants.draws import make_draws
-from heuncli.analyses.variants.evaluation import MeasureValue, VariantResult
+from heuncli.analyses.variants.measures import MeasureLabel, MeasureValue, VariantResult
+from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.commands.sweep.output import as_parquet, writer
 from heuncli.app.commands.sweep.output.page import make_tables
@@ -164,7 +165,7 @@ def test_of_what_does_not_vary_there_are_no_indices(heun: Heun) -> None:
 
 
 def head_of(plan: Plan, *units: str) -> SweepHead:
-    measures = tuple(SweptMeasure(f"m{k}", unit) for k, unit in enumerate(units))
+    measures = tuple(MeasureLabel(f"m{k}", unit) for k, unit in enumerate(units))
     return SweepHead("A title", "spec.yaml", "0" * 64, "1", plan, measures)
 
 
@@ -268,7 +269,7 @@ def test_a_parameter_that_is_called_as_a_column_is_told_apart() -> None:
 # Files.
 
 
-class Texts(Sequence[str]):
+class ManyNumbers(Sequence[float]):
     """Many values of an axis, made as they are asked for."""
 
     def __len__(self) -> int:
@@ -277,7 +278,7 @@ class Texts(Sequence[str]):
     def __getitem__(self, place: Any) -> Any:
         if place >= len(self):
             raise IndexError
-        return f"{float(place)} rpm"
+        return float(place)
 
 
 @pytest.mark.heavy
@@ -288,7 +289,7 @@ def test_memory_does_not_grow_with_the_rows(
     form: str, fewer: int, more: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Counts from where the buffers of a form are full; of JSON and Parquet 8 bytes of each row more would be seen."""
-    plan = make_axes_plan([ParameterAxis("n", Texts())])
+    plan = make_axes_plan([ParameterAxis("n", ManyNumbers(), "rpm")])
 
     def rows(count: int) -> Iterator[SweptRow]:
         answer = VariantResult((MeasureValue(1.5, 1e-9, 0.25),))

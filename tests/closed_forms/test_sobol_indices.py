@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.stats import sobol_indices as scipy_indices
 
-from heuncli.analyses.variants.axes import RandomVariable
 from heuncli.analyses.variants.draws import make_draws
 from heuncli.analyses.variants.indices import compute_sobol_indices
+from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.results.results import Array
 from tests.shared.command import Heun
 

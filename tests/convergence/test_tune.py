@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import pytest
 
 from heuncli.analyses.tune.results import (
-    DesignVariable,
-    MeasureReading,
-    TrialOutcome,
-    TuneConstraint,
     TuneGoal,
     TuneResults,
     TuneTask,
 )
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import TIME_LIMIT_CODE, Trials
+from heuncli.analyses.variants.conditions import Comparison
+from heuncli.analyses.variants.evaluation import Values
+from heuncli.analyses.variants.measures import MeasureValue, VariantResult
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.results.results import Array
 
 Function = Callable[[Array], float]
@@ -39,24 +39,24 @@ def tuned(
 ) -> TuneResults:
     """What is found of a function over the unit box, whose constraints are to be 0 or less."""
     variables = tuple(DesignVariable(f"x{i}", 0.0, 1.0, "") for i in range(n))
-    limits = tuple(TuneConstraint(f"c{i}", "<=", 0.0, "") for i in range(len(constraints)))
+    limits = tuple(Comparison(f"c{i}", "<=", 0.0, "") for i in range(len(constraints)))
     task = TuneTask(variables, TuneGoal("f", "", greatest), limits, max_variants=most, seed=seed)
-    solved: list[Mapping[str, str]] = []
+    solved: list[Values] = []
 
-    def answers(several: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
+    def answers(several: Sequence[Values]) -> Iterator[VariantResult]:
         for values in several:
             if len(solved) >= time_for:
-                yield TrialOutcome(code=TIME_LIMIT_CODE)
+                yield VariantResult(code=TIME_LIMIT_CODE)
                 return
             assert values not in solved  # nothing is solved twice
             solved.append(values)
-            x = np.array([float(text) for text in values.values()])
+            x = np.array([one.value for one in values.values() if not isinstance(one, str)])
             if unsolvable(x):
-                yield TrialOutcome(code="does-not-close", reason="it does not close")
+                yield VariantResult(code="does-not-close", reason="it does not close")
             else:
-                yield TrialOutcome((MeasureReading(goal(x), error), *(MeasureReading(c(x)) for c in constraints)))
+                yield VariantResult((MeasureValue(goal(x), error), *(MeasureValue(c(x)) for c in constraints)))
 
-    tuning = Tuning(Trials(task, answers, lambda done, of, what: None), TrialOutcome())
+    tuning = Tuning(Trials(task, answers, lambda done, of, what: None), VariantResult())
     tuning.run()
     found = tuning.to_results()
     assert len(found.history) == len(solved) <= most

@@ -23,10 +23,10 @@ from typing import Any, NamedTuple
 import mpmath as mp
 import numpy as np
 
-from heuncli.analyses.find.results import FindCondition
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.axes import Interval
+from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.app.cli.entry import enter
 from heuncli.app.commands.find.page import FindPage, to_json
 from heuncli.study.quantities.table_units import Units
@@ -365,8 +365,8 @@ def found_directly(course: KnownCourse, relation: Any) -> Any:
         return Sample(x, m - course.value, max(STATED * abs(m), 8.0 * EPS * (abs(m) + abs(course.value))))
 
     found = find_meetings(ask, course.low, course.high, relation, scan_count=7, max_evaluations=300, value=course.value)
-    condition = FindCondition("f", relation, course.value, "N", "")
-    interval = Interval("x", course.low, course.high, "")
+    condition = Comparison("f", relation, course.value, "N")
+    interval = DesignVariable("x", course.low, course.high, "")
     return json.loads(to_json(FindPage("", condition, interval, found, 7, 300, Units({}))))
 
 

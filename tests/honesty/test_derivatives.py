@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.sensitivity.derivative import compute_derivative
-from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
+from heuncli.analyses.sensitivity.results import NoisyDerivative
+from heuncli.analyses.variants.measures import NoisyValue
 
 Function = Callable[[float], float]
 

@@ -10,9 +10,9 @@ import pytest
 from numpy.random import Generator
 from scipy.stats import binom, norm
 
-from heuncli.analyses.variants.axes import RandomVariable
 from heuncli.analyses.variants.draws import make_draws
 from heuncli.analyses.variants.indices import MIN_BOUNDED, compute_sobol_indices
+from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.analyses.variants.sampling import CONFIDENCE, PERCENTS, BoundedEstimate, compute_statistics
 from heuncli.results.results import Array
 

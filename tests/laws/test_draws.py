@@ -9,8 +9,9 @@ import pytest
 from scipy import stats
 from scipy.stats import qmc
 
-from heuncli.analyses.variants.axes import AxisError, ParameterAxis, RandomVariable
+from heuncli.analyses.variants.axes import AxisError
 from heuncli.analyses.variants.draws import make_draws, make_imbalance_warning
+from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import make_axes_plan
 
 SEEDS = [0, 1, 2024]
@@ -106,11 +107,11 @@ def test_saltellis_plan_exchanges_one_parameter_after_the_other(kind: str) -> No
 def test_every_combination_of_the_other_axes_gets_the_same_samples() -> None:
     draws = make_draws([law("d", "normal", 100.0, 0.1, "mm")], 4, 0)
     plan = make_axes_plan(
-        [ParameterAxis("n", ("1 rpm", "2 rpm")), ParameterAxis("L", ("0.1", "0.2", "0.3"))], draws=draws
+        [ParameterAxis("n", (1.0, 2.0), "rpm"), ParameterAxis("L", ("0.1", "2*r", "0.3"))], draws=draws
     )
     rows = [plan.find_values(number) for number in range(plan.size)]
-    assert plan.size == 24 and [row["n"] for row in rows] == ["1 rpm"] * 12 + ["2 rpm"] * 12
-    assert [row["d"] for row in rows] == [f"{float(d)!r} mm" for d in draws.values[:, 0]] * 6
+    assert plan.size == 24 and [row["n"] for row in rows] == [(1.0, "rpm")] * 12 + [(2.0, "rpm")] * 12
+    assert [row["d"] for row in rows] == [(d, "mm") for d in draws.values[:, 0]] * 6
     zipped = make_axes_plan(
         [ParameterAxis("n", ("1", "2")), ParameterAxis("L", ("3", "4"))], together=True, draws=draws
     )

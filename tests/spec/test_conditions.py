@@ -7,7 +7,7 @@ import math
 import pytest
 
 from heuncli.analyses.variants.axes import AxisError
-from heuncli.analyses.variants.conditions import MeasureCondition, find_si_value, parse_condition
+from heuncli.analyses.variants.conditions import WrittenCondition, find_si_value, parse_condition
 from heuncli.scene.file_format.load import load
 from tests.shared.folders import SPECS
 
@@ -15,7 +15,7 @@ HINT = "for example 'x < 3'"
 SCENE = load(str(SPECS / "double.yaml"))._replace(parameters={"F": 7.0})
 
 
-def read(text: str) -> MeasureCondition:
+def read(text: str) -> WrittenCondition:
     """What the words mean."""
     return parse_condition(text, "expected MEASURE < VALUE", HINT)
 
@@ -23,15 +23,15 @@ def read(text: str) -> MeasureCondition:
 @pytest.mark.parametrize(
     ("text", "condition"),
     [
-        ("max joints.main.force = 10 kN", MeasureCondition("max joints.main.force", "=", "10 kN")),
-        ("max abs sections.web.M2<40", MeasureCondition("max abs sections.web.M2", "<", "40")),
-        ("at 0.5 joints.a.angle >= -3e-2deg", MeasureCondition("at 0.5 joints.a.angle", ">=", "-3e-2deg")),
-        (" x.y ≤ 2 N·m ", MeasureCondition("x.y", "<=", "2 N·m")),
-        ("x.y == 2 1/s", MeasureCondition("x.y", "=", "2 1/s")),
-        ("x.y => 2", MeasureCondition("x.y", ">=", "2")),
+        ("max joints.main.force = 10 kN", WrittenCondition("max joints.main.force", "=", "10 kN")),
+        ("max abs sections.web.M2<40", WrittenCondition("max abs sections.web.M2", "<", "40")),
+        ("at 0.5 joints.a.angle >= -3e-2deg", WrittenCondition("at 0.5 joints.a.angle", ">=", "-3e-2deg")),
+        (" x.y ≤ 2 N·m ", WrittenCondition("x.y", "<=", "2 N·m")),
+        ("x.y == 2 1/s", WrittenCondition("x.y", "=", "2 1/s")),
+        ("x.y => 2", WrittenCondition("x.y", ">=", "2")),
     ],
 )
-def test_read(text: str, condition: MeasureCondition) -> None:
+def test_read(text: str, condition: WrittenCondition) -> None:
     assert read(text) == condition
 
 

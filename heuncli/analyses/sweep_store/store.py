@@ -3,7 +3,8 @@ a finished one is read.
 
     heun      1 row:            the version of heun that wrote the file
     sweeps    a row a sweep:    number, identity, head (JSON: its description and plan), draws (random numbers), begun
-    variants  a row a variant:  sweep, number, key, given (JSON: its values, numbers in the units of the plan); code, reason: only of failures to retry
+    variants  a row a variant:  sweep, number, key, given (JSON: its values, numbers in the units of the plan); code,
+                                reason: only of failures to retry
     answers   a row a key:      key, measures (JSON: value, error, instant, word), code, reason, warnings (JSON)
 
 A result is stored under its key (analyses/variants/keys.py), and serves every sweep that has a variant with that key. A

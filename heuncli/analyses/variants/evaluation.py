@@ -85,8 +85,8 @@ class VariantEvaluator:
         return variants.load(overrides)
 
     def load_samples(self, variable: DesignVariable) -> list[Spec]:
-        """Load the scenes at some places between the bounds of a variable, leaving out those that are invalid. Raises SpecError if all
-        are.
+        """Load the scenes at some places between the bounds of a variable, without those that are invalid. Raises
+        SpecError if all are.
         """
         specs: list[Spec] = []
         errors: list[SpecError] = []
