@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
 from heuncli.app.commands.sweep import workers
 from heuncli.base import available_memory
 from tests.shared.command import Done, Heun
@@ -225,8 +225,8 @@ def test_what_is_wrong_with_a_table_has_its_place(heun: Heun, scene: Path, text:
 def test_a_bug_in_one_variant_stops_no_other(heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     answer = VariantEvaluator.answer
 
-    def failing(self: VariantEvaluator, values: dict[str, str]) -> object:
-        return answer(self, values) if values["m"] != "2.0 kg" else 1 / 0
+    def failing(self: VariantEvaluator, values: Values) -> object:
+        return answer(self, values) if values["m"] != (2.0, "kg") else 1 / 0
 
     monkeypatch.setattr(VariantEvaluator, "answer", failing)
     done = sweep(heun, "m=1,2,3kg")

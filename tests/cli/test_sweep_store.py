@@ -23,6 +23,7 @@ from tests.shared.shell import shell
 
 PIVOT = ("--measure", "joints.pivot.force.z", "--format", "csv")
 MASSES = ("sweep", "hanging.yaml", "m=1:3/5", *PIVOT)
+ONE = {"m": NumberWithUnit(1.0)}
 STORED = ("--store", "s.sqlite")
 
 
@@ -92,7 +93,9 @@ def test_what_may_change_an_answer_solves_all(
 @pytest.mark.parametrize(
     "words", [("--tolerance", "1e-6"), ("--set", "gravity=[0, 0, -1]"), ("--measure", "joints.pivot.force.x")]
 )
-def test_so_do_options_and_measures(heun: Heun, solved: list[dict[str, NumberWithUnit]], words: tuple[str, ...]) -> None:
+def test_so_do_options_and_measures(
+    heun: Heun, solved: list[dict[str, NumberWithUnit]], words: tuple[str, ...]
+) -> None:
     heun(*MASSES, *STORED)
     heun(*MASSES, *STORED, *words)
     assert len(solved) == 10
@@ -231,7 +234,9 @@ def test_a_store_stands_where_nothing_else_does(heun: Heun, folder: Path, words:
 @pytest.mark.parametrize(
     "name", [":memory:", "file:x.sqlite?mode=memory", "file::memory:", "a%20b#c?d.sqlite", "-s.sqlite"]
 )
-def test_whatever_its_name_a_store_is_a_file(heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]], name: str) -> None:
+def test_whatever_its_name_a_store_is_a_file(
+    heun: Heun, folder: Path, solved: list[dict[str, NumberWithUnit]], name: str
+) -> None:
     stored = f"--store={name}"
     first = heun(*MASSES, stored)
     assert first.returncode == 0
@@ -266,7 +271,7 @@ def test_without_a_store_the_folder_of_temporary_files_may_be_full() -> None:
         store.connection.execute("PRAGMA max_page_count = 30")
         with pytest.raises(OutputError, match="the temporary folder: the disk is full") as error:
             for number in range(10_000):
-                store.add_result(1, number, number.to_bytes(32, "big"), ("1.0",), VariantResult((MeasureValue(1.0),)))
+                store.add_result(1, number, number.to_bytes(32, "big"), ONE, VariantResult((MeasureValue(1.0),)))
         assert error.value.exit_code == 5
         assert 0 < store.connection.execute("SELECT count(*) FROM answers").fetchone()[0] < 10_000
 
@@ -289,4 +294,4 @@ def begin(name: str, begins: Barrier) -> None:
     """Open a store when all others do; the exit code is 1 where that fails."""
     begins.wait()
     with Store(name) as store:
-        store.add_result(1, os.getpid(), os.urandom(32), ("1.0",), VariantResult((MeasureValue(1.0),)))
+        store.add_result(1, os.getpid(), os.urandom(32), ONE, VariantResult((MeasureValue(1.0),)))

@@ -244,8 +244,8 @@ def test_the_same_seed_the_same_variants() -> None:
 def test_values_are_told_as_they_are_solved(low: float, high: float) -> None:
     """In few digits beside the width of the interval, both bounds exactly."""
     variable = DesignVariable("x", low, high, "kg")
-    assert (variable.to_value(0.0), variable.to_value(1.0)) == (low, high)
+    assert (variable.to_number(0.0), variable.to_number(1.0)) == (low, high)
     for place in np.random.default_rng(0).random(50):
-        value = variable.to_value(float(place))
+        value = variable.to_number(float(place))
         assert low <= value <= high and abs(value - (low + place * (high - low))) <= 1e-9 * (high - low) + 1e-12 * high
-        assert float(variable.to_text(float(place)).removesuffix(" kg")) == value
+        assert float(variable.to_value(float(place)).format().removesuffix(" kg")) == value

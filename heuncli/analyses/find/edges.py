@@ -19,7 +19,7 @@ NEAR_SINGULAR = 1e-6  # of the scan's spacing: how close to singular poses edges
 
 
 def close_edges(course: MeasureCourse) -> None:
-    """Narrow all ends of the solvable range down to adjacent numbers. Raises SpentError."""
+    """Narrow all ends of the solvable range down to adjacent numbers. Raises SampleLimitError."""
     while (pair := next(iter_edges(course), None)) is not None:
         close_edge(course, *pair)
 
@@ -44,7 +44,7 @@ def find_middle(low: float, high: float) -> float | None:
 
 
 def close_edge(course: MeasureCourse, solved: Sample, unsolved: Sample) -> None:
-    """Narrow one edge down. Raises SpentError."""
+    """Narrow one edge down. Raises SampleLimitError."""
     fraction, is_trusted = FIRST_FRACTION, True
     while not is_closed(course, solved, unsolved):
         middle = solved.x + 0.5 * (unsolved.x - solved.x)

@@ -39,7 +39,7 @@ PEAK_GROWTH = 2.0  # times the predicted rise of a peak: its possible rise
 
 
 def search(course: MeasureCourse) -> None:
-    """Evaluate places until it is certain where the value is met. Raises SpentError."""
+    """Evaluate places until it is certain where the value is met. Raises SampleLimitError."""
     while True:
         narrow_all(course)
         i = find_widest_uncertain(course)
@@ -56,7 +56,7 @@ def search(course: MeasureCourse) -> None:
 
 
 def narrow_all(course: MeasureCourse) -> None:
-    """Enclose all crossings and jumps between neighbours on different sides. Raises SpentError."""
+    """Enclose all crossings and jumps between neighbours on different sides. Raises SampleLimitError."""
     while (i := next(iter_unresolved_pairs(course), None)) is not None:
         narrow_pair(course, i)
 
@@ -114,7 +114,7 @@ def check_scan(course: MeasureCourse) -> None:
     """Evaluate one more place in each interval of the scan that may hide a wave.
 
     A deviation from the prediction raises the distrust, with which the whole range is examined again; both parts of the
-    interval are then tried in turn. Raises SpentError.
+    interval are then tried in turn. Raises SampleLimitError.
     """
     places = [sample.x for sample in course.samples]
     intervals = [pair for pair in pairwise(course.scanned) if bisect(places, pair[0]) == bisect_left(places, pair[1])]
@@ -318,7 +318,10 @@ def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
 
 
 def sample_outside(course: MeasureCourse, end: Sample, direction: int, distance: float) -> Sample:
-    """Return a sample about this distance outside of another one, as far as the range extends. Raises SpentError."""
+    """Return a sample about this distance outside of another one, as far as the range extends.
+
+    Raises SampleLimitError.
+    """
     k, best = course.samples.index(end), end
     while 0 <= k + direction < len(course.samples) and not course.is_interrupted(k + min(direction, 0)):
         k += direction

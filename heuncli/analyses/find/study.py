@@ -115,7 +115,7 @@ def collect_findings(
 
 
 def enclose_crossings(course: MeasureCourse) -> None:
-    """Enclose crossings whose slope is uncertain. Raises SpentError."""
+    """Enclose crossings whose slope is uncertain. Raises SampleLimitError."""
     for _ in range(CROSSING_HALVINGS):
         for place in list(iter_enclosing_places(course)):
             course.sample_at(place)
@@ -125,7 +125,7 @@ def enclose_crossings(course: MeasureCourse) -> None:
 def enclose_touches(course: MeasureCourse) -> None:
     """Enclose touches from both sides.
 
-    Each end is halved towards the touch until |g| is only a few errors. Raises SpentError.
+    Each end is halved towards the touch until |g| is only a few errors. Raises SampleLimitError.
     """
     for group in find_touching_groups(course):
         for end, direction in ((group[0], -1), (group[-1], 1)):

@@ -20,7 +20,7 @@ DOUBLING = 2.0
 
 
 def find_touches(course: MeasureCourse) -> None:
-    """Follow every local minimum of the distance from the value that may be zero. Raises SpentError."""
+    """Follow every local minimum of the distance from the value that may be zero. Raises SampleLimitError."""
     for x in [middle.x for left, middle, right in iter_minima(course) if is_deep(left, middle, right)]:
         follow_minimum(course, x)
 
@@ -49,7 +49,7 @@ def iter_minima(course: MeasureCourse) -> Iterator[tuple[Sample, Sample, Sample]
 
 
 def follow_minimum(course: MeasureCourse, x: float) -> None:
-    """Move to the place where |g| is smallest, as long as it may be a touch. Raises SpentError."""
+    """Move to the place where |g| is smallest, as long as it may be a touch. Raises SampleLimitError."""
     for _ in range(MAX_STEPS):
         minimum = next((each for each in iter_minima(course) if each[1].x == x), None)
         if minimum is None:
@@ -83,7 +83,7 @@ def is_narrow(course: MeasureCourse, left: Sample, middle: Sample, right: Sample
 
 
 def confirm_touch(course: MeasureCourse, middle: Sample) -> None:
-    """Evaluate both sides of a place, at twice the smallest distance. Raises SpentError."""
+    """Evaluate both sides of a place, at twice the smallest distance. Raises SampleLimitError."""
     for offset in (-2.0, 2.0):
         x = middle.x + offset * course.finest
         if course.low < x < course.high:

@@ -144,7 +144,7 @@ class MeasureCourse:
         )
 
     def sample_at(self, x: float) -> Sample:
-        """Return the sample at a place, evaluated once. Raises SpentError."""
+        """Return the sample at a place, evaluated once. Raises SampleLimitError."""
         index = bisect_left(self.samples, x, key=lambda sample: sample.x)
         if index < len(self.samples) and self.samples[index].x == x:
             return self.samples[index]

@@ -26,7 +26,7 @@ def refine_extreme(
     share: of the range of the course; a smaller gain is not worth a variant
     max_steps: limit of the samples
 
-    Returns the gain that remains possible. Raises SpentError.
+    Returns the gain that remains possible. Raises SampleLimitError.
     """
     gain = 0.0
     for step in range(max_steps + 1):

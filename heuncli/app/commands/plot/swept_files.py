@@ -21,8 +21,7 @@ from heuncli.analyses.sweep_store.columns import (
     to_cell,
 )
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.sweep_store.store import open_store
-from heuncli.analyses.sweep_store.which import choose_sweep, split_store_argument
+from heuncli.analyses.sweep_store.store import choose_sweep, open_store, split_store_argument
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError

@@ -1,14 +1,23 @@
-"""Check whether a file is a store of sweeps, and of which version; initialize a new one. Impure: reads and writes
-files.
+"""The file of a store: its tables and version, the description of a sweep in it, and SQLite's errors as heun's.
+
+A full disk or missing permission exits with 5, as for any other output. Impure: reads and writes files.
 """
 
 from __future__ import annotations
 
+import json
 import sqlite3
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-from heuncli.analyses.sweep_store.errors import NOT_A_STORE, OTHER_FILE_HINT
-from heuncli.base.errors import Problem, UsageError
+import numpy as np
+
+from heuncli.analyses.sweep_store.rows import SweepHead
+from heuncli.analyses.variants.measures import MeasureLabel
+from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
+from heuncli.analyses.variants.plans import Draws, Plan
+from heuncli.base.errors import OutputError, Problem, UsageError
 from heuncli.version import VERSION
 
 APPLICATION_ID = 0x6865756E  # "heun": the application id in SQLite's header
@@ -27,6 +36,19 @@ MAX_JOURNAL_PAGES = (
 )
 MAX_ATTEMPTS = 200  # to change the journal mode while another process does so: SQLite does not wait for that
 RETRY_PAUSE = 0.05  # seconds
+NOT_A_STORE = "not-a-store"
+OTHER_FILE_HINT = "give another file; a new one is created"
+DISK_HINT = "free some space, or use another disk; earlier results are kept"
+# by the beginning of SQLite's name of the error: message, and hint
+REASONS = {
+    "SQLITE_FULL": ("the disk is full", DISK_HINT),
+    "SQLITE_IOERR": ("it cannot be read or written", DISK_HINT),
+    "SQLITE_READONLY": ("no permission to write", "check the permissions, or use another location"),
+    "SQLITE_CANTOPEN": ("it cannot be opened", "check the name and the permissions, or use another location"),
+    "SQLITE_BUSY": ("another process has been writing for minutes", "wait for it, or end it"),
+    "SQLITE_LOCKED": ("another process has been writing for minutes", "wait for it, or end it"),
+}
+DOUBLES = np.dtype("<f8")
 
 
 def initialize_store(connection: sqlite3.Connection, name: str, is_persistent: bool) -> None:
@@ -101,3 +123,59 @@ def _enable_journal(connection: sqlite3.Connection) -> None:
             if getattr(error, "sqlite_errorname", "") != "SQLITE_BUSY" or attempt == MAX_ATTEMPTS - 1:
                 raise
             time.sleep(RETRY_PAUSE)
+
+
+def write_head(head: SweepHead) -> tuple[str, bytes | None]:
+    """Return a head as JSON, and the draws, None if there are none."""
+    plan, draws = head.plan, head.plan.draws
+    block = head._asdict() | {
+        "measures": [tuple(one) for one in head.measures],
+        "plan": plan._asdict() | {"draws": None if draws is None else draws._asdict() | {"values": draws.values.shape}},
+    }
+    return json.dumps(block), None if draws is None else draws.values.astype(DOUBLES).tobytes()
+
+
+def read_head(text: str, values: bytes | None) -> SweepHead:
+    """Return the stored head."""
+    block = json.loads(text)
+    plan = block["plan"]
+    axes, columns = (
+        tuple(ParameterAxis(name, tuple(values), unit) for name, values, unit in plan[key])
+        for key in ("axes", "columns")
+    )
+    draws = None
+    if plan["draws"] is not None and values is not None:
+        draws_block = plan["draws"]
+        values_by_row = np.frombuffer(values, DOUBLES).reshape(draws_block["values"])
+        draws = Draws(
+            **{
+                **draws_block,
+                "laws": tuple(RandomVariable(*law) for law in draws_block["laws"]),
+                "values": values_by_row,
+            }
+        )
+    measures = tuple(MeasureLabel(*one) for one in block["measures"])
+    stored_plan = Plan(**{**plan, "axes": axes, "columns": columns, "draws": draws})
+    return SweepHead(**{**block, "measures": measures, "plan": stored_plan})
+
+
+@contextmanager
+def convert_errors(name: str) -> Iterator[None]:
+    """Convert SQLite's errors within the context to OutputError, or to UsageError if the file is no store."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise _make_error(name, error) from None
+
+
+def _make_error(name: str, error: sqlite3.Error) -> OutputError | UsageError:
+    kind = getattr(error, "sqlite_errorname", "")
+    if kind.startswith("SQLITE_NOTADB"):
+        return UsageError(Problem(NOT_A_STORE, f"{name}: not a store of sweeps", hint=OTHER_FILE_HINT))
+    if kind.startswith("SQLITE_CORRUPT"):
+        message = f"{name}: this store is damaged: {error}"
+        return UsageError(
+            Problem(NOT_A_STORE, message, hint="sqlite3 FILE .recover saves what can be; " + OTHER_FILE_HINT)
+        )
+    found = next((reason for begin, reason in REASONS.items() if kind.startswith(begin)), (str(error), DISK_HINT))
+    return OutputError(Problem("output-failed", f"{name}: {found[0]}", hint=found[1]))
