@@ -20,8 +20,8 @@ from heuncli.output.tables.text_table import format_head
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
+from heuncli.study.quantities.channels import make_component_names
 from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
-from heuncli.study.quantities.series import make_component_names
 from heuncli.study.queries.measure import MeasureRequest, Peak, find_exceeded_horizon
 
 if TYPE_CHECKING:

@@ -22,6 +22,7 @@ from heuncli.output.tables.table_plans import IMPULSES
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results.results_schema import IMPULSE_BLOCKS, IMPULSE_UNITS, SHARES, find_quantity
+from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.digits import (
     UNKNOWN,
     StatedErrors,
@@ -31,7 +32,6 @@ from heuncli.study.quantities.digits import (
     write_times,
 )
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, convert_units, iter_impulse_series
 
 MAX_SHOWN, MAX_LISTED = 3, 20  # impacts with tables, impacts in the list, unless all are requested
 UNIT = "N·s"
@@ -140,24 +140,23 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
     lead = f"{title}  "
     horizon = report.results.horizon
     certain = add_axis_errors(report.certain, view, report.magnitudes, labels.units, UNIT)
-    series = convert_units(iter_impulse_series(impulse, labels), labels.units)
-    by_cause = any(item.cause for item in series)
+    channels = list(iter_impulse_channels(impulse, labels))
+    by_cause = any(channel.cause for channel in channels)
     blocks, tables, share_tables = list[TableBlock](), list[TextTable](), list[TextTable]()
     for plan in IMPULSES:
-        block = build_block(plan, view, labels, series) if report.details or not plan.is_detail else None
+        block = build_block(plan, view, labels, channels) if report.details or not plan.is_detail else None
         if block is None:
             continue
         named = block._replace(heading=lead + block.heading)
         blocks += [block] * plan.has_extremes
         tables += make_instants_tables(named, view.time, horizon, certain) if not plan.has_extremes else []
-        share_tables += make_share_tables(named, view, series, certain, horizon) if by_cause else []
+        share_tables += make_share_tables(named, view, channels, certain, horizon) if by_cause else []
     tables[:0] = [make_impact_table(title, blocks, view.time, horizon, certain)] if blocks else []
     run_extremes = report.run_extremes[number] if report.run_extremes else {}
     for run in cut_runs.collect_runs(view, labels, IMPULSE_UNITS):
         run_tables = cut_runs.make_instants_tables(run, view.time, horizon, certain, every_cut=show_all)
         if run.name in run_extremes:
-            extremes = cut_runs.convert_extremes(run, run_extremes[run.name])
-            table = cut_runs.make_extremes_table(run, view.time, extremes, extremes.places, certain)
+            table = cut_runs.make_extremes_table(run, view.time, run_extremes[run.name], certain)
             run_tables = [table, run_tables[0]._replace(heading=""), *run_tables[1:]]
         tables += [run_tables[0]._replace(heading=lead + run_tables[0].heading), *run_tables[1:]]
         share_tables += [
@@ -169,12 +168,12 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
 
 
 def make_share_tables(
-    block: TableBlock, view: Results, series: Sequence[Series], certain: StatedErrors, horizon: float | None
+    block: TableBlock, view: Results, channels: Sequence[Channel], certain: StatedErrors, horizon: float | None
 ) -> list[TextTable]:
     """Make the tables of what each cause contributes to the impulses of a block."""
     from heuncli.output.tables import cause_tables  # few runs need it
 
-    numbers = cause_tables.collect_shares(view, series)
+    numbers = cause_tables.collect_shares(channels, view)
     return cause_tables.make_instants_tables(block, numbers, view.time, horizon, certain)
 
 

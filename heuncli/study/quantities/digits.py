@@ -20,9 +20,9 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Magnitudes, Results
-from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND, SHARES, error_kind_of_path
-from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, iter_impulse_series, iter_series
+from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND
+from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
+from heuncli.study.quantities.labels import DEFAULT_UNITS, Labels
 from heuncli.study.quantities.table_units import Units
 
 DIGITS = 6
@@ -72,11 +72,13 @@ class StatedErrors(NamedTuple):
     """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
 
     singular_times: instants close to singular poses, at which nan means unknown
+    units: in which numbers are printed
     """
 
     errors: Mapping[tuple[str, str], float]
     rounding: Mapping[str, float]
     singular_times: frozenset[float] = frozenset()
+    units: Units = DEFAULT_UNITS
 
     def error_of(self, kind: str, unit: str) -> float:
         """The estimated error of numbers of this kind and unit, at least their rounding."""
@@ -85,6 +87,10 @@ class StatedErrors(NamedTuple):
     def rounding_of(self, unit: str) -> float:
         """The rounding error of numbers of this unit."""
         return self.rounding.get(unit, 0.0)
+
+    def find_error(self, channel: Channel) -> float:
+        """The estimated error of a channel's numbers, SI."""
+        return self.error_of(channel.error_kind, channel.unit)
 
     def choose_style(self, kind: str, unit: str, scale: float) -> Style:
         """Choose the style of a family of this kind and unit whose largest magnitude is `scale`."""
@@ -126,11 +132,11 @@ def find_scales(results: Results, labels: Labels, only_kind: str | None = None) 
     kind.
     """
     scales: dict[tuple[str, str], float] = {}
-    impulse_series = (series for impulse in results.impulses for series in iter_impulse_series(impulse, labels))
-    for series in chain(iter_series(results, labels), impulse_series):
-        key = (find_error_kind(series), series.unit)
+    of_impulses = (channel for impulse in results.impulses for channel in iter_impulse_channels(impulse, labels))
+    for channel in chain(iter_channels(results, labels), of_impulses):
+        key = (channel.error_kind, channel.unit)
         if only_kind is None or key[0] == only_kind:
-            scales[key] = max(scales.get(key, 0.0), largest_magnitude(series.values))
+            scales[key] = max(scales.get(key, 0.0), largest_magnitude(channel.values))
     return scales
 
 
@@ -155,13 +161,7 @@ def add_units(certain: StatedErrors, units: Units) -> StatedErrors:
     for unit, rounding in certain.rounding.items():
         display_unit, size = units.find(unit)
         roundings[display_unit] = size * rounding
-    return certain._replace(errors=errors, rounding=roundings)
-
-
-def find_error_kind(series: Series) -> str:
-    """Return the kind of estimate (`accuracy.estimate`) that states the error of a series."""
-    name = f"{series.name}.{SHARES}.{series.cause}" if series.cause else series.name
-    return error_kind_of_path(series.kind, name, series.quantity)
+    return certain._replace(errors=errors, rounding=roundings, units=units)
 
 
 def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
