@@ -307,8 +307,8 @@ def format_lines(
     for family, scale in find_family_scales(lines).items():
         members = [i for i, line in enumerate(lines) if find_family(line) == family]
         row = lines[members[0]].row
-        unit, size = certain.units.find(row.unit)
-        number_style = certain.choose_style(f"{row.error_kind} {BY_CAUSE}", unit, size * scale)
+        size = certain.units.find(row.unit)[1]
+        number_style = certain.choose_style(f"{row.error_kind} {BY_CAUSE}", row.unit, scale)
         flat = iter(write_numbers([size * x for i in members for x in numbers[i] if x is not None], number_style))
         for i in members:
             texts[i] = ["" if x is None else mark_unknown(x, next(flat), lines[i], certain) for x in numbers[i]]

@@ -323,11 +323,7 @@ def _choose_styles(run: CutRun, certain: StatedErrors, extremes: Extremes | None
     for i, channel in enumerate(run.channels):
         largest = max(largest_magnitude(channel.values), largest_magnitude(bounds[:, i : i + 1]))
         scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest)
-    styles = {}
-    for si_unit, scale in scales.items():
-        unit, size = certain.units.find(si_unit)
-        styles[si_unit] = certain.choose_style("sections", unit, size * scale)
-    return styles
+    return {unit: certain.choose_style("sections", unit, scale) for unit, scale in scales.items()}
 
 
 def _is_constant(values: Array, number_style: Style) -> bool:

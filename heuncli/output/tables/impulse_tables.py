@@ -97,19 +97,15 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
     impulses, certain = report.results.impulses, report.certain
     times = np.array([float(impulse["time"]) for impulse in impulses])
     energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in impulses]) for key in ENERGIES}
-    (energy_unit, joules), *impulse_units = (
-        report.labels.units.find(unit) for unit in ("J", UNIT, IMPULSE_UNITS["N·m"])
-    )
-    shown_energies = [joules * values for values in energies.values()]
+    si_units = (UNIT, IMPULSE_UNITS["N·m"])
+    (energy_unit, joules), *impulse_units = (certain.units.find(unit) for unit in ("J", *si_units))
     energy = write_numbers(
-        np.concatenate(shown_energies).tolist(),
-        certain.choose_style("energy", energy_unit, max(map(largest_magnitude, shown_energies))),
+        (joules * np.concatenate(list(energies.values()))).tolist(),
+        certain.choose_style("energy", "J", max(map(largest_magnitude, energies.values()))),
     )
     impulse, moment = (
-        write_numbers(
-            (size * values).tolist(), certain.choose_style("reactions", unit, size * largest_magnitude(values))
-        )
-        for values, (unit, size) in zip(sizes.T, impulse_units, strict=True)
+        write_numbers((size * values).tolist(), certain.choose_style("reactions", unit, largest_magnitude(values)))
+        for values, unit, (_, size) in zip(sizes.T, si_units, impulse_units, strict=True)
     )
     clock = write_times(times.tolist(), float(np.ptp(report.results.time)) or float(np.ptp(times)))
     horizon = report.results.horizon
@@ -139,7 +135,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
     title = f"IMPULSE at t = {float(impulse['time']):.6g} s ({', '.join(impulse['names'])})"
     lead = f"{title}  "
     horizon = report.results.horizon
-    certain = add_axis_errors(report.certain, view, report.magnitudes, labels.units, UNIT)
+    certain = add_axis_errors(report.certain, view, report.magnitudes, UNIT)
     channels = list(iter_impulse_channels(impulse, labels))
     by_cause = any(channel.cause for channel in channels)
     blocks, tables, share_tables = list[TableBlock](), list[TextTable](), list[TextTable]()
@@ -163,7 +159,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
             own._replace(heading=lead + own.heading) for own in make_run_share_tables(run, view, certain, horizon)
         ]
     tables += share_tables
-    sums = make_sums_table(view, certain, shown_unit=labels.units.find(UNIT))
+    sums = make_sums_table(view, certain, unit=UNIT)
     return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
 
 

@@ -138,9 +138,7 @@ class Page(NamedTuple):
         """
         horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))
-        certain = add_axis_errors(
-            self.certain._replace(singular_times=unknown), results, self.magnitudes, self.labels.units
-        )
+        certain = add_axis_errors(self.certain._replace(singular_times=unknown), results, self.magnitudes)
         tables: list[TextTable] = []
         for block in self._make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
@@ -186,7 +184,7 @@ class Page(NamedTuple):
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
     def _make_last_tables(self, show_all: bool = False) -> list[TextTable]:
-        sums = make_sums_table(self.results, self.certain, self.last_instant, self.labels.units.find("N"))
+        sums = make_sums_table(self.results, self.certain, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
     def _make_event_tables(self, show_all: bool) -> list[TextTable]:

@@ -79,12 +79,11 @@ def choose_styles(rows: Sequence[Channel], numbers: Array, certain: StatedErrors
         scales[family] = max(scales.get(family, 0.0), largest_magnitude(row.values), largest_magnitude(shown))
     styles = []
     for row, family in zip(rows, families, strict=True):
-        unit, size = certain.units.find(row.unit)
         row_style, term_style = (
-            certain.choose_style(row.error_kind, unit, size * scale) for scale in (scales[family], row.largest_term)
+            certain.choose_style(row.error_kind, row.unit, scale) for scale in (scales[family], row.largest_term)
         )
         # a sum that is zero to the digits of its cancelling terms is shown as zero
-        is_zero = row.largest_term and term_style.write(size * scales[family]) == "0"
+        is_zero = row.largest_term and term_style.write(certain.units.find(row.unit)[1] * scales[family]) == "0"
         styles.append(term_style if is_zero else row_style)
     return styles
 

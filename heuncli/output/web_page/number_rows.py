@@ -37,7 +37,7 @@ def make_blocks(results: Results, labels: Labels, certain: StatedErrors) -> list
     channels = [item for item in iter_channels(results, labels) if not item.cause]
     plans = [plan for plan in PLANS if plan.kind not in EXCLUDED_KINDS and (plan.only is None or plan is AXIS)]
     found = [_make_block(plan, channels, plan.heading(results, labels), labels, certain) for plan in plans]
-    sums = make_sums_table(results, certain, shown_unit=labels.units.find("N"))
+    sums = make_sums_table(results, certain)
     if sums is not None:
         found.append({"heading": sums.heading, "groups": [], "told": list(sums.notes), "missing": OPEN})
     return [block for block in found if block["groups"] or block["told"]]

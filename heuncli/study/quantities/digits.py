@@ -69,7 +69,7 @@ class Style(NamedTuple):
 
 
 class StatedErrors(NamedTuple):
-    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
+    """The absolute errors of numbers by kind and unit, and their rounding by unit, SI; 0 where none is known.
 
     singular_times: instants close to singular poses, at which nan means unknown
     units: in which numbers are printed
@@ -93,8 +93,11 @@ class StatedErrors(NamedTuple):
         return self.error_of(channel.error_kind, channel.unit)
 
     def choose_style(self, kind: str, unit: str, scale: float) -> Style:
-        """Choose the style of a family of this kind and unit whose largest magnitude is `scale`."""
-        return choose_style(scale, self.error_of(kind, unit), self.rounding_of(unit))
+        """Choose the style, in the display unit, of a family of this kind and unit whose largest magnitude is `scale`;
+        SI.
+        """
+        size = self.units.find(unit)[1]
+        return choose_style(size * scale, size * self.error_of(kind, unit), size * self.rounding_of(unit))
 
 
 def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes) -> StatedErrors:
@@ -124,7 +127,7 @@ def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes)
     horizon = results.horizon
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
-    return add_units(StatedErrors(errors, rounding), labels.units)
+    return StatedErrors(errors, rounding, units=labels.units)
 
 
 def find_scales(results: Results, labels: Labels, only_kind: str | None = None) -> dict[tuple[str, str], float]:
@@ -152,18 +155,6 @@ def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, ki
     return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
 
 
-def add_units(certain: StatedErrors, units: Units) -> StatedErrors:
-    """Add errors and rounding in the display units of tables to those in SI units."""
-    errors, roundings = dict(certain.errors), dict(certain.rounding)
-    for (kind, unit), error in certain.errors.items():
-        display_unit, size = units.find(unit)
-        errors[kind, display_unit] = size * error
-    for unit, rounding in certain.rounding.items():
-        display_unit, size = units.find(unit)
-        roundings[display_unit] = size * rounding
-    return certain._replace(errors=errors, rounding=roundings, units=units)
-
-
 def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
     """Return the errors of forces and moments of one kind of loads; a force counts as a moment with the scene's size as
     lever.
@@ -175,9 +166,7 @@ def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> d
     return errors
 
 
-def add_axis_errors(
-    certain: StatedErrors, results: Results, magnitudes: Magnitudes, units: Units, unit: str = "N"
-) -> StatedErrors:
+def add_axis_errors(certain: StatedErrors, results: Results, magnitudes: Magnitudes, unit: str = "N") -> StatedErrors:
     """Add the errors of the central axis at the shown instants: it is no more accurate than its force.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
@@ -188,8 +177,7 @@ def add_axis_errors(
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
     relative = certain.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = magnitudes.size + largest_magnitude(axis["point"]) + largest_magnitude(axis["pitch"])
-    display_unit, size = units.find("m")
-    bounds = {("axis", "1"): relative, ("axis", display_unit): relative * lever * size}
+    bounds = {("axis", "1"): relative, ("axis", "m"): relative * lever}
     axis_errors = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
     return certain._replace(errors={**certain.errors, **axis_errors})
 
