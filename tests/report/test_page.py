@@ -71,9 +71,9 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     assert "Rows that are zero at all times are not shown." in text
     nothing = FakeStudy(T, {"joints": {"idle": {"force": np.zeros((len(T), 3)), "point": np.zeros((len(T), 3))}}})
     alone = make_page(restrict(nothing.results, {"joints"}), LABELS, MAGNITUDES)
-    zero = np.zeros(4)
+    zero, paths = np.zeros(4), tuple(f"joints.idle.force{part}" for part in (".x", ".y", ".z", ""))
     (table,) = alone.make_tables_of_extremes(
-        Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), is_searched=True)
+        Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), is_searched=True, paths=paths)
     )
     assert "idle\n  all values 0\n" in format_plain(table)
 

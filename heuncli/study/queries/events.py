@@ -35,7 +35,8 @@ from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.channels import make_path_channel
-from heuncli.study.queries.measure import find_reports, stated_error
+from heuncli.study.queries.measure import find_reports
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Crossings, find_crossings
 from heuncli.study.search.extremes import search_extremes
@@ -224,7 +225,7 @@ class WatchedNumber(NamedTuple):
         kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
         relative = float(estimate.get(ESTIMATE_OF_ERROR_KIND.get(kind, kind), 0.0))  # type: ignore[arg-type]
         known = (*(self.study.magnitudes.errors.get((kind, unit), 0.0) for unit in row.units),) if row else ()
-        error = stated_error(self.study, keys) if any(known) else relative * largest
+        error = find_search_error(self.study, keys) if any(known) else relative * largest
         return max(float(np.nan_to_num(error)), tolerances.WRITTEN * largest)
 
 

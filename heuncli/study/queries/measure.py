@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -21,12 +20,11 @@ from heuncli.results.results_schema import (
     IMPULSES,
     SHARES,
     SPACE,
-    error_kind_of_path,
-    find_quantity,
     first_element_suffix,
     independent_axes,
 )  # fmt: skip
 from heuncli.study.quantities.channels import Channel, make_path_channel
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
 from heuncli.study.search.extremes import BOTH_SIDES
@@ -207,7 +205,8 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     else:
         is_one_sided = how == "abs" and make_path_channel(asked).is_magnitude
         sides = BOTH_SIDES if CUT in asked.axes else SIDES["max" if is_one_sided else how]
-        search = ChannelSearch(collect, lambda channel: find_search_error(study, asked.keys), sides)
+        error = find_search_error(study, asked.keys)
+        search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, sides)
         bounds = study.search_extremes(search, find_reports(path), times=times)
         lowest, highest = bounds.places[0] if bounds.places else (None, None)
         low = Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest)
@@ -232,26 +231,6 @@ def mark_indeterminate(extreme: Peak) -> Peak:
     value.
     """
     return extreme if extreme.open_at is None else extreme._replace(value=math.nan, time=extreme.open_at, place=None)
-
-
-def stated_error(study: Study, keys: Sequence[str]) -> float:
-    """Return the error of the quantity under some keys, as the tables state it; nan where they state none.
-
-    If angles and travels have different units, it is the smaller of the two errors.
-    """
-    row, magnitudes = find_quantity(keys), study.magnitudes
-    if row is None:
-        return np.nan
-    kind, lost = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1]), magnitudes.rounding_errors()
-    error_kind = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in magnitudes.errors else kind
-    known = [(magnitudes.errors.get((error_kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
-    return min(map(max, known)) or np.nan
-
-
-def find_search_error(study: Study, keys: Sequence[str]) -> float:
-    """Return the error to which the extremes of a quantity are searched; nan where none is known."""
-    error = stated_error(study, keys)
-    return error if math.isfinite(error) else math.nan
 
 
 def read_one_number(path: str, numbers: PathValues, k: int) -> float:
