@@ -31,7 +31,7 @@ from heuncli.output.figures.summits import find_bounds, halve_steps
 from heuncli.results.results import Array, Block, Mask, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
 from heuncli.study.model.setup import Setup
-from heuncli.study.quantities.channels import Channel, make_run_channels
+from heuncli.study.quantities.channels import Channel, make_section_channels
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
@@ -275,7 +275,7 @@ class WholeBar:
         """Search the lowest and highest value of each quantity over the bar and the run, between places and samples."""
 
         def collect(results: Results) -> tuple[Channel, ...]:
-            return make_run_channels(self.name, results.sections[self.name])[: len(RESULTANTS)]
+            return make_section_channels(self.name, results.sections[self.name])[: len(RESULTANTS)]
 
         search = ChannelSearch(collect, self.certain.find_error)
         columns = StudyColumns(self.study, search, SECTIONS, self.setup)

@@ -6,7 +6,7 @@ from heuncli.output.tables.cut_runs import CutRun, choose_cuts, collect_runs, sp
 from heuncli.output.tables.page import Page
 from heuncli.results.results import Extremes, Results
 from heuncli.results.results_schema import RESULTANTS, SHARES
-from heuncli.study.quantities.channels import Channel, make_run_channels
+from heuncli.study.quantities.channels import Channel, make_section_channels
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
@@ -33,7 +33,7 @@ def search_stresses(run: CutRun, certain: StatedErrors, study: Study) -> Extreme
     """Search the extremes of the stresses along a run."""
 
     def collect(results: Results) -> tuple[Channel, ...]:
-        return make_run_channels(run.name, results.sections[run.name])[len(RESULTANTS) :]
+        return make_section_channels(run.name, results.sections[run.name])[len(RESULTANTS) :]
 
     return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS)
 
@@ -42,7 +42,7 @@ def search_cuts(run: CutRun, certain: StatedErrors, study: Study) -> Extremes:
     """Search the extremes of all quantities at the cuts of a run that are shown."""
 
     def collect(results: Results) -> list[Channel]:
-        channels = make_run_channels(run.name, results.sections[run.name])
+        channels = make_section_channels(run.name, results.sections[run.name])
         return split_into_cuts(channels, shown_cuts)
 
     shown_cuts = choose_cuts(run)

@@ -10,7 +10,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
 from heuncli.results.results import Array, CutPosition, Extremes, Indices, Results
 from heuncli.results.results_schema import RESULTANTS, STRESSES
-from heuncli.study.quantities.channels import NO_UNITS, Channel, make_run_channels
+from heuncli.study.quantities.channels import NO_UNITS, Channel, make_section_channels
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
@@ -80,7 +80,7 @@ def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] = NO
         heading = f"SECTION {subject}  {meaning}; {axis}; moments about {reference_point}"
         side = tuple(section.get("side") or [None] * len(section["s"]))
         s = np.asarray(section["s"], dtype=np.float64)
-        channels = make_run_channels(name, section, units)
+        channels = make_section_channels(name, section, units)
         runs.append(CutRun(name, heading, s, side, channels, labels.units.find("m")))
     return runs
 

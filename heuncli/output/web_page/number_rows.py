@@ -23,7 +23,7 @@ from heuncli.study.quantities.channels import (
     Channel,
     iter_channels,
     iter_impulse_channels,
-    make_run_channels,
+    make_section_channels,
 )
 from heuncli.study.quantities.digits import OPEN, StatedErrors, Style
 from heuncli.study.quantities.labels import Labels
@@ -154,7 +154,7 @@ def make_section_loads(
 
     Rows of one family (forces; moments) have the same decimals.
     """
-    channels = make_run_channels(name, section)
+    channels = make_section_channels(name, section)
     styles = choose_styles(channels, np.zeros((0, len(channels))), certain)
     loads = []
     for channel, style in zip(channels, styles, strict=True):

@@ -236,13 +236,13 @@ class ChannelSelection(NamedTuple):
 def collect_run_loads(results: Results) -> list[Channel]:
     """Collect the section forces along all runs of cuts."""
     runs = [item for item in results.sections.items() if "s" in item[1]]
-    return [channel for name, section in runs for channel in make_run_channels(name, section)[: len(RESULTANTS)]]
+    return [channel for name, section in runs for channel in make_section_channels(name, section)[: len(RESULTANTS)]]
 
 
-def make_run_channels(
+def make_section_channels(
     name: str, section: Mapping[str, Any], units: Mapping[str, str] = NO_UNITS
 ) -> tuple[Channel, ...]:
-    """Make the channels along a run of cuts: its section forces, then the stresses it has.
+    """Make the channels of a section: its forces, then the stresses it has; of a run of cuts (n_t, n_cuts) each.
 
     units: replacements of units, for impulses instead of forces
     """
@@ -252,8 +252,9 @@ def make_run_channels(
     channels = []
     for part, quantity, values in parts:
         unit = find_row(f"sections.SECTION{part.removeprefix(name)}.{quantity}").select_unit()
-        components = make_component_names((CUT,), np.shape(values)[1:])
-        channels.append(Channel("sections", part, quantity, units.get(unit, unit), components, values, (CUT,)))
+        axes = (CUT,) if np.ndim(values) > 1 else ()
+        components = make_component_names(axes, np.shape(values)[1:])
+        channels.append(Channel("sections", part, quantity, units.get(unit, unit), components, values, axes))
     return tuple(channels)
 
 
