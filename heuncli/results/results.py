@@ -8,7 +8,7 @@ not requested, is absent (an empty dict or None). This module does not depend on
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypedDict
 
@@ -203,12 +203,16 @@ class CutPosition(NamedTuple):
     cut: int | None
 
 
+NOWHERE = CutPosition(math.nan, None, None)
+
+
 class Extremes(NamedTuple):
     """Lowest and highest value of each of n groups of columns over a run, (n,), with the instant and the column.
 
     is_searched: whether the instants between the samples were searched
     is_complete: whether all promising ones were
-    places: of the lowest and highest of each run of cuts, the last groups
+    places: of the lowest and highest of each group that runs along a body; empty if none does
+    paths: of the groups, where they are channels of the results
 
     A group that is nan throughout stays nan.
     """
@@ -222,13 +226,39 @@ class Extremes(NamedTuple):
     is_searched: bool
     is_complete: bool = True
     places: tuple[tuple[CutPosition, CutPosition], ...] = ()
+    paths: tuple[str, ...] = ()
 
-    def select(self, groups: slice) -> Extremes:
+    def select(self, groups: slice | Indices) -> Extremes:
         """Return the extremes of some groups."""
+        chosen = np.arange(len(self.low))[groups].tolist()
+        places = tuple(self.places[k] for k in chosen) if self.places else ()
+        paths = tuple(self.paths[k] for k in chosen) if self.paths else ()
         return Extremes(
             self.low[groups], self.low_at[groups], self.low_column[groups],
-            self.high[groups], self.high_at[groups], self.high_column[groups], self.is_searched, self.is_complete,
+            self.high[groups], self.high_at[groups], self.high_column[groups],
+            self.is_searched, self.is_complete, places, paths,
         )  # fmt: skip
+
+    def find(self, paths: Sequence[str]) -> Extremes:
+        """Return the extremes of the channels at some paths, in their order."""
+        index = {path: k for k, path in enumerate(self.paths)}
+        return self.select(np.array([index[path] for path in paths], dtype=np.intp))
+
+    def join(self, other: Extremes) -> Extremes:
+        """Return these extremes and those of other channels."""
+        low, low_at, low_column, high, high_at, high_column = (
+            np.concatenate(both) for both in zip(self[:6], other[:6], strict=True)
+        )
+        places = (*self.all_places, *other.all_places) if self.places or other.places else ()
+        return Extremes(
+            low, low_at, low_column, high, high_at, high_column,
+            self.is_searched, self.is_complete, places, (*self.paths, *other.paths),
+        )  # fmt: skip
+
+    @property
+    def all_places(self) -> tuple[tuple[CutPosition, CutPosition], ...]:
+        """The places of all groups, NOWHERE for those that do not run along a body."""
+        return self.places or ((NOWHERE, NOWHERE),) * len(self.low)
 
 
 class Magnitudes(NamedTuple):

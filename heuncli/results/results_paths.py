@@ -53,13 +53,6 @@ class PathValues(NamedTuple):
         """Whether the last axis is that of a vector's components; a run of three cuts is not a vector."""
         return self.axes[-1:] == (SPACE,)
 
-    @property
-    def is_nonlinear(self) -> bool:
-        """Whether it belongs to a section and is no polynomial of its loads: stresses, and the position of the
-        reduction line.
-        """
-        return self.keys[:1] == ("sections",) and self.keys[2:3] in (("stress",), ("line",))
-
 
 def find_values(results: Results, path: str) -> PathValues:
     """Return the values at a path; nan is indeterminate. Raises SpecError [unknown-path] with the known names where it

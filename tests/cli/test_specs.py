@@ -21,8 +21,8 @@ from heuncli.output.tables.export import collect_blocks, to_csv, to_json
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.channels import iter_channels
 from heuncli.study.quantities.labels import make_labels
-from heuncli.study.quantities.series import iter_series
 from heuncli.study.queries.expectations import compare
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
@@ -143,7 +143,7 @@ def test_every_result_may_be_expected(name: str) -> None:
     """When a spec is read every path into the results is known, with the shape and the dimension that are found."""
     results = study_of(name).results
     items: list[dict[str, Any]] = []
-    for series in iter_series(results, make_labels(study_of(name).spec)):
+    for series in iter_channels(results, make_labels(study_of(name).spec)):
         if series.quantity == "side":  # words
             continue
         found = find_values(results, series.path)

@@ -12,7 +12,6 @@ from heuncli.output.tables.page import make_page
 from heuncli.results.results_schema import REPORTS
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 
@@ -24,11 +23,7 @@ G = 9.81
 def in_table(run: Study, heading: str, label: str) -> list[str]:
     """The cells of a row of the tables with this heading."""
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
-    along = page.make_run_columns if page.has_runs else None
-    searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), along
-    )
-    found = run.search_extremes(searched, frozenset(REPORTS), whole=True)
+    found = run.search_extremes(page.make_search(), frozenset(REPORTS), whole=True)
     one = len(run.results.time) == 1
     tables = (
         page.make_tables_at_instants(run.results, search_result=found) if one else page.make_tables_of_extremes(found)

@@ -14,7 +14,6 @@ from heuncli.output.tables.text_table import format_plain
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.expectations import compare
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch
 from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study
 
@@ -26,11 +25,7 @@ def tables(run: Study) -> str:
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
     if len(run.results.time) == 1:
         return "\n".join(map(format_plain, page.make_tables_at_instants(run.results)))
-    along = page.make_run_columns if page.has_runs else None
-    searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), along
-    )
-    extremes = run.search_extremes(searched, None, whole=True)
+    extremes = run.search_extremes(page.make_search(), None, whole=True)
     return "\n".join(map(format_plain, page.make_tables_of_extremes(extremes)))
 
 

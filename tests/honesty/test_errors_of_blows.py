@@ -10,7 +10,7 @@ import pytest
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
-from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
@@ -47,4 +47,4 @@ def test_numbers_of_a_blow_have_their_errors(path: str, tolerance: float) -> Non
     own, exact = found(tolerance), found(1e-11)
     it, its = (find_values(study.results, f"impulses.0.{path}") for study in (own, exact))
     off = float(np.abs(it.values - its.values).max())
-    assert 1e-3 * stated_error(own, it.keys) < off <= stated_error(own, it.keys)
+    assert 1e-3 * find_search_error(own, it.keys) < off <= find_search_error(own, it.keys)

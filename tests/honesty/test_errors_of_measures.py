@@ -13,8 +13,8 @@ from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
-from heuncli.study.queries.measure import MeasureRequest, Peak, stated_error
+from heuncli.study.queries.measure import MeasureRequest
+from heuncli.study.queries.measure_uncertainty import find_search_error, find_unit, measure_uncertainty
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT, SPECS
 
@@ -32,7 +32,7 @@ def test_unit_and_error_are_those_of_the_tables(scene: object) -> None:
     assert numbers
     for path, kept in numbers.items():
         asked = path.removesuffix(".lowest").removesuffix(".highest")
-        error = find_measure_error(MeasureRequest("max", asked), Peak(1.0, 0.0), study)
+        error = measure_uncertainty(study, asked, "max", 1.0)
         assert find_unit(asked, study.spec) == kept.unit, path
         assert math.isclose(error or 0.0, kept.error, rel_tol=1e-12), path
 
@@ -45,7 +45,7 @@ def test_the_error_of_a_place_covers_a_coarse_run() -> None:
         told = solved[path].error
         assert solved[path].unit == unit
         assert 1e-9 < off <= told < 1e-4
-        assert stated_error(solved.study, solved.study.find_numbers(path).keys) == told
+        assert find_search_error(solved.study, solved.study.find_numbers(path).keys) == told
         assert solved.measure(f"max {path}").error == told
 
 

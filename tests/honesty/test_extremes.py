@@ -13,7 +13,6 @@ from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.bench.honesty import told
 from tests.shared.scenes import study
@@ -28,25 +27,21 @@ BESIDE = {"flat_four_bar.yaml": 1e-4}
 def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, float]]:
     """Which rows of the tables pass their extremes at some of so many instants, by how many times the stated error."""
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
-    errors, even = page.find_errors(), page.find_magnitude_mask()
-    along = page.make_run_columns if page.has_runs else None
-    found = run.search_extremes(ColumnSearch(page.make_columns, page.make_groups(), errors, even, along), TABLE_DEFAULT)
+    search = page.make_search()
+    found = run.search_extremes(search, TABLE_DEFAULT)
     last, horizon = run.results.time[-1], run.results.accuracy.get("horizon")
     times = np.linspace(run.results.time[0], last, samples)
     results = run.compute_reports(times if horizon is None else times[times < horizon], TABLE_DEFAULT)
-    rows = [values[:, None] for values in page.make_columns(results).T] + [
-        values for _, values in page.make_run_columns(results)
-    ]
     missed = []
-    for k, values in enumerate(rows):
+    for k, channel in enumerate(search.collect(results)):
+        values = channel.values
         if np.isnan(values).all() or np.isnan(found.high[k]):
             continue
         high, low = float(np.nanmax(values)), float(np.nanmin(values))
-        ends = high, float(found.high[k]), low, float(found.low[k])
-        high, top, low, bottom = (np.sqrt(max(x, 0.0)) if even[k] else x for x in ends)
-        allowed = errors[k] + (slack + 1e-12) * max(abs(high), abs(low))
+        top, bottom = float(found.high[k]), float(found.low[k])
+        allowed = search.find_error(channel) + (slack + 1e-12) * max(abs(high), abs(low))
         if max(high - top, bottom - low) > allowed:
-            missed.append((f"{k}", max(high - top, bottom - low) / allowed))
+            missed.append((channel.path, max(high - top, bottom - low) / allowed))
     return missed
 
 

@@ -14,7 +14,7 @@ import pytest
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
-from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
@@ -57,4 +57,4 @@ def test_each_has_its_error(scene: str, path: str, tolerance: float) -> None:
     own, exact = found(scene, tolerance), found(scene, 1e-11)
     it, its = (find_values(study.results, path) for study in (own, exact))
     off = float(np.nanmax(np.linalg.norm(np.atleast_3d(it.values - its.values), axis=1)))
-    assert 1e-3 * stated_error(own, it.keys) < off <= stated_error(own, it.keys)
+    assert 1e-3 * find_search_error(own, it.keys) < off <= find_search_error(own, it.keys)

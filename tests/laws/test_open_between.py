@@ -14,8 +14,7 @@ from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
-from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import ColumnSearch
+from heuncli.study.search.columns import ChannelSearch, StudyColumns
 from heuncli.study.search.open_between import VerdictsBetween, find_verdicts
 from heuncli.study.workflow import solve
 from tests.oracle.published import windows
@@ -42,10 +41,9 @@ analysis: {duration: 1, samples: 5}
 def columns_of(found: Study) -> StudyColumns:
     """All that the tables tell of a run, as the columns of a search that has seen its grid."""
     page = make_page(found.results, make_labels(found.spec), found.magnitudes)
-    searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors()[: len(page.make_groups())], page.find_magnitude_mask()
-    )
-    columns = StudyColumns(found, searched, WANTED, None)
+    search = page.make_search()
+    single = ChannelSearch(lambda at: [own for own in search.collect(at) if not own.has_cuts], search.find_error)
+    columns = StudyColumns(found, single, WANTED)
     columns.sample(found.search_times)
     return columns
 

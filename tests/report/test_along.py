@@ -46,8 +46,7 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
     spec = load(str(path))
     study = solve(spec, Options(requested_reports=SECTIONS))
     page = make_page(study.results, make_labels(spec), study.magnitudes)
-    found = searches.search_rows(page, study, SECTIONS)
-    return study, page._replace(run_extremes=searches.search_runs(page, study)), found
+    return study, *searches.search_page(page, study, SECTIONS)
 
 
 def cells(table: TextTable) -> list[tuple[str, ...]]:
@@ -58,14 +57,13 @@ def cells(table: TextTable) -> list[tuple[str, ...]]:
 def test_at_each_cut_stand_the_extremes_of_the_motion(solved: tuple[Study, Page, Extremes]) -> None:
     study, page, _ = solved
     (run,) = collect_runs(page.results, page.labels)
-    found = page.run_extremes["bar"].cuts
-    assert found is not None
-    for i, own in enumerate(run.quantities):
-        name = f"sections.bar.stress.{own.name}" if own in run.stresses else f"sections.bar.{own.name}"
+    found = page.cut_extremes["bar"]
+    for i, own in enumerate(run.channels):
+        name = own.path
         for cut in (0, 2):
             for bound, how in ((found.low, "min"), (found.high, "max")):
-                expected = own.size * find_peak(study, f"{name}.{cut}", how).value
-                scale = max(abs(expected), own.size * 1e-6)
+                expected = find_peak(study, f"{name}.{cut}", how).value
+                scale = max(abs(expected), 1e-6)
                 assert bound[i * len(run.s) + cut] == pytest.approx(expected, abs=1e-8 * scale), (name, cut, how)
 
 
@@ -93,19 +91,21 @@ def test_the_better_of_two_searches_stands_in_both() -> None:
     from tests.shared.fakes import LABELS, pendulum
 
     (run,) = collect_runs(pendulum(np.linspace(0.0, 1.0, 3)), LABELS)
-    run = run._replace(quantities=run.quantities[:1], values=run.values[:1])
+    run = run._replace(channels=run.channels[:1])
     one = np.zeros(1, dtype=np.intp)
-    ends = Extremes(np.array([-2.0]), np.array([0.5]), one, np.array([3.0]), np.array([0.6]), one, is_searched=True)
     places = ((CutPosition(0.0, None, 0), CutPosition(0.2, None, 1)),)
+    ends = Extremes(
+        np.array([-2.0]), np.array([0.5]), one, np.array([3.0]), np.array([0.6]), one, is_searched=True, places=places
+    )
     at = find_sample_extremes(np.array([0.1, 0.2]), np.array([[-1.9, -1.0, 0.0, 0.0, 0.0], [-1.5, 3.1, 0.0, 0.0, 0.0]]))
-    whole, where, cuts = merge_extremes(run, np.arange(5), ends, places, at)
-    assert (whole.high[0], whole.high_at[0], where[0][1].cut) == (3.1, 0.2, 1)
+    whole, cuts = merge_extremes(run, np.arange(5), ends, at)
+    assert (whole.high[0], whole.high_at[0], whole.places[0][1].cut) == (3.1, 0.2, 1)
     assert (whole.low[0], cuts.low[0]) == (-2.0, -2.0)
 
 
 def test_of_too_many_numbers_the_samples_stand(solved: tuple[Study, Page, Extremes]) -> None:
     _, page, found = solved
-    _, rows = page._replace(run_extremes={}).make_tables_of_extremes(found)
+    _, rows = page._replace(cut_extremes={}).make_tables_of_extremes(found)
     assert "at 4 output times" in rows.notes[0]
 
 
@@ -145,7 +145,7 @@ def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.Mon
     monkeypatch.setattr(stretches, "cut_at", counted)
     found = solve(load("box.yaml", LOADED_BOX), Options())
     run = next(iter(collect_runs(found.results, make_labels(found.spec))))
-    told = searches.search_run(run, make_page(found.results, make_labels(found.spec), found.magnitudes), found).stresses
-    assert told is not None
+    certain = make_page(found.results, make_labels(found.spec), found.magnitudes).certain
+    told = searches.search_stresses(run, certain, found)
     assert told.places[-1][1] == CutPosition(0.0, "beyond", 0)  # of the utilisation
     assert sum(asked) < 2000

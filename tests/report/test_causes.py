@@ -17,7 +17,6 @@ from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 
@@ -44,10 +43,7 @@ def rows_of(table: TextTable) -> list[dict[str, str]]:
 def test_extremes_say_who_is_responsible() -> None:
     """The shares at the instant of each extreme add up to it, in every row but for the last digit of each."""
     made, page = study_of("crane_load")
-    searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), page.make_run_columns
-    )
-    extremes = made.search_extremes(searched, WANTED - {"shares"}, whole=True)
+    extremes = made.search_extremes(page.make_search(), WANTED - {"shares"}, whole=True)
     tables = page.make_tables_of_extremes(extremes, made)
     found = by_cause(tables)
     assert [table.heading.split(" BY CAUSE")[0] for table in found] == [

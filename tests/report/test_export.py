@@ -14,7 +14,7 @@ import pytest
 from heuncli.base.errors import LimitError
 from heuncli.output.tables import export
 from heuncli.output.tables.export import to_csv, to_json
-from heuncli.study.quantities.series import iter_series
+from heuncli.study.quantities.channels import iter_channels
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
@@ -66,7 +66,7 @@ def rows(text: str) -> list[dict[str, str]]:
 def test_csv_holds_every_number_once() -> None:
     results = pendulum(T)
     lines = rows(to_csv(results, LABELS))
-    assert len(lines) == sum(series.values.size for series in iter_series(results, LABELS))
+    assert len(lines) == sum(series.values.size for series in iter_channels(results, LABELS))
     found = [
         float(r["value"])
         for r in lines

@@ -71,9 +71,9 @@ def test_what_is_0_throughout_takes_no_line_but_is_told() -> None:
     assert "Rows that are zero at all times are not shown." in text
     nothing = FakeStudy(T, {"joints": {"idle": {"force": np.zeros((len(T), 3)), "point": np.zeros((len(T), 3))}}})
     alone = make_page(restrict(nothing.results, {"joints"}), LABELS, MAGNITUDES)
-    zero = np.zeros(4)
+    zero, paths = np.zeros(4), tuple(f"joints.idle.force{part}" for part in (".x", ".y", ".z", ""))
     (table,) = alone.make_tables_of_extremes(
-        Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), is_searched=True)
+        Extremes(zero, zero, zero.astype(int), zero, zero, zero.astype(int), is_searched=True, paths=paths)
     )
     assert "idle\n  all values 0\n" in format_plain(table)
 
@@ -170,10 +170,10 @@ def test_a_peak_between_the_samples_makes_the_scale() -> None:
     """At the samples there is rounding only: the peak between them is shown, with the digits it has."""
     noise = pendulum(T[[0, -1]], joints={"a": {"force": np.full((2, 3), 1e-17), "point": np.zeros((2, 3))}})
     page = make_page(restrict(noise, {"joints"}), LABELS, MAGNITUDES)
-    found = peaks.search_extremes(
-        lambda _: page.make_columns(page.results), T[[0, -1]], page.make_groups(), search_between=False
-    )
-    found = found._replace(high=np.array([0.4, 0.0, 0.0, 0.16]))
+    channels = page.make_search().collect(page.results)
+    columns = np.concatenate([channel.searched_values for channel in channels], axis=1)
+    found = peaks.search_extremes(lambda _: columns, T[[0, -1]], search_between=False)
+    found = found._replace(high=np.array([0.4, 0.0, 0.0, 0.4]), paths=tuple(channel.path for channel in channels))
     (table,) = page.make_tables_of_extremes(found)
     assert [row[:3] + row[6:7] for row in table.rows[1:]] == [("Fx", "N", "0", "0.4")]
 
@@ -312,5 +312,4 @@ def test_a_planar_scene_says_what_there_is_not() -> None:
 def test_nothing_asked_for_leaves_nothing_to_search() -> None:
     page = make_page(restrict(pendulum(T), frozenset()), LABELS, MAGNITUDES)
     assert isinstance(page, Page)
-    assert page.make_columns(page.results).shape == (len(T), 0)
-    assert page.make_groups() == []
+    assert page.make_search().collect(page.results) == []

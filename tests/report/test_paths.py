@@ -17,7 +17,7 @@ from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import find_path_error
-from heuncli.study.quantities.series import iter_series
+from heuncli.study.quantities.channels import iter_channels
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)
@@ -26,7 +26,7 @@ RESULTS = pendulum(T, impulses=[BLOW], certain_sums=SUMS)
 
 
 def test_every_walked_quantity_has_its_path() -> None:
-    for series in iter_series(RESULTS, LABELS):
+    for series in iter_channels(RESULTS, LABELS):
         for component, column in zip(series.components, series.values.T, strict=True):
             path = f"{series.path}.{component}" if component else series.path
             if series.quantity != "side":

@@ -17,7 +17,6 @@ from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch
 
 ACCURATE: Block = {
     "energy_drift": 2e-12,
@@ -230,11 +229,7 @@ def blow_at_nodes(section: Block) -> Block:
 
 def found_extremes(study: FakeStudy, page: Page, wanted: Set[str]) -> Extremes:
     """Those of a page, as the command searches them."""
-    along = page.make_run_columns if page.has_runs else None
-    searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), along
-    )
-    return study.search_extremes(searched, frozenset(wanted), whole=True)
+    return study.search_extremes(page.make_search(), frozenset(wanted), whole=True)
 
 
 def spec_like(**changes: Any) -> Any:

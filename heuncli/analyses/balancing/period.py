@@ -28,7 +28,7 @@ from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
-from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.solve.history import resample
 from heuncli.study.workflow import solve
@@ -113,7 +113,8 @@ def balance_over_period(spec: Spec, seconds: float, options: BalanceOptions, ref
         hint = "another period; or a longer motion that has settled: --set analysis.duration=..."
         raise SolveError(Problem(PROBLEM_CODE, message, hint=hint))
     scale = periods.rate**2
-    stated_errors = {name: np.nan_to_num(stated_error(study, ("foundation", "mass_effect", name))) for name in KINDS}
+    found = {name: find_search_error(study, ("foundation", "mass_effect", name)) for name in KINDS}
+    stated_errors = {name: np.nan_to_num(error) for name, error in found.items()}
     noise = {name: scale * differences[name].orders + float(stated_errors[name]) for name in KINDS}
     results = to_results(
         spec, "time", CycleRotation(1, None, periods.rate), last, reference_point, options, noise | {"torque": math.inf}

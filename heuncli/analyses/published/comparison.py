@@ -19,9 +19,8 @@ from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import select_paths
-from heuncli.study.quantities.measure_uncertainty import find_measure_error
 from heuncli.study.queries.expectations import find_instant_index
-from heuncli.study.queries.measure import MeasureRequest, Peak
+from heuncli.study.queries.measure_uncertainty import measure_uncertainty
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
@@ -113,7 +112,7 @@ def _compare_number(
     claimed_error = value.last_digit / 2.0 * ROUNDING_FACTOR + table.error * largest
     if math.isnan(computed):
         return NumberComparison(number, value, math.nan, math.nan, claimed_error, OPEN)
-    stated_error = find_measure_error(MeasureRequest("at", number.path, number.time), Peak(computed, 0.0), study) or 0.0
+    stated_error = measure_uncertainty(study, number.path, "at", computed) or 0.0
     tolerance = claimed_error + stated_error
     is_coarse = not stated_error <= max(claimed_error, MAX_STATED_ERROR * largest)
     verdict = COARSE if is_coarse else AGREES if abs(computed - value.value) <= tolerance else DIFFERS

@@ -18,8 +18,8 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFile, PreloadedFiles
 from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.measure_uncertainty import find_measure_error
 from heuncli.study.queries.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
+from heuncli.study.queries.measure_uncertainty import measure_uncertainty
 from heuncli.study.queries.study import Study
 
 EXTREME_REDUCERS = ("max", "min", "abs")
@@ -186,7 +186,7 @@ def measure_study(request: MeasureRequest, study: Study) -> MeasureValue:
         return MeasureValue(None, time=peak.time, word="unknown" if peak.time in study.unknown else "open")
     if request.how in EXTREME_REDUCERS and is_near_left_out(peak, study):
         return MeasureValue(None, time=peak.time, word="unknown")
-    return MeasureValue(peak.value, find_measure_error(request, peak, study), peak.time)
+    return MeasureValue(peak.value, measure_uncertainty(study, request.path, request.how, peak.value), peak.time)
 
 
 def is_near_left_out(peak: Peak, study: Study) -> bool:

@@ -6,7 +6,7 @@ import math
 
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.text_table import append_unit
-from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
+from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
 
 COMMAND = "measure"
@@ -53,7 +53,7 @@ def compute_number(study: Study, words: str) -> Number:
     number = Number(math.nan if block["value"] is None else block["value"])
     number.unit, number.at, number.horizon = find_unit(request.path, study.spec), block["at"], block.get("horizon")
     number.s, number.side, number.cut = block.get("s"), block.get("side"), block.get("cut")
-    stated = find_measure_error(request, peak, study)
+    stated = measure_uncertainty(study, request.path, request.how, peak.value)
     number.error = math.nan if stated is None else float(stated)
     number.is_open = math.isnan(number) and number.horizon is None and number.at not in study.unknown
     return number

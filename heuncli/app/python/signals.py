@@ -20,9 +20,9 @@ from heuncli.output.tables.text_table import format_head
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
-from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
-from heuncli.study.quantities.series import make_component_names
-from heuncli.study.queries.measure import MeasureRequest, Peak, find_exceeded_horizon
+from heuncli.study.quantities.channels import make_component_names
+from heuncli.study.queries.measure import MeasureRequest, find_exceeded_horizon
+from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 
 if TYPE_CHECKING:
     from heuncli.app.python.number import Number
@@ -113,7 +113,7 @@ class Signal(NDArrayOperatorsMixin):
         The estimate holds at all instants of the run up to the horizon, not only at those of `times`.
         """
         with self._run.hold_lock():
-            stated = find_measure_error(MeasureRequest("", self.path), Peak(math.nan, None), self._run.study)
+            stated = measure_uncertainty(self._run.study, self.path)
         return math.nan if stated is None else float(stated)
 
     @property

@@ -6,7 +6,7 @@ from heuncli.output.client_report.parts import Part, ReportCell, ReportTable, Se
 from heuncli.output.client_report.report_data import AS_IT_STANDS, ReportData
 from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.output.tables.text_table import TextColumn
-from heuncli.study.quantities.measure_uncertainty import find_unit
+from heuncli.study.queries.measure_uncertainty import find_unit
 
 NO_CHECKS, NO_REPORTED_CHECKS = (
     "No acceptance checks are defined.",

@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.report_data import ReportData
-from heuncli.output.tables.table_blocks import FAMILIES, format_component
+from heuncli.output.tables.table_blocks import format_component
 from heuncli.output.tables.table_plans import TablePlan
 from heuncli.results.results import Results
 from heuncli.results.results_schema import MAGNITUDES, XYZ
+from heuncli.study.quantities.channels import FAMILIES
 
 MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
 TOTAL = "total"  # of the foundation

@@ -22,10 +22,10 @@ from heuncli.output.client_report.parts import Drawing, Part, ReportCell, Report
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.diagrams import make_diagrams
-from heuncli.output.tables.table_blocks import FAMILIES
 from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.output.tables.text_table import TextColumn
 from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES
+from heuncli.study.quantities.channels import FAMILIES
 from heuncli.study.quantities.digits import format_error
 
 UTIL_NOTE = (

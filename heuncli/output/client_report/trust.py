@@ -112,7 +112,7 @@ def make_open_parts(data: ReportData) -> list[Part]:
 
 
 def _iter_sums(data: ReportData, run: ReportedRun) -> Iterator[Part]:
-    table = make_sums_table(run.page.results, run.page.certain, run.page.last_instant, data.units.find("N"))
+    table = make_sums_table(run.page.results, run.page.certain, run.page.last_instant)
     if table is not None:
         yield Listing(f"Determinate sums of indeterminate reactions{_format_case(run)}", table.notes)
 

@@ -31,12 +31,12 @@ from heuncli.output.figures.summits import find_bounds, halve_steps
 from heuncli.results.results import Array, Block, Mask, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
 from heuncli.study.model.setup import Setup
+from heuncli.study.quantities.channels import Channel, make_section_channels
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
-from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import ColumnSearch, make_no_columns
+from heuncli.study.search.columns import ChannelSearch, StudyColumns
 from heuncli.study.search.stretches import find_cut_extremes, find_stretch
 
 SECTIONS = frozenset({"sections"})
@@ -273,26 +273,16 @@ class WholeBar:
 
     def _search_extremes(self) -> dict[str, tuple[Extreme, Extreme]]:
         """Search the lowest and highest value of each quantity over the bar and the run, between places and samples."""
-        errors = np.array([self.find_error(name) for name in RESULTANTS])
 
-        def bar_columns(results: Results) -> list[tuple[str, Array]]:
-            return [(self.name, results.sections[self.name][name]) for name in RESULTANTS]
+        def collect(results: Results) -> tuple[Channel, ...]:
+            return make_section_channels(self.name, results.sections[self.name])[: len(RESULTANTS)]
 
-        searched = ColumnSearch(make_no_columns, (), errors, np.zeros(len(errors), dtype=bool), bar_columns)
-        sampled = StudyColumns(self.study, searched, SECTIONS, self.setup)
+        search = ChannelSearch(collect, self.certain.find_error)
+        columns = StudyColumns(self.study, search, SECTIONS, self.setup)
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]
-        placed_extremes = sampled.add_places(
-            extremes.search_extremes(sampled.sample, times, sampled.groups, errors=errors)
-        )
-        rows = zip(
-            placed_extremes.low,
-            placed_extremes.low_at,
-            placed_extremes.high,
-            placed_extremes.high_at,
-            placed_extremes.places,
-            strict=True,
-        )
+        found = columns.finish(extremes.search_extremes(columns.sample, times, columns.groups, errors=columns.errors))
+        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)
         return {
             name: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
             for name, (a, a_at, b, b_at, (low, high)) in zip(RESULTANTS, rows, strict=True)

@@ -15,9 +15,9 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array
-from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
 from heuncli.study.queries import curves
-from heuncli.study.queries.measure import MeasureRequest, NotOneNumber, Peak, find_peak, make_several_error
+from heuncli.study.queries.measure import NotOneNumber, Peak, find_peak, make_several_error
+from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 
@@ -111,7 +111,7 @@ def make_course(study: Study, path: str, times: Array) -> NumberCourse:
     require_one_number(study, path)
     low, high = (find_peak(study, path, how) for how in ("min", "max"))
     values = find_values(study, path, times)
-    error = find_measure_error(MeasureRequest("abs", path), high, study)
+    error = measure_uncertainty(study, path, "abs", high.value)
     return NumberCourse(path, find_unit(path, study.spec), times, values, error, low, high)
 
 

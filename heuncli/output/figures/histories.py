@@ -41,9 +41,9 @@ from heuncli.output.figures.thinning import find_visible_points
 from heuncli.results.results import Array
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction
 from heuncli.study.quantities.digits import format_error
-from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import Peak
+from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.study.queries.smoothed_friction import make_friction_warning
 
 MAX_DIGITS = 5  # maximum in labels of extremes

@@ -17,8 +17,7 @@ from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run, list_angle_paths
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE
-from heuncli.study.quantities.measure_uncertainty import find_unit
-from heuncli.study.queries.measure import stated_error
+from heuncli.study.queries.measure_uncertainty import find_search_error, find_unit
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 
@@ -96,7 +95,7 @@ def _require_vector(study: Study, path: str) -> None:
 def _find_turning_run(study: Study, paths: Sequence[str]) -> TurningRun:
     """Find the part of a run that is shown."""
     candidates = [path for path in list_angle_paths(study.spec) if path.split(".")[1] in study.results.coordinates]
-    errors = [stated_error(study, study.find_numbers(path).keys) for path in paths]
+    errors = [find_search_error(study, study.find_numbers(path).keys) for path in paths]
     vectors = VectorSource(
         lambda t: np.stack([find_vectors(study, path, t) for path in paths], axis=1), np.nan_to_num(errors, posinf=0.0)
     )
@@ -114,7 +113,7 @@ def find_largest(curve: TipCurve) -> LargestVector | None:
     search_times = study.search_times
     times = curve.turning.times
     times = np.union1d(times, search_times[(search_times >= times[0]) & (search_times <= times[-1])])
-    error = stated_error(study, study.find_numbers(curve.path).keys)
+    error = find_search_error(study, study.find_numbers(curve.path).keys)
     found = extremes.search_extremes(sample, times, errors=np.array([error]), is_squared=np.array([True]), sides=(1.0,))
     time = float(found.high_at[0])
     if not np.isfinite(found.high[0]):

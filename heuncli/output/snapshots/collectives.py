@@ -5,17 +5,13 @@ count_collective(study, "joints.main.force.y", slopes=(3.0, 5.0)).equivalents[0]
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from heuncli.base.errors import Problem, SolveError, UsageError
 from heuncli.study.load_cycles.collective import Collective, Counting, LoadHistory, UnfitCounting, make_collective
-from heuncli.study.quantities.measure_uncertainty import find_measure_error, find_unit
 from heuncli.study.queries.histories import CODE, make_histories
-from heuncli.study.queries.measure import MeasureRequest, Peak
+from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
-
-NO_PEAK = Peak(math.nan, None)
 
 
 def count_collective(
@@ -50,8 +46,7 @@ def count_collectives(study: Study, paths: Sequence[str], options: Counting) -> 
         raise UsageError(
             *(make_option_problem(problem, problem.name, getattr(options, problem.name)) for problem in unfit)
         )
-    request = MeasureRequest("abs", "")
-    errors = {path: find_measure_error(request._replace(path=path), NO_PEAK, study) or 0.0 for path in paths}
+    errors = {path: measure_uncertainty(study, path, "abs") or 0.0 for path in paths}
     found = make_histories(study, errors, {path: find_unit(path, study.spec) for path in paths})
     if options.is_endless or options.repeat > 1:
         require_closed(found)

@@ -1,4 +1,4 @@
-"""The numbers of the tables over the instants: a column for each, by its path.
+"""The numbers of the tables over the instants: a channel for each, by its path.
 
 Of a run of cuts: the highest and lowest value of its cuts at each instant, with the extremes of the whole length.
 """
@@ -16,14 +16,13 @@ from heuncli.output.snapshots.golden_file import (
     UNKNOWN,
     Value,
 )
-from heuncli.output.tables.cut_runs import CutRun, RunQuantity, collect_runs
-from heuncli.output.tables.table_blocks import POSITIONS
+from heuncli.output.tables.cut_runs import CutRun, collect_runs
 from heuncli.output.tables.table_plans import AXIS, IMPULSES, MASS_EFFECT, PLANS, TablePlan
 from heuncli.results.results import Array, CutPosition, Results
-from heuncli.results.results_schema import MAGNITUDES, REPORT_OF, XYZ
-from heuncli.study.quantities.digits import StatedErrors, find_error_kind
+from heuncli.results.results_schema import REPORT_OF
+from heuncli.study.quantities.channels import Channel, iter_channels
+from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, iter_series
 
 
 class ShownQuantity(NamedTuple):
@@ -46,16 +45,6 @@ def _collect_shown(plans: Iterable[TablePlan]) -> frozenset[ShownQuantity]:
 
 SHOWN, SHOWN_AT_A_BLOW = _collect_shown(PLANS), _collect_shown(IMPULSES)
 FOUNDATION_PARTS = frozenset({MASS_EFFECT.only, AXIS.only})  # parts of the foundation besides its total load
-
-
-class SnapshotColumn(NamedTuple):
-    """One number over the instants: its path, unit, kind of error, whether it is a magnitude, and its values (n_t,)."""
-
-    path: str
-    unit: str
-    kind: str
-    is_magnitude: bool
-    values: Array
 
 
 class ResultView(NamedTuple):
@@ -91,51 +80,33 @@ class SnapshotScope(NamedTuple):
         return collect_runs(results, self.labels) if "sections" in self.reports else []
 
 
-def collect_columns(results: Results, scope: SnapshotScope) -> list[SnapshotColumn]:
-    """Collect the columns of the tables except those of runs of cuts; of a vector its components and its magnitude."""
+def collect_columns(results: Results, scope: SnapshotScope) -> list[Channel]:
+    """Collect the numbers of the tables except those of runs of cuts; of a vector its components and its magnitude."""
     runs = {name for name, section in results.sections.items() if "s" in section}
-    columns: list[SnapshotColumn] = []
-    for series in iter_series(results, scope.labels):
-        is_of_run = series.kind == "sections" and series.name.split(".")[0] in runs
-        if REPORT_OF[series.kind] in scope.reports and not is_of_run and is_shown(series, SHOWN):
-            columns += iter_series_columns(series)
+    columns: list[Channel] = []
+    for channel in iter_channels(results, scope.labels):
+        is_of_run = channel.kind == "sections" and channel.name.split(".")[0] in runs
+        if REPORT_OF[channel.kind] in scope.reports and not is_of_run and is_shown(channel, SHOWN):
+            columns += channel.numbers
     return columns
 
 
-def is_shown(series: Series, shown_quantities: frozenset[ShownQuantity]) -> bool:
-    """Return whether a series is among the quantities that tables show."""
-    if series.cause or series.is_static:
+def is_shown(channel: Channel, shown_quantities: frozenset[ShownQuantity]) -> bool:
+    """Return whether a channel is among the quantities that tables show."""
+    if channel.cause or channel.is_static:
         return False
-    only = series.name if series.kind == "foundation" and series.name in FOUNDATION_PARTS else None
-    return ShownQuantity(series.kind, only, series.quantity) in shown_quantities
+    only = channel.name if channel.kind == "foundation" and channel.name in FOUNDATION_PARTS else None
+    return ShownQuantity(channel.kind, only, channel.quantity) in shown_quantities
 
 
-def iter_series_columns(series: Series) -> Iterator[SnapshotColumn]:
-    """Yield the columns of one quantity."""
-    kind, is_scalar = find_error_kind(series), len(series.components) == 1
-    for component, values in zip(series.components, series.values.T, strict=True):
-        path = series.path if is_scalar else f"{series.path}.{component}"
-        yield SnapshotColumn(path, series.unit, kind, is_scalar and series.quantity in MAGNITUDES, values)
-    if series.components == XYZ and series.quantity not in POSITIONS:
-        squares = np.einsum("ij,ij->i", series.values, series.values)
-        yield SnapshotColumn(series.path, series.unit, kind, True, np.sqrt(squares))
-
-
-def iter_run_columns(run: CutRun) -> Iterator[SnapshotColumn]:
+def iter_run_columns(run: CutRun) -> Iterator[Channel]:
     """Yield the lowest and highest value of a run's cuts, for each quantity; open if one of the cuts is open."""
-    for quantity, values in zip(run.quantities, run.values, strict=True):
-        path = make_run_path(run, quantity)
-        for word, extreme in (("lowest", values.min(axis=1)), ("highest", values.max(axis=1))):
-            yield SnapshotColumn(f"{path}.{word}", quantity.unit, "sections", quantity.is_magnitude, extreme)
+    for channel in run.channels:
+        for word, extreme in (("lowest", channel.values.min(axis=1)), ("highest", channel.values.max(axis=1))):
+            yield channel._replace(component=word, values=extreme, axes=())
 
 
-def make_run_path(run: CutRun, quantity: RunQuantity) -> str:
-    """Return the path of a quantity of a run of cuts, as `--measure` takes it."""
-    part = "stress." if quantity in run.stresses else ""
-    return f"sections.{run.name}.{part}{quantity.name}"
-
-
-def collect_all_columns(results: Results, scope: SnapshotScope) -> dict[str, SnapshotColumn]:
+def collect_all_columns(results: Results, scope: SnapshotScope) -> dict[str, Channel]:
     """Collect all columns by their paths."""
     columns = collect_columns(results, scope)
     columns += [column for run in scope.collect_runs(results) for column in iter_run_columns(run)]

@@ -21,9 +21,9 @@ from heuncli.output.snapshots.record import SnapshotBounds, SnapshotCourse, make
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, Block, Magnitudes, Results
 from heuncli.results.results_schema import REPORT_OF, find_quantity
+from heuncli.study.quantities.channels import iter_channels
 from heuncli.study.quantities.digits import largest_magnitude
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels
-from heuncli.study.quantities.series import iter_series
 from heuncli.study.quantities.table_units import Units
 
 REQUIRED_KEYS = ("model", "status", "time", "accuracy")
@@ -176,8 +176,8 @@ def _infer_labels(results: Results) -> Labels:
 def _find_magnitudes(results: Results, labels: Labels) -> Magnitudes:
     """Find the largest numbers by unit, and the size of the scene from the places of its bodies and points [m]."""
     by_unit: dict[str, float] = {}
-    for series in iter_series(results, labels):
-        by_unit[series.unit] = max(by_unit.get(series.unit, 0.0), largest_magnitude(series.values))
+    for channel in iter_channels(results, labels):
+        by_unit[channel.unit] = max(by_unit.get(channel.unit, 0.0), largest_magnitude(channel.values))
     places = [block[key].reshape(-1, 3) for block, key in _iter_located_blocks(results)]
     size = float(np.ptp(np.concatenate(places), axis=0).max()) if places else 0.0
     return Magnitudes(by_unit, size or 1.0, size or 1.0, {})

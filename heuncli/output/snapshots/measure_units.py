@@ -10,9 +10,9 @@ from heuncli.results.path_words import split_path
 from heuncli.results.results import Results
 from heuncli.results.results_schema import find_quantity
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.quantities.table_units import DisplayUnit, Units, find_si_unit
 from heuncli.study.queries.measure import MeasureRequest
+from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.study.queries.study import Study
 
 SUMS = "certain_sums"

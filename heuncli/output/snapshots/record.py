@@ -13,11 +13,9 @@ from heuncli.base.tolerances import WRITTEN
 from heuncli.output.snapshots.columns import (
     SHOWN_AT_A_BLOW,
     ResultView,
-    SnapshotColumn,
     SnapshotScope,
     is_shown,
     iter_run_columns,
-    iter_series_columns,
 )
 from heuncli.output.snapshots.course_sums import CourseSums
 from heuncli.output.snapshots.golden_file import (
@@ -34,8 +32,8 @@ from heuncli.output.tables.impulse_tables import MAX_LISTED, make_impact_results
 from heuncli.output.tables.page import Page
 from heuncli.results.results import Array, Block, DeterminateSum, Results
 from heuncli.results.results_schema import EVENTS, IMPULSE_UNITS, IMPULSES
+from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.digits import largest_magnitude
-from heuncli.study.quantities.series import iter_impulse_series
 
 
 class SnapshotCourse(NamedTuple):
@@ -46,7 +44,7 @@ class SnapshotCourse(NamedTuple):
     """
 
     view: ResultView
-    columns: Mapping[str, SnapshotColumn]
+    columns: Mapping[str, Channel]
     even: Mapping[str, Array]
     even_at: Array
     bounds: Mapping[str, SnapshotBounds]
@@ -57,7 +55,7 @@ class SnapshotCourse(NamedTuple):
         """Make the snapshot of one quantity."""
         column, view = self.columns[path], self.view
         times = view.results.time
-        error = view.certain.error_of(column.kind, column.unit)
+        error = view.certain.find_error(column)
         ends = [view.to_value(column.values[i], float(times[i])) for i in (0, -1)]
         even = [view.to_value(x, t) for x, t in zip(self.even[path], self.even_at.tolist(), strict=True)]
         extremes = self.bounds[path].to_fields(view)
@@ -189,9 +187,9 @@ def _make_impact(impulse: Block, view: ResultView, scope: SnapshotScope) -> Impa
     impact_view = ResultView(make_impact_results(view.results, impulse), view.labels, view.certain)
     columns = [
         column
-        for series in iter_impulse_series(impulse, view.labels)
-        if not series.has_cuts and is_shown(series, SHOWN_AT_A_BLOW)
-        for column in iter_series_columns(series)
+        for channel in iter_impulse_channels(impulse, view.labels)
+        if not channel.has_cuts and is_shown(channel, SHOWN_AT_A_BLOW)
+        for column in channel.numbers
     ]
     runs = collect_runs(impact_view.results, scope.labels, IMPULSE_UNITS)
     columns += [column for run in runs for column in iter_run_columns(run)]
@@ -199,7 +197,7 @@ def _make_impact(impulse: Block, view: ResultView, scope: SnapshotScope) -> Impa
     numbers = {
         column.path: NumberSnapshot(
             unit=column.unit,
-            error=view.certain.error_of(column.kind, column.unit),
+            error=view.certain.find_error(column),
             constant=impact_view.to_value(column.values[0], time),
         )
         for column in columns

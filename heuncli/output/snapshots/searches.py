@@ -1,54 +1,49 @@
-"""The searches of a report: extremes of its rows, along its runs of cuts, and at their cuts."""
+"""The searches of a report: extremes of its channels, along its runs of cuts, and at their cuts."""
 
 from __future__ import annotations
 
-from heuncli.output.tables.cut_runs import CutRun, collect_runs
+from heuncli.output.tables.cut_runs import CutRun, choose_cuts, collect_runs, split_into_cuts
 from heuncli.output.tables.page import Page
-from heuncli.output.tables.run_searches import RunExtremes, RunSearch, search_cuts, search_stresses
-from heuncli.results.results import Extremes
-from heuncli.results.results_schema import SHARES
+from heuncli.results.results import Extremes, Results
+from heuncli.results.results_schema import RESULTANTS, SHARES
+from heuncli.study.quantities.channels import Channel, make_section_channels
+from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch, make_no_columns
+from heuncli.study.search.columns import ChannelSearch
 
 SECTIONS = frozenset({"sections"})
 
 
-def search_rows(page: Page, study: Study, reports: frozenset[str]) -> Extremes:
-    """Search the extremes of the rows of the page, and of the section forces along its runs of cuts."""
-    run_columns = page.make_run_columns if page.has_runs else None
-    searched = ColumnSearch(
-        page.make_columns, page.make_groups(), page.find_errors(), page.find_magnitude_mask(), run_columns
-    )
-    return study.search_extremes(searched, reports - {SHARES}, whole=True)
+def search_page(page: Page, study: Study, reports: frozenset[str]) -> tuple[Page, Extremes]:
+    """Search the extremes of all channels of the page, with their places along its runs of cuts.
 
-
-def search_runs(page: Page, study: Study) -> dict[str, RunExtremes]:
-    """Search the extremes of each run of cuts: of its stresses, and at its cuts if the page has several instants."""
-    return {run.name: search_run(run, page, study) for run in collect_runs(page.results, page.labels)}
-
-
-def search_run(run: CutRun, page: Page, study: Study) -> RunExtremes:
-    """Search the extremes of one run of cuts."""
-    stresses = cuts = None
-    if run.stresses:
-        stress_search = search_stresses(run, page.labels)
-        searched = ColumnSearch(
-            make_no_columns,
-            [],
-            stress_search.find_errors(page.certain),
-            stress_search.magnitude_columns,
-            stress_search.run_columns,
-            bent=True,
-        )
-        stresses = stress_search.take_roots(study.search_extremes(searched, SECTIONS))
+    Returns the page with the extremes at single cuts of each run, if it has several instants, and all others.
+    """
+    found = study.search_extremes(page.make_search(), reports - {SHARES}, whole=True)
+    runs = collect_runs(page.results, page.labels)
+    for run in runs:
+        if run.stresses:
+            found = found.join(search_stresses(run, page.certain, study))
     if len(page.results.time) > 1:
-        cuts = search_cut_extremes(search_cuts(run, page.labels), page, study)
-    return RunExtremes(stresses, cuts)
+        page = page._replace(cut_extremes={run.name: search_cuts(run, page.certain, study) for run in runs})
+    return page, found
 
 
-def search_cut_extremes(cut_search: RunSearch, page: Page, study: Study) -> Extremes:
-    """Search the extremes of the quantities at each cut."""
-    searched = ColumnSearch(
-        cut_search.make_columns, cut_search.groups, cut_search.find_errors(page.certain), cut_search.magnitude_columns
-    )
-    return cut_search.take_roots(study.search_extremes(searched, SECTIONS, whole=True))
+def search_stresses(run: CutRun, certain: StatedErrors, study: Study) -> Extremes:
+    """Search the extremes of the stresses along a run."""
+
+    def collect(results: Results) -> tuple[Channel, ...]:
+        return make_section_channels(run.name, results.sections[run.name])[len(RESULTANTS) :]
+
+    return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS)
+
+
+def search_cuts(run: CutRun, certain: StatedErrors, study: Study) -> Extremes:
+    """Search the extremes of all quantities at the cuts of a run that are shown."""
+
+    def collect(results: Results) -> list[Channel]:
+        channels = make_section_channels(run.name, results.sections[run.name])
+        return split_into_cuts(channels, shown_cuts)
+
+    shown_cuts = choose_cuts(run)
+    return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS, whole=True)

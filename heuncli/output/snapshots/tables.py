@@ -5,7 +5,6 @@ from __future__ import annotations
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.snapshots import searches
 from heuncli.output.snapshots.pins_note import add_pins_note
-from heuncli.output.tables.cut_runs import LOADS
 from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, DoubtfulInstants
 from heuncli.output.tables.page import make_page
 from heuncli.output.tables.text_table import TextTable
@@ -42,13 +41,11 @@ def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[TextTa
     reports = query.selection.reports
     page = make_page(study.results, labels, study.magnitudes, details=query.details)
     if study.results.impulses:
-        page = page._replace(impact_extremes=study.find_impulse_extremes([load.name for load in LOADS]))
+        page = page._replace(impact_extremes=study.find_impulse_extremes())
     is_one_instant = len(study.results.time) == 1
     extremes = None
     if not (query.show_all or query.instants is not None or (is_one_instant and not page.has_runs)):
-        extremes = searches.search_rows(page, study, reports)
-        if page.has_runs:
-            page = page._replace(run_extremes=searches.search_runs(page, study))
+        page, extremes = searches.search_page(page, study, reports)
         if has_smoothed_friction(study.setup.scene.mechanism):
             doubtful_instants = find_partial_friction(study, [*extremes.low_at.tolist(), *extremes.high_at.tolist()])
             page = page._replace(

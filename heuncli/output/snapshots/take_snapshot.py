@@ -17,13 +17,11 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.output.snapshots.columns import (
     ResultView,
-    SnapshotColumn,
     SnapshotScope,
     collect_all_columns,
     collect_columns,
     collect_values,
     format_place,
-    make_run_path,
 )
 from heuncli.output.snapshots.course_sums import (
     GAUSS,
@@ -46,20 +44,21 @@ from heuncli.output.snapshots.record import (
     find_ending_error,
     make_run_snapshot,
 )
-from heuncli.output.tables.cut_runs import CutRun, RunQuantity
+from heuncli.output.snapshots.searches import search_stresses
 from heuncli.output.tables.page import Page, make_page
-from heuncli.output.tables.run_searches import search_stresses
-from heuncli.results.results import Array, CutPosition, Extremes, Results
+from heuncli.results.results import Array, Extremes, Results
 from heuncli.results.results_schema import SHARES, add_shared_reports
+from heuncli.study.quantities.channels import Channel, collect_run_loads
+from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import ColumnSearch, find_jump_sides, make_no_columns, sort_distinct
+from heuncli.study.search.columns import ChannelSearch
+from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 
 SI = Units({})
 RATE_SPAN = 1e-5  # share of the run for the rate at its end, if an event ends it
 SAME_END = 1e-6  # share of the run: within it, besides the event's error, ends are equal
-SECTIONS = frozenset({"sections"})
 SLOW = 10.0  # mean speed over the lowest speed assumed at a jump; its time is uncertain accordingly
 MARGIN = 5.0  # in errors: 2 for each of two runs, and 1 for the search
 
@@ -217,56 +216,37 @@ def _search_bounds(
     Also returns what was evaluated of the columns during the search, if there was one.
     """
     columns, runs = collect_columns(page.results, scope), scope.collect_runs(page.results)
-    certain = page.certain
-    errors = [certain.error_of(column.kind, column.unit) for column in columns]
-    errors += [certain.error_of("sections", load.unit) for run in runs for load in run.loads]
-    is_magnitude = np.array(
-        [column.is_magnitude for column in columns] + [False] * (len(errors) - len(columns)), dtype=bool
-    )
     samples = SampledColumns()
 
-    def sample(results: Results) -> Array:
+    def collect(results: Results) -> list[Channel]:
         own = collect_columns(results, scope)
-        values = np.stack([column.values for column in own], axis=1) if own else np.zeros((len(results.time), 0))
-        samples.add(results.time, values)
-        return np.where(is_magnitude[: len(own)], values * values, values)
+        values = [column.values for column in own]
+        samples.add(results.time, np.stack(values, axis=1) if own else np.zeros((len(results.time), 0)))
+        return own + (collect_run_loads(results) if runs else [])
 
-    searched = ColumnSearch(
-        sample,
-        [[i] for i in range(len(columns))],
-        np.array(errors),
-        is_magnitude,
-        page.make_run_columns if runs else None,
-    )
-    is_searched = study.is_searched(len(errors))
+    n_channels = len(columns) + sum(len(run.loads) for run in runs)
+    is_searched = study.is_searched(n_channels)
     times = None if is_searched else study.results.time
-    extremes = study.search_extremes(searched, scope.reports - {SHARES}, whole=True, times=times)
-    low, high = (np.where(is_magnitude, np.sqrt(np.abs(bound)), bound) for bound in (extremes.low, extremes.high))
+    search = ChannelSearch(collect, page.certain.find_error)
+    extremes = study.search_extremes(search, scope.reports - {SHARES}, whole=True, times=times)
+    low, high = extremes.low, extremes.high
     bounds = {
         column.path: _make_bounds(low[i], extremes.low_at[i], high[i], extremes.high_at[i])
         for i, column in enumerate(columns)
     }
     if is_searched and columns and not study.has_one_instant:
-        _add_spreads(bounds, columns, errors, samples, jumps)
-    start = len(columns)
-    for k, run in enumerate(runs):
-        first = start + k * len(run.loads)
-        part = extremes.select(slice(first, first + len(run.loads)))
-        bounds |= _make_run_bounds(run, run.loads, part, extremes.places[k * len(run.loads) : (k + 1) * len(run.loads)])
-        if run.stresses:
-            own = search_stresses(run, scope.labels)
-            stress_search = ColumnSearch(
-                make_no_columns, [], own.find_errors(certain), own.magnitude_columns, own.run_columns, bent=True
-            )
-            stresses = own.take_roots(study.search_extremes(stress_search, SECTIONS))
-            bounds |= _make_run_bounds(run, run.stresses, stresses, stresses.places)
+        _add_spreads(bounds, columns, page.certain, samples, jumps)
+    for run in runs:
+        found = extremes.find([load.path for load in run.loads])
+        found = found.join(search_stresses(run, page.certain, study)) if run.stresses else found
+        bounds |= _make_run_bounds(found)
     return bounds, samples if is_searched and columns else None
 
 
 def _add_spreads(
     bounds: dict[str, SnapshotBounds],
-    columns: Sequence[SnapshotColumn],
-    errors: Sequence[float],
+    columns: Sequence[Channel],
+    certain: StatedErrors,
     samples: SampledColumns,
     jumps: UncertainJumps,
 ) -> None:
@@ -274,7 +254,7 @@ def _add_spreads(
     times, values = samples.sorted_samples
     jump_error = float(jumps.errors.max(initial=0.0))
     for i, column in enumerate(columns):
-        column_bounds, margin = bounds[column.path], MARGIN * errors[i]
+        column_bounds, margin = bounds[column.path], MARGIN * certain.find_error(column)
         spreads: list[float | None] = []
         for side, bound in ((-1.0, column_bounds.low), (1.0, column_bounds.high)):
             known = bound is not None and np.isfinite(bound[0])
@@ -290,19 +270,13 @@ def _make_bounds(low: float, low_at: float, high: float, high_at: float) -> Snap
     return SnapshotBounds((float(low), float(low_at), None), (float(high), float(high_at), None))
 
 
-def _make_run_bounds(
-    run: CutRun,
-    quantities: Sequence[RunQuantity],
-    extremes: Extremes,
-    places: Sequence[tuple[CutPosition, CutPosition]],
-) -> dict[str, SnapshotBounds]:
+def _make_run_bounds(extremes: Extremes) -> dict[str, SnapshotBounds]:
     """Return the extremes along a run of cuts: the minimum belongs to the column of lowest values, the maximum to that
     of highest.
     """
     bounds: dict[str, SnapshotBounds] = {}
-    for i, quantity in enumerate(quantities):
-        path = make_run_path(run, quantity)
-        low = float(extremes.low[i]), float(extremes.low_at[i]), format_place(places[i][0])
-        high = float(extremes.high[i]), float(extremes.high_at[i]), format_place(places[i][1])
+    for i, path in enumerate(extremes.paths):
+        low = float(extremes.low[i]), float(extremes.low_at[i]), format_place(extremes.places[i][0])
+        high = float(extremes.high[i]), float(extremes.high_at[i]), format_place(extremes.places[i][1])
         bounds |= {f"{path}.lowest": SnapshotBounds(low, None), f"{path}.highest": SnapshotBounds(None, high)}
     return bounds

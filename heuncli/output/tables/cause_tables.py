@@ -12,12 +12,12 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.cut_runs import CutRun, RunQuantity, format_place
-from heuncli.output.tables.table_blocks import NumberRow, RowGroup, TableBlock, make_rows
-from heuncli.output.tables.table_plans import MASS_EFFECT
+from heuncli.output.tables.cut_runs import CutRun, format_place
+from heuncli.output.tables.table_blocks import TableBlock
 from heuncli.output.tables.text_table import INDENT, TextColumn, TextTable
 from heuncli.results.results import Array, CutPosition, Extremes, Results
 from heuncli.results.results_schema import BY_CAUSE, SECTION_FORCES, SECTION_MOMENTS, SHARES
+from heuncli.study.quantities.channels import Channel
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
@@ -30,7 +30,6 @@ from heuncli.study.quantities.digits import (
     write_times,
 )
 from heuncli.study.quantities.labels import distinguish
-from heuncli.study.quantities.series import Series
 
 TOTAL_COLUMNS = ("sum", "total")  # after those of the causes
 MAX_CAUSE_COLUMNS = 9  # further, smaller causes share one column
@@ -45,13 +44,12 @@ AXES = {
     for vector, names in (("force", SECTION_FORCES), ("moment", SECTION_MOMENTS))
     for axis, name in enumerate(names)
 }
-NumberKey = tuple[str, str, str]  # of a number: kind, name, label
 
 
 class NumberWithShares(NamedTuple):
-    """A number over the instants, its shares by cause, and the direct shares of the loads; (n_t,) each."""
+    """The channel of a number, its shares by cause, and the direct shares of the loads; (n_t,) each."""
 
-    row: NumberRow
+    row: Channel
     shares: dict[str, Array]
     direct: dict[str, Array]
 
@@ -67,7 +65,7 @@ class ShareLine(NamedTuple):
 
     label: str
     position: str
-    row: NumberRow
+    row: Channel
     shares: dict[str, float]
     total: float | None
     is_beyond_horizon: bool = False
@@ -77,35 +75,35 @@ class ShareLine(NamedTuple):
 LineGroups = Sequence[tuple[str, Sequence[ShareLine]]]  # titles and lines
 
 
-def collect_shares(results: Results, all_series: Iterable[Series]) -> dict[NumberKey, NumberWithShares]:
-    """Collect the numbers that have shares by cause, except those of runs of cuts.
+def collect_shares(channels: Iterable[Channel], results: Results) -> dict[str, NumberWithShares]:
+    """Collect the numbers that have shares by cause, by their paths, except those of runs of cuts.
 
-    all_series: the series of the results
+    channels: all of the results
     """
     runs = {name for name, section in results.sections.items() if "s" in section}
-    share_series: dict[tuple[str, str, str], dict[str, Series]] = {}
-    totals: list[Series] = []
-    for total in all_series:
-        if total.kind == "sections" and total.name.split(".")[0] in runs:
+    shares_of: dict[str, dict[str, Channel]] = {}
+    totals: list[Channel] = []
+    for channel in channels:
+        if channel.kind == "sections" and channel.name.split(".")[0] in runs:
             continue
-        if total.cause:
-            share_series.setdefault((total.kind, total.name, total.quantity), {})[total.cause] = total
+        if channel.cause:
+            shares_of.setdefault(channel._replace(cause="").path, {})[channel.cause] = channel
         else:
-            totals.append(total)
-    numbers: dict[NumberKey, NumberWithShares] = {}
+            totals.append(channel)
+    numbers: dict[str, NumberWithShares] = {}
     for total in totals:
-        shares = share_series.get((total.kind, total.name, total.quantity))
+        shares = shares_of.get(total.path)
         if shares is None:
             continue
-        direct = find_direct_shares(results, total, share_series)
-        for i, row in enumerate(make_rows(total)):
-            parts = {cause: project_share(row, i, total, all_series.values) for cause, all_series in shares.items()}
+        direct = find_direct_shares(results, total, shares_of)
+        for i, row in enumerate(total.numbers):
+            parts = {cause: project_share(row, i, total, share.values) for cause, share in shares.items()}
             direct_parts = {cause: values[:, i] for cause, values in direct.items() if i < values.shape[1]}
-            numbers[total.kind, total.name, row.label] = NumberWithShares(row, parts, direct_parts)
+            numbers[row.path] = NumberWithShares(row, parts, direct_parts)
     return numbers
 
 
-def project_share(row: NumberRow, i: int, total: Series, share: Array) -> Array:
+def project_share(row: Channel, i: int, total: Channel, share: Array) -> Array:
     """Return the share in component i, or, for the magnitude, the share's component along the whole vector; (n_t,)."""
     if i < share.shape[1]:
         return share[:, i]
@@ -114,32 +112,24 @@ def project_share(row: NumberRow, i: int, total: Series, share: Array) -> Array:
 
 
 def find_direct_shares(
-    results: Results, item: Series, share_series: Mapping[NumberKey, Mapping[str, Series]]
+    results: Results, item: Channel, shares_of: Mapping[str, Mapping[str, Channel]]
 ) -> dict[str, Array]:
     """Find the direct shares of the loads in a quantity; for a section force, their components along the section's
     axes.
     """
     name, axis = AXES.get(item.quantity, (item.quantity, None)) if item.kind == "sections" else (item.quantity, None)
-    direct_series = share_series.get((item.kind, item.name, f"direct_{name}"), {})
+    direct_shares = shares_of.get(item._replace(quantity=f"direct_{name}").path, {})
     if axis is None:
-        return {cause: series.values for cause, series in direct_series.items()}
+        return {cause: share.values for cause, share in direct_shares.items()}
     section = results.sections[item.name]
     n, e1 = section["normal"], section["first_axis"]
     direction = (n, e1, np.cross(n, e1))[axis]
-    return {cause: np.sum(series.values * direction, axis=1)[:, None] for cause, series in direct_series.items()}
-
-
-def make_number_key(block: TableBlock, group: RowGroup, row: NumberRow) -> NumberKey:
-    """Return the kind, name and label under which the results hold the number of a table row."""
-    if block.kind != "foundation":
-        return block.kind, group.name, row.label
-    name = group.name.replace("support ", "supports.", 1).replace("element ", "elements.", 1)
-    return block.kind, {"total": "", "": MASS_EFFECT.key}.get(name, name), row.label  # the mass effects have no shares
+    return {cause: np.sum(share.values * direction, axis=1)[:, None] for cause, share in direct_shares.items()}
 
 
 def make_instants_tables(
     block: TableBlock,
-    numbers: Mapping[NumberKey, NumberWithShares],
+    numbers: Mapping[str, NumberWithShares],
     times: Array,
     horizon: float | None,
     certain: StatedErrors,
@@ -150,7 +140,7 @@ def make_instants_tables(
     for group in block.groups:
         lines: list[ShareLine] = []
         for row in group.rows:
-            number = numbers.get(make_number_key(block, group, row))
+            number = numbers.get(row.path)
             for k, t in enumerate(times.tolist() if number is not None else []):
                 assert number is not None
                 is_beyond, is_uncertain = horizon is not None and t >= horizon, t in certain.singular_times
@@ -171,7 +161,7 @@ def make_instants_tables(
 
 def make_extremes_tables(
     block: TableBlock,
-    numbers: Mapping[NumberKey, NumberWithShares],
+    numbers: Mapping[str, NumberWithShares],
     instants: Array,
     extremes: Extremes,
     certain: StatedErrors,
@@ -180,34 +170,24 @@ def make_extremes_tables(
     """Make the table of the minimum and maximum of every number of a block, with the shares at their instants.
 
     numbers: at `instants`, which include those of the extremes
-    extremes: of the block's rows, in their order
+    extremes: of the channels
     span: length of the run [s]
     """
     groups: list[tuple[str, list[ShareLine]]] = []
-    column = 0
     for group in block.groups:
         lines: list[ShareLine] = []
         for row in group.rows:
-            number = numbers.get(make_number_key(block, group, row))
-            if number is not None:
-                low, high = (
-                    (float(instants_of_bound[column]), float(value[column]))
-                    for instants_of_bound, value in ((extremes.low_at, extremes.low), (extremes.high_at, extremes.high))
-                )
-                ends = [("", *high)] if low[1] == high[1] else [("min", *low), ("max", *high)]
-                lines += [
-                    make_share_line(
-                        number,
-                        instants,
-                        f"{row.label} {word}".rstrip(),
-                        instants_of_bound,
-                        value,
-                        span if word else 0.0,
-                    )
-                    for word, instants_of_bound, value in ends
-                    if not (row.is_magnitude and word == "min")
-                ]
-            column += 1
+            number = numbers.get(row.path)
+            if number is None:
+                continue
+            found = extremes.find([row.path])
+            low, high = (float(found.low_at[0]), float(found.low[0])), (float(found.high_at[0]), float(found.high[0]))
+            ends = [("", *high)] if low[1] == high[1] else [("min", *low), ("max", *high)]
+            lines += [
+                make_share_line(number, instants, f"{row.label} {word}".rstrip(), time, value, span if word else 0.0)
+                for word, time, value in ends
+                if not (row.is_magnitude and word == "min")
+            ]
         groups.append((group.title, lines))
     return [make_share_table(make_heading(block), groups, certain)] if any(lines for _, lines in groups) else []
 
@@ -252,7 +232,10 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
         shown_here = [(line, cells_of_line) for line, cells_of_line in shown_here if line.row.label not in open_labels]
         special_words |= {OPEN} if open_labels else set()
         rows += [title] if title and (shown_here or open_labels) else []
-        rows += [(line.label, line.row.unit, line.position, *cells_of_line) for line, cells_of_line in shown_here]
+        rows += [
+            (line.label, certain.units.find(line.row.unit)[0], line.position, *cells_of_line)
+            for line, cells_of_line in shown_here
+        ]
         rows += [f"{INDENT}{OPEN}: {', '.join(open_labels)}"] if open_labels else []
         shown_lines += [line for line, _ in shown_here]
         number_cells += [cells_of_line for _, cells_of_line in shown_here]
@@ -324,8 +307,9 @@ def format_lines(
     for family, scale in find_family_scales(lines).items():
         members = [i for i, line in enumerate(lines) if find_family(line) == family]
         row = lines[members[0]].row
-        number_style = certain.choose_style(f"{row.kind} {BY_CAUSE}", row.unit, scale)
-        flat = iter(write_numbers([x for i in members for x in numbers[i] if x is not None], number_style))
+        size = certain.units.find(row.unit)[1]
+        number_style = certain.choose_style(f"{row.error_kind} {BY_CAUSE}", row.unit, scale)
+        flat = iter(write_numbers([size * x for i in members for x in numbers[i] if x is not None], number_style))
         for i in members:
             texts[i] = ["" if x is None else mark_unknown(x, next(flat), lines[i], certain) for x in numbers[i]]
     return texts
@@ -351,15 +335,12 @@ def make_notes(lines: Sequence[ShareLine], heads: set[str], words: set[str]) -> 
 
 
 def make_run_extremes_tables(
-    run: CutRun,
-    results: Results,
-    extremes: Extremes,
-    places: Sequence[tuple[CutPosition, CutPosition]],
-    certain: StatedErrors,
+    run: CutRun, results: Results, extremes: Extremes, certain: StatedErrors
 ) -> list[TextTable]:
     """Make the table of the minimum and maximum of each section force along a run of cuts, with their shares.
 
     results: with the run cut at the places of the minimum and maximum of every section force, in this order
+    extremes: of the section forces
     """
     lines: list[ShareLine] = []
     span = float(np.ptp(np.concatenate([extremes.low_at, extremes.high_at])))
@@ -368,7 +349,7 @@ def make_run_extremes_tables(
         for j, (word, value, instants) in enumerate(ends):
             k = int(np.searchsorted(results.time, instants[i]))
             clock = [f"{write_times([float(instants[i])], span)[0]} s"] if span > 0.0 else []
-            where = ", ".join([f"s = {format_place(places[i][j], run)} {run.length[0]}", *clock])
+            where = ", ".join([f"s = {format_place(extremes.places[i][j], run)} {run.length[0]}", *clock])
             lines.append(make_run_line(results, run.name, load, f"{load.label} {word}", (k, 2 * i + j), where)
                          ._replace(total=float(value[i])))  # fmt: skip
     return make_run_tables(run, lines, certain)
@@ -384,8 +365,8 @@ def make_run_instants_tables(
     clock = [] if len(times) == 1 else [f", {text} s" for text in write_times(times, float(np.ptp(results.time)))]
     lines: list[ShareLine] = []
     for k, t in enumerate(times):
-        for i, load in enumerate(run.loads):
-            values = np.nan_to_num(run.values[i, k])
+        for load in run.loads:
+            values = np.nan_to_num(load.values[k])
             for word, cut in (("min", int(np.argmin(values))), ("max", int(np.argmax(values)))):
                 where = f"s = {format_place(CutPosition(float(run.s[cut]), None, cut), run)} {run.length[0]}"
                 where += clock[k] if clock else ""
@@ -395,21 +376,18 @@ def make_run_instants_tables(
 
 
 def make_run_line(
-    results: Results, name: str, load: RunQuantity, label: str, index: tuple[int, int], where: str
+    results: Results, name: str, load: Channel, label: str, index: tuple[int, int], where: str
 ) -> ShareLine:
     """Make the row of a section force at one instant and cut.
 
     index: of the instant and of the cut
     where: the place and instant as text
     """
-    quantity, unit = load.name, load.unit
     section = results.sections[name]
     shares = {
-        cause: load.size * float(section_forces[quantity][index])
-        for cause, section_forces in section.get(SHARES, {}).items()
+        cause: float(section_forces[load.quantity][index]) for cause, section_forces in section.get(SHARES, {}).items()
     }
-    row = NumberRow(quantity, unit, AXES[quantity][0], "sections", np.zeros(0))
-    return ShareLine(label, where, row, shares, load.size * float(section[quantity][index]))
+    return ShareLine(label, where, load, shares, float(section[load.quantity][index]))
 
 
 def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: StatedErrors) -> list[TextTable]:

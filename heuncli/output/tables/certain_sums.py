@@ -13,7 +13,6 @@ from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, DeterminateSum, Results
 from heuncli.results.results_schema import AXIAL_FORCES, SECTION_FORCES, XYZ
 from heuncli.study.quantities.digits import StatedErrors, format_unclaimed, largest_magnitude, write_numbers
-from heuncli.study.quantities.table_units import DisplayUnit
 
 MAX_TERMS = 6  # tables show short sums of forces, JSON shows all
 TURNING_FACTOR_NOTE = "(t): factor varies with position, shown for the first instant; all values: --format json"
@@ -21,19 +20,17 @@ FORCES = frozenset({"force", *AXIAL_FORCES, *SECTION_FORCES})
 
 
 def make_sums_table(
-    results: Results, certain: StatedErrors, last_instant: Results | None = None, shown_unit: DisplayUnit = ("N", 1.0)
+    results: Results, certain: StatedErrors, last_instant: Results | None = None, unit: str = "N"
 ) -> TextTable | None:
     """Make the table of sums that are determinate although their terms are not; None if there are none.
 
     last_instant: results at the last instant, if the run ends beyond its horizon
-    shown_unit: unit of forces, N·s for impulses
+    unit: SI unit of forces, N·s for impulses
     """
     if not results.certain_sums:
         return None
     ends = [None] * len(results.certain_sums) if last_instant is None else last_instant.certain_sums
-    all_lines = [
-        _format_sum(block, certain, end, shown_unit) for block, end in zip(results.certain_sums, ends, strict=True)
-    ]
+    all_lines = [_format_sum(block, certain, end, unit) for block, end in zip(results.certain_sums, ends, strict=True)]
     lines = [line for line in all_lines if line is not None]
     n_hidden = len(results.certain_sums) - len(lines)
     hidden_note = f"{n_hidden} more in --format json (moments, or more than {MAX_TERMS} terms)" if n_hidden else ""
@@ -47,7 +44,7 @@ def make_sums_table(
 
 
 def _format_sum(
-    block: DeterminateSum, certain: StatedErrors, last_instant: DeterminateSum | None, shown_unit: DisplayUnit
+    block: DeterminateSum, certain: StatedErrors, last_instant: DeterminateSum | None, si_unit: str
 ) -> str | None:
     """Format one sum with its value, or its first, last, smallest and largest value; None if it is too long or has
     moments.
@@ -55,13 +52,12 @@ def _format_sum(
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MAX_TERMS or not all(_is_force(path) for path in terms):
         return None
-    unit, size = shown_unit
-    values = size * np.asarray(block["value"], dtype=np.float64)
-    scale = largest_magnitude(values)
-    numbers = [values[0], values[-1], np.nanmin(values), np.nanmax(values)]
-    texts = write_numbers(numbers, certain.choose_style("reactions", unit, scale))
+    unit, size = certain.units.find(si_unit)
+    values = np.asarray(block["value"], dtype=np.float64)
+    numbers = [size * value for value in (values[0], values[-1], np.nanmin(values), np.nanmax(values))]
+    texts = write_numbers(numbers, certain.choose_style("reactions", si_unit, largest_magnitude(values)))
     if last_instant is not None:
-        texts[1] = format_unclaimed(size * last_instant["value"][-1], unit, certain, texts[1])
+        texts[1] = format_unclaimed(last_instant["value"][-1], si_unit, certain, texts[1])
     if texts == ["0"] * 4 and _states_equality(terms):
         return " = ".join(map(format_path, terms)) + "; magnitude indeterminate"
     sum_text = _format_terms(terms)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
 from heuncli.results.results import Array, CutPosition, Extremes, Indices, Results
-from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES, find_row
+from heuncli.results.results_schema import RESULTANTS, STRESSES
+from heuncli.study.quantities.channels import NO_UNITS, Channel, make_section_channels
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
@@ -25,37 +26,14 @@ from heuncli.study.quantities.digits import (
     write_times,
 )
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.table_units import DisplayUnit, Units
+from heuncli.study.quantities.table_units import DisplayUnit
 
 EXTREMES_NOTE = "extremes over the whole bar, also between the listed cuts"
 MAX_CUTS = 25  # in a diagram: evenly spaced cuts, with all jumps and extremes
 
 
-class RunQuantity(NamedTuple):
-    """A quantity along a run of cuts.
-
-    name: in the results
-    is_magnitude: whether it is never negative
-    bounds: which of "min" and "max" are of interest at a cut
-    size: factor from the unit of the results to the unit shown
-    """
-
-    name: str
-    label: str
-    unit: str
-    is_magnitude: bool = False
-    bounds: tuple[str, ...] = ("min", "max")
-    size: float = 1.0
-
-
-def _make_stress_quantity(name: str) -> RunQuantity:
-    unit = find_row(f"sections.SECTION.stress.{name}").select_unit()
-    bounds = ("min",) if name == "normal_min" else ("max",)
-    return RunQuantity(name, name.replace("_", " "), unit, name in MAGNITUDES, bounds)
-
-
-LOADS = tuple(RunQuantity(name, name, find_row(f"sections.SECTION.{name}").select_unit()) for name in RESULTANTS)
-ALONG_STRESSES = tuple(_make_stress_quantity(name) for name in STRESSES)
+BOTH_BOUNDS = ("min", "max")
+BOUNDS = dict.fromkeys(STRESSES, ("max",)) | {"normal_min": ("min",)}  # those of interest at a cut; else both
 
 
 class CutRun(NamedTuple):
@@ -63,7 +41,7 @@ class CutRun(NamedTuple):
 
     s: positions along the body [m]
     side: of each cut, which side of a load that acts there; None elsewhere
-    values: section forces, then stresses, (n, n_t, n_cuts), in the units shown
+    channels: section forces, then stresses, (n_t, n_cuts) each
     length: the unit in which positions are shown
     """
 
@@ -71,30 +49,25 @@ class CutRun(NamedTuple):
     heading: str
     s: Array
     side: tuple[str | None, ...]
-    values: Array
-    quantities: tuple[RunQuantity, ...] = LOADS
+    channels: tuple[Channel, ...]
     length: DisplayUnit = ("m", 1.0)
 
     @property
-    def loads(self) -> tuple[RunQuantity, ...]:
-        """The section forces among the quantities: N, Q1, Q2, T, M1, M2."""
-        return self.quantities[: len(LOADS)]
+    def loads(self) -> tuple[Channel, ...]:
+        """The section forces: N, Q1, Q2, T, M1, M2."""
+        return self.channels[: len(RESULTANTS)]
 
     @property
-    def stresses(self) -> tuple[RunQuantity, ...]:
-        """The stresses among the quantities, after the section forces; none without section properties."""
-        return self.quantities[len(LOADS) :]
+    def stresses(self) -> tuple[Channel, ...]:
+        """The stresses, after the section forces; none without section properties."""
+        return self.channels[len(RESULTANTS) :]
 
 
-def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] | None = None) -> list[CutRun]:
+def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] = NO_UNITS) -> list[CutRun]:
     """Collect the runs of cuts among the sections.
 
     units: replacements of units, for impulses instead of forces
     """
-    display_units = labels.units
-    loads = tuple(
-        _convert_quantity(load._replace(unit=(units or {}).get(load.unit, load.unit)), display_units) for load in LOADS
-    )
     runs = []
     for name, section in results.sections.items():
         if "s" not in section:
@@ -105,54 +78,49 @@ def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] | No
         reference_point = info.moment_point if info else "the cut's point"
         meaning = f"{'impulse' if units else 'force'} of the far side on the near side of the cut; N > 0 tension"
         heading = f"SECTION {subject}  {meaning}; {axis}; moments about {reference_point}"
-        stress = section.get("stress", {})
-        stresses = tuple(
-            _convert_quantity(run_values, display_units) for run_values in ALONG_STRESSES if run_values.name in stress
-        )
-        run_values = [load.size * section[load.name] for load in loads]
-        run_values += [stress_quantity.size * stress[stress_quantity.name] for stress_quantity in stresses]
         side = tuple(section.get("side") or [None] * len(section["s"]))
         s = np.asarray(section["s"], dtype=np.float64)
-        runs.append(CutRun(name, heading, s, side, np.stack(run_values), (*loads, *stresses), display_units.find("m")))
+        channels = make_section_channels(name, section, units)
+        runs.append(CutRun(name, heading, s, side, channels, labels.units.find("m")))
     return runs
 
 
-def _convert_quantity(quantity: RunQuantity, units: Units) -> RunQuantity:
-    unit, size = units.find(quantity.unit)
-    return quantity._replace(unit=unit, size=size)
-
-
-def convert_extremes(run: CutRun, extremes: Extremes) -> Extremes:
-    """Convert the extremes of section forces along a run from the units of results to those shown."""
-    sizes = np.array([load.size for load in run.loads])
-    return extremes._replace(low=sizes * extremes.low, high=sizes * extremes.high)
+def split_into_cuts(channels: Iterable[Channel], cuts: Indices) -> list[Channel]:
+    """Return the channels at some single cuts of a run, quantity by quantity."""
+    return [
+        channel._replace(component=str(cut), values=channel.values[:, cut], axes=())
+        for channel in channels
+        for cut in cuts.tolist()
+    ]
 
 
 def make_extremes_tables(
-    run: CutRun,
-    times: Array,
-    extremes: Extremes,
-    places: Sequence[tuple[CutPosition, CutPosition]],
-    certain: StatedErrors,
-    cuts: Extremes | None = None,
+    run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors, cuts: Extremes | None = None
 ) -> list[TextTable]:
     """Make two tables: extremes of each quantity over the whole length and time, with their places; extremes at each
     cut.
 
-    cuts: extremes at the cuts shown, quantity by quantity; without them, the extremes among the samples
+    extremes: of the channels along the run
+    cuts: of all quantities at the cuts that are shown; without them, the extremes among the samples
     """
     shown_cuts = choose_cuts(run)
-    shape = len(run.quantities), len(shown_cuts)
     if cuts is None:
-        columns = run.values[:, :, shown_cuts].transpose(1, 0, 2).reshape(run.values.shape[1], -1)
-        cuts = find_sample_extremes(times, columns)
-    extremes, places, cuts = merge_extremes(run, shown_cuts, extremes, places, cuts)
-    where = "also between the output times" if cuts.is_searched else f"at {run.values.shape[1]} output times"
+        columns = [channel.values for channel in split_into_cuts(run.channels, shown_cuts)]
+        cuts = find_sample_extremes(times, np.stack(columns, axis=1))
+    head, cuts = merge_extremes(run, shown_cuts, select_extremes(run, extremes), cuts)
+    where = "also between the output times" if cuts.is_searched else f"at {len(run.channels[0].values)} output times"
     notes = [f"envelope: minimum and maximum at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
-    table = make_extremes_table(run, times, extremes, places, certain)
-    styles = _choose_styles(run, certain, extremes)
+    shape = len(run.channels), len(shown_cuts)
     bounds = {"min": cuts.low.reshape(shape), "max": cuts.high.reshape(shape)}
-    return [table, _make_envelope(run, bounds, shown_cuts, styles, notes)]
+    styles = _choose_styles(run, certain, head)
+    envelope = _make_envelope(run, bounds, shown_cuts, styles, notes, certain)
+    return [make_extremes_table(run, times, head, certain), envelope]
+
+
+def select_extremes(run: CutRun, extremes: Extremes) -> Extremes:
+    """Select the extremes of the section forces along a run, and of its stresses if these were searched."""
+    known = set(extremes.paths)
+    return extremes.find([channel.path for channel in run.channels if channel.path in known])
 
 
 def find_sample_extremes(times: Array, values: Array) -> Extremes:
@@ -165,14 +133,12 @@ def find_sample_extremes(times: Array, values: Array) -> Extremes:
     )
 
 
-def merge_extremes(
-    run: CutRun, shown_cuts: Indices, head: Extremes, places: Sequence[tuple[CutPosition, CutPosition]], cuts: Extremes
-) -> tuple[Extremes, tuple[tuple[CutPosition, CutPosition], ...], Extremes]:
+def merge_extremes(run: CutRun, shown_cuts: Indices, head: Extremes, cuts: Extremes) -> tuple[Extremes, Extremes]:
     """Merge the extremes of the whole length and of its cuts, so that each is the better result of two searches."""
     ends, ends_at = np.stack([head.low, head.high]), np.stack([head.low_at, head.high_at])
     bounds, instants = np.stack([cuts.low, cuts.high]), np.stack([cuts.low_at, cuts.high_at])
-    best_places = [list(both) for both in places]
-    for i in range(len(places)):
+    best_places = [list(both) for both in head.places]
+    for i in range(len(best_places)):
         for side, sign in ((0, -1.0), (1, 1.0)):
             columns = slice(i * len(shown_cuts), (i + 1) * len(shown_cuts))
             best = int(np.argmax(np.nan_to_num(sign * bounds[side, columns], nan=-np.inf)))
@@ -182,25 +148,28 @@ def merge_extremes(
                 best_places[i][side] = CutPosition(float(run.s[cut]), run.side[cut], cut)
             elif best_places[i][side].cut in shown_cuts:
                 bounds[side, columns][shown_cuts == best_places[i][side].cut] = ends[side, i]
-    merged = head._replace(low=ends[0], high=ends[1], low_at=ends_at[0], high_at=ends_at[1])
-    return merged, tuple((a, b) for a, b in best_places), cuts._replace(low=bounds[0], high=bounds[1])
+    places = tuple((low, high) for low, high in best_places)
+    merged = head._replace(low=ends[0], high=ends[1], low_at=ends_at[0], high_at=ends_at[1], places=places)
+    return merged, cuts._replace(low=bounds[0], high=bounds[1])
 
 
 def _make_envelope(
-    run: CutRun, bounds: Mapping[str, Array], shown_cuts: Indices, styles: Mapping[str, Style], notes: Sequence[str]
-) -> TextTable:
+    run: CutRun, bounds: Mapping[str, Array], shown_cuts: Indices, styles: Mapping[str, Style], notes: Sequence[str],
+    certain: StatedErrors,
+) -> TextTable:  # fmt: skip
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
     columns, texts, left_out = list[TextColumn](), list[list[str]](), False
-    for i, quantity in enumerate(run.quantities):
-        both = [write_numbers(bounds[word][i].tolist(), styles[quantity.unit]) for word in quantity.bounds]
+    for i, channel in enumerate(run.channels):
+        unit, size = certain.units.find(channel.unit)
+        words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
+        both = [write_numbers((size * bounds[word][i]).tolist(), styles[channel.unit]) for word in words]
         if {text for column in both for text in column} == {"0"}:
             left_out = True
             continue
-        words = quantity.bounds if len(both) > 1 and both[0] != both[1] else ("",)  # a constant value has one column
+        words = words if len(both) > 1 and both[0] != both[1] else ("",)  # a constant value has one column
         texts += both[: len(words)]
         columns += [
-            TextColumn(format_head(f"{quantity.label} {word}".rstrip(), quantity.unit), vector=quantity.label)
-            for word in words
+            TextColumn(format_head(f"{channel.label} {word}".rstrip(), unit), vector=channel.label) for word in words
         ]
     if not columns:
         return TextTable("", notes=(*notes, "all values 0"))
@@ -228,34 +197,30 @@ def _make_cuts_table(
     return TextTable("", (*heads, *columns), rows, tuple(notes))
 
 
-def make_extremes_table(
-    run: CutRun,
-    times: Array,
-    extremes: Extremes,
-    places: Sequence[tuple[CutPosition, CutPosition]],
-    certain: StatedErrors,
-) -> TextTable:
+def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors) -> TextTable:
     """Make the table of the lowest and highest value of each quantity over the whole length and time, with place and
     instant.
     """
+    extremes = select_extremes(run, extremes)
     styles = _choose_styles(run, certain, extremes)
     span = float(np.ptp(times))
     rows: list[tuple[str, ...]] = []
-    quantities = run.quantities[: len(extremes.low)]
-    for i, quantity in enumerate(quantities):
-        low, high = write_numbers([float(extremes.low[i]), float(extremes.high[i])], styles[quantity.unit])
+    channels = run.channels[: len(extremes.low)]
+    for i, channel in enumerate(channels):
+        unit, size = certain.units.find(channel.unit)
+        low, high = write_numbers([size * float(extremes.low[i]), size * float(extremes.high[i])], styles[channel.unit])
         if low == high == "0":
             continue
-        label, unit = quantity.label, quantity.unit if quantity.unit != "1" else ""
+        label, unit = channel.label, unit if unit != "1" else ""
         if low == high:
             rows.append((label, unit, low, "", "", high, "", ""))
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
-            "" if _is_constant(run.values[i][:, _find_nearest_cut(run, place)], styles[quantity.unit]) else t
-            for place, t in zip(places[i], clock, strict=True)
+            "" if _is_constant(size * channel.values[:, _find_nearest_cut(run, place)], styles[channel.unit]) else t
+            for place, t in zip(extremes.places[i], clock, strict=True)
         )
-        where = [format_place(place, run) for place in places[i]]
+        where = [format_place(place, run) for place in extremes.places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     position_head = f"at s [{run.length[0]}]"
     heads = ("min", position_head, "t [s]", "max", position_head, "t [s]")
@@ -265,7 +230,7 @@ def make_extremes_table(
     if not rows:
         return TextTable(run.heading, notes=("all values 0",))
     notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
-    return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(quantities))))
+    return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
 
 
 def make_instants_tables(
@@ -276,7 +241,7 @@ def make_instants_tables(
     shown_cuts = np.arange(len(run.s)) if every_cut else choose_cuts(run)
     if len(times) == 1:
         diagram = _make_diagram(
-            run, run.values[:, 0, :], shown_cuts, styles, [_format_hidden_cuts(run, shown_cuts).lstrip("; ")]
+            run, 0, shown_cuts, styles, [_format_hidden_cuts(run, shown_cuts).lstrip("; ")], certain
         )
         return [_drop_zero_columns(run, diagram._replace(heading=run.heading))]
     clock = write_times(times.tolist(), float(np.ptp(times)))
@@ -284,14 +249,14 @@ def make_instants_tables(
     table = TextTable("")
     notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
-        certain_beyond = certain if horizon is not None and t >= horizon else None
         table = _make_diagram(
             run,
-            run.values[:, i, :],
+            i,
             shown_cuts,
             styles,
             [_format_hidden_cuts(run, shown_cuts).lstrip("; ")],
-            certain_beyond,
+            certain,
+            is_beyond=horizon is not None and t >= horizon,
         )
         rows += [f"t = {clock[i]} s", *table.rows]
         notes += table.notes
@@ -305,45 +270,45 @@ def choose_cuts(run: CutRun) -> Indices:
         return np.arange(n)
     chosen = set(np.linspace(0, n - 1, MAX_CUTS // 2 + 1).round().astype(int).tolist())
     chosen |= {i for i, side in enumerate(run.side) if side is not None}
-    flat = np.nan_to_num(run.values).max(axis=1), np.nan_to_num(run.values).min(axis=1)
-    chosen |= {int(np.argmax(row)) for row in flat[0]} | {int(np.argmin(row)) for row in flat[1]}
+    for channel in run.channels:
+        values = np.nan_to_num(channel.values)
+        chosen |= {int(np.argmax(values.max(axis=0))), int(np.argmin(values.min(axis=0)))}
     return np.array(sorted(chosen))
 
 
 def _make_diagram(
     run: CutRun,
-    values: Array,
+    instant: int,
     shown_cuts: Indices,
     styles: dict[str, Style],
     notes: Sequence[str],
-    certain_beyond: StatedErrors | None = None,
+    certain: StatedErrors,
+    *,
+    is_beyond: bool = False,
 ) -> TextTable:
-    """Make the diagram at one instant, a row for each cut.
-
-    values: (n, n_cuts)
-    certain_beyond: given if the instant is beyond the horizon
-    """
+    """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
     texts = []
-    for quantity, row in zip(run.quantities, values[:, shown_cuts].tolist(), strict=True):
-        column = write_numbers(row, styles[quantity.unit])
-        if certain_beyond is not None:
+    for channel in run.channels:
+        row, size = channel.values[instant, shown_cuts], certain.units.find(channel.unit)[1]
+        column = write_numbers((size * row).tolist(), styles[channel.unit])
+        if is_beyond:
             column = [
-                format_unclaimed(value, quantity.unit, certain_beyond, text)
-                for value, text in zip(row, column, strict=True)
+                format_unclaimed(value, channel.unit, certain, text)
+                for value, text in zip(row.tolist(), column, strict=True)
             ]
         texts.append(column)
     shown = {text for column in texts for text in column}
     all_notes = [note for note in notes if note]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    columns = [TextColumn(format_head(quantity.label, quantity.unit), vector="loads") for quantity in run.loads]
-    columns += [TextColumn(format_head(quantity.label, quantity.unit)) for quantity in run.stresses]
+    heads = [format_head(channel.label, certain.units.find(channel.unit)[0]) for channel in run.channels]
+    columns = [TextColumn(head, vector="loads" if i < len(run.loads) else "") for i, head in enumerate(heads)]
     return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
 
 
 def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
-    lead = len(table.columns) - len(run.quantities)
+    lead = len(table.columns) - len(run.channels)
     shown_columns = [i for i in range(len(table.columns)) if i < lead or {row[i] for row in cells} != {"0"}]
     if len(shown_columns) in (lead, len(table.columns)):
         return table
@@ -354,15 +319,11 @@ def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
 def _choose_styles(run: CutRun, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:
     """Choose the number style of each unit from all numbers of that unit that are shown of the run."""
     bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
-    styles = {}
-    for unit in dict.fromkeys(indices.unit for indices in run.quantities):
-        indices = [i for i, other in enumerate(run.quantities) if other.unit == unit]
-        scale = max(
-            largest_magnitude(run.values[indices]),
-            largest_magnitude(bounds[:, [i for i in indices if i < bounds.shape[1]]]),
-        )
-        styles[unit] = certain.choose_style("sections", unit, scale)
-    return styles
+    scales: dict[str, float] = {}
+    for i, channel in enumerate(run.channels):
+        largest = max(largest_magnitude(channel.values), largest_magnitude(bounds[:, i : i + 1]))
+        scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest)
+    return {unit: certain.choose_style("sections", unit, scale) for unit, scale in scales.items()}
 
 
 def _is_constant(values: Array, number_style: Style) -> bool:

@@ -22,13 +22,13 @@ from heuncli.results.cut_rows import cut_indices
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, IMPULSES, find_row
 from heuncli.results.stored_arrays import AnyArray, StoredArray, iter_chunks
+from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, iter_impulse_series, iter_series
 
 FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
 AT_ONCE = 50_000  # numbers formatted together: some megabytes as Python objects
-READ = 500_000  # numbers of a series read together, as stored columns are not contiguous
+READ = 500_000  # numbers of a channel read together, as stored columns are not contiguous
 REQUIRED_KEYS = frozenset({"title", "spec", "version", "model", "status", "time"})
 CERTAIN_SUM = find_row("certain_sums.NUMBER.value")
 CSV_COLUMNS = ("time", "kind", "name", "quantity", "component", "unit", "value")  # then cause, if there are shares
@@ -67,10 +67,10 @@ class InstantTexts:
         return ((k * AT_ONCE, block.split("\n")) for k, block in enumerate(self._blocks))
 
 
-class CsvSeries(NamedTuple):
-    """The CSV lines of one series: its kind and name, its instants, and the sections to which it may belong."""
+class CsvChannel(NamedTuple):
+    """The CSV lines of one channel: its kind and name, its instants, and the sections to which it may belong."""
 
-    series: Series
+    channel: Channel
     kind: str
     name: str
     instants: InstantTexts
@@ -90,45 +90,48 @@ def iter_csv_pieces(results: Results, labels: Labels) -> Iterator[str]:
 def _iter_csv(results: Results, labels: Labels) -> Iterator[str]:
     instants, no_instants = InstantTexts(results.time), InstantTexts(None)
     rows = [
-        CsvSeries(series, series.kind, series.name, no_instants if series.is_static else instants, results.sections)
-        for series in iter_series(results, labels)
+        CsvChannel(
+            channel, channel.kind, channel.name, no_instants if channel.is_static else instants, results.sections
+        )
+        for channel in iter_channels(results, labels)
     ]
     for number, block in enumerate(results.impulses):
-        rows += _iter_impact_series(number, block, labels)
+        rows += _iter_impact_channels(number, block, labels)
     rows += [
-        CsvSeries(series, series.kind, name, instants, {}) for name, series in _iter_sum_series(results.certain_sums)
+        CsvChannel(channel, channel.kind, name, instants, {})
+        for name, channel in _iter_sum_channels(results.certain_sums)
     ]
-    by_cause = any(row.series.cause for row in rows)
-    has_sections = any(row.series.kind == "sections" for row in rows)
+    by_cause = any(row.channel.cause for row in rows)
+    has_sections = any(row.channel.kind == "sections" for row in rows)
     yield ",".join([*CSV_COLUMNS, *["cause"] * by_cause, *CUT_COLUMNS * has_sections]) + "\n"
     for row in rows:
-        ends = _format_cut_columns(row) if has_sections else [""] * len(row.series.components)
-        yield from _iter_csv_text(row, [f",{row.series.cause}{end}" if by_cause else end for end in ends])
+        ends = _format_cut_columns(row) if has_sections else [""] * len(row.channel.components)
+        yield from _iter_csv_text(row, [f",{row.channel.cause}{end}" if by_cause else end for end in ends])
     if results.events:
         from heuncli.output.tables.event_table import iter_csv_lines  # where there are conditions
 
         yield from iter_csv_lines(results, "," * (by_cause + len(CUT_COLUMNS) * has_sections))
 
 
-def _iter_impact_series(number: int, block: Block, labels: Labels) -> Iterator[CsvSeries]:
-    """Yield the series of one impact."""
+def _iter_impact_channels(number: int, block: Block, labels: Labels) -> Iterator[CsvChannel]:
+    """Yield the channels of one impact."""
     instant, sections = InstantTexts(np.array([float(block["time"])])), block.get("sections", {})
-    for series in iter_impulse_series(block, labels):
-        name = ".".join(part for part in (str(number), series.kind, series.name) if part)
-        yield CsvSeries(series, IMPULSES, name, instant, sections)
-    for name, series in _iter_sum_series(block.get("certain_sums", ())):
-        yield CsvSeries(
-            series._replace(unit=IMPULSE_UNITS[series.unit]), IMPULSES, f"{number}.certain_sums.{name}", instant, {}
+    for channel in iter_impulse_channels(block, labels):
+        name = ".".join(part for part in (str(number), channel.kind, channel.name) if part)
+        yield CsvChannel(channel, IMPULSES, name, instant, sections)
+    for name, channel in _iter_sum_channels(block.get("certain_sums", ())):
+        yield CsvChannel(
+            channel._replace(unit=IMPULSE_UNITS[channel.unit]), IMPULSES, f"{number}.certain_sums.{name}", instant, {}
         )
 
 
-def _iter_sum_series(sums: Sequence[Any]) -> Iterator[tuple[str, Series]]:
+def _iter_sum_channels(sums: Sequence[Any]) -> Iterator[tuple[str, Channel]]:
     """Yield the determinate sums with their numbers as names."""
     for number, certain_sum in enumerate(sums):
         of_moments = not any(".force." in term for term in certain_sum["terms"])
         values = np.atleast_1d(np.asarray(certain_sum["value"], dtype=np.float64))[:, None]
         unit = CERTAIN_SUM.select_unit(turning=of_moments)
-        yield str(number), Series("certain_sums", str(number), "value", unit, ("",), values)
+        yield str(number), Channel("certain_sums", str(number), "value", unit, ("",), values)
 
 
 def collect_blocks(results: Results) -> dict[str, Any]:
@@ -199,29 +202,29 @@ def _to_lists(values: Any) -> Any:
     )
 
 
-def _iter_csv_text(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
-    """Yield the lines of a series, a line for each instant and component, joined in long texts.
+def _iter_csv_text(row: CsvChannel, ends: Sequence[str]) -> Iterator[str]:
+    """Yield the lines of a channel, a line for each instant and component, joined in long texts.
 
     ends: of each component, the text after its number
     """
     texts = _iter_column_text(row, ends)
-    lines_per_text = max(1, AT_ONCE // max(len(row.series.values), 1))
+    lines_per_text = max(1, AT_ONCE // max(len(row.channel.values), 1))
     while text := "".join(
         islice(texts, lines_per_text)
     ):  # of a short column a line, Python's own share would be half of it
         yield text
 
 
-def _iter_column_text(row: CsvSeries, ends: Sequence[str]) -> Iterator[str]:
+def _iter_column_text(row: CsvChannel, ends: Sequence[str]) -> Iterator[str]:
     """Yield the lines of each component in texts of at most AT_ONCE lines."""
-    series, values = row.series, row.series.values
+    channel, values = row.channel, row.channel.values
     columns_per_read = max(1, READ // max(len(values), 1))
     for c in range(0, len(ends), columns_per_read):
         columns = values[:, c : c + columns_per_read].T
         for component, column, end in zip(
-            series.components[c : c + columns_per_read], columns, ends[c : c + columns_per_read], strict=True
+            channel.components[c : c + columns_per_read], columns, ends[c : c + columns_per_read], strict=True
         ):
-            middle = f",{row.kind},{row.name},{series.quantity},{component},{series.unit},"
+            middle = f",{row.kind},{row.name},{channel.quantity},{component},{channel.unit},"
             for first, times in row.instants:
                 yield "".join(_format_column(times, middle, column[first : first + len(times)], end))
 
@@ -234,19 +237,19 @@ def _format_column(times: Sequence[str], middle: str, column: Array, end: str) -
     return [f"{t}{middle}{number}{tail}" for t, number in zip(times, numbers, strict=True)]
 
 
-def _format_cut_columns(row: CsvSeries) -> list[str]:
+def _format_cut_columns(row: CsvChannel) -> list[str]:
     """Format the last four columns of each component: section, cut of a run, distance, side; empty if it is of no
     section.
     """
-    series = row.series
-    if series.kind != "sections":
-        return [",,,,"] * len(series.components)
-    name = series.name.split(".")[0]
-    if not series.has_cuts or "s" not in row.sections[name]:
-        return [f",{name},,,"] * len(series.components)
+    channel = row.channel
+    if channel.kind != "sections":
+        return [",,,,"] * len(channel.components)
+    name = channel.name.split(".")[0]
+    if not channel.has_cuts or "s" not in row.sections[name]:
+        return [f",{name},,,"] * len(channel.components)
     s = [repr(float(position)) for position in row.sections[name]["s"]]
     side = [word or "" for word in row.sections[name].get("side") or [None] * len(s)]
-    rows = [int(component.partition(".")[0]) for component in series.components]
+    rows = [int(component.partition(".")[0]) for component in channel.components]
     cuts = cut_indices(np.asarray(row.sections[name]["s"])).tolist()
     return [f",{name},{cuts[k]},{s[k]},{side[k]}" for k in rows]
 

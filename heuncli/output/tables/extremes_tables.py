@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -58,12 +58,12 @@ MARK = "†"
 class GroupExtremes(NamedTuple):
     """A group with the extremes of its rows.
 
-    last_values: of each row, if the run ends beyond its horizon
+    last_values: by path, if the run ends beyond its horizon
     """
 
     group: RowGroup
     extremes: Extremes
-    last_values: Array | None = None
+    last_values: Mapping[str, float]
 
 
 def drop_components(block: TableBlock) -> TableBlock:
@@ -82,20 +82,19 @@ def drop_components(block: TableBlock) -> TableBlock:
 
 
 def make_extremes_tables(
-    block: TableBlock, times: Array, extremes: Extremes, certain: StatedErrors, last_values: Array | None = None,
+    block: TableBlock, times: Array, extremes: Extremes, certain: StatedErrors, last_values: Mapping[str, float],
     doubtful: DoubtfulInstants = NO_DOUBT,
 ) -> list[TextTable]:  # fmt: skip
     """Make the tables of first, last, lowest and highest values with their instants; one row a group if there are many.
 
-    last_values: the last value of each row, if the run ends beyond its horizon
+    extremes: of the block's rows, in their order
+    last_values: by the paths of the rows, if the run ends beyond its horizon
     doubtful: instants whose extremes are marked
     """
     counts = np.cumsum([0, *(len(group.rows) for group in block.groups)])
-    row_slices = [slice(a, b) for a, b in pairwise(counts)]
-    last_parts = [None if last_values is None else last_values[rows] for rows in row_slices]
     parts = [
-        GroupExtremes(group, extremes.select(rows), last_part)
-        for group, rows, last_part in zip(block.groups, row_slices, last_parts, strict=True)
+        GroupExtremes(group, extremes.select(slice(*ends)), last_values)
+        for group, ends in zip(block.groups, pairwise(counts.tolist()), strict=True)
     ]
     if len(parts) <= MAX_FULL_GROUPS:
         return [_make_full_table(block, parts, times, certain, doubtful)]
@@ -154,7 +153,7 @@ def _make_rows(
         notes |= {PARTLY_OPEN_NOTE} if partly_open else set()
         notes |= {UNKNOWN_NOTE} if UNKNOWN in (first, last, low, high) else set()
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
-        unit = row.unit if row.unit != "1" else ""
+        unit = certain.units.find(row.unit)[0] if row.unit != "1" else ""
         ends = low, high
         if low != high:  # else it is constant
             low, high = (
@@ -170,12 +169,12 @@ def _make_rows(
 
 def _format_extremes(part: GroupExtremes, certain: StatedErrors) -> list[list[str]]:
     """Format the first, last, lowest and highest value of each row."""
-    rows, last_values = part.group.rows, part.last_values
+    rows = part.group.rows
     first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
     texts = format_numbers(part.group, np.stack([first, last, part.extremes.low, part.extremes.high]), certain)
-    if last_values is not None:
-        for row, value, texts_of_row in zip(rows, last_values, texts, strict=True):
-            texts_of_row[1] = format_unclaimed(value, row.unit, certain, texts_of_row[1])
+    for row, texts_of_row in zip(rows, texts, strict=True):
+        if row.path in part.last_values:
+            texts_of_row[1] = format_unclaimed(part.last_values[row.path], row.unit, certain, texts_of_row[1])
     return texts
 
 
@@ -193,7 +192,11 @@ def _make_short_table(
         lower = np.abs(extremes.low) > np.abs(extremes.high)
         farthest = np.where(lower, extremes.low, extremes.high)
         styles = choose_styles(group.rows, farthest[None, :], certain)
-        texts = [number_style.write(value) for number_style, value in zip(styles, farthest, strict=True)]
+        display_units = [certain.units.find(row.unit) for row in group.rows]
+        texts = [
+            number_style.write(size * value)
+            for number_style, value, (_, size) in zip(styles, farthest, display_units, strict=True)
+        ]
         instants = np.where(lower, extremes.low_at, extremes.high_at).tolist()
         clock = write_times(instants, span)
         texts = [
@@ -201,8 +204,8 @@ def _make_short_table(
             for text, time, row in zip(texts, instants, group.rows, strict=True)
         ]
         cells_of_group = {
-            f"{row.label} [{row.unit}]": (text, "" if text in ("0", OPEN, UNKNOWN) else time)
-            for row, text, time in zip(group.rows, texts, clock, strict=True)
+            f"{row.label} [{unit}]": (text, "" if text in ("0", OPEN, UNKNOWN) else time)
+            for row, (unit, _), text, time in zip(group.rows, display_units, texts, clock, strict=True)
         }
         heads |= dict.fromkeys(head for head, (text, _) in cells_of_group.items() if text != "0")
         cells.append(cells_of_group)

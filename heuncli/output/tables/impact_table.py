@@ -8,10 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from heuncli.output.tables.instants_tables import format_group
-from heuncli.output.tables.table_blocks import NumberRow, RowGroup, TableBlock
+from heuncli.output.tables.table_blocks import RowGroup, TableBlock
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
+from heuncli.study.quantities.channels import Channel
 from heuncli.study.quantities.digits import OPEN, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, StatedErrors
 
 LEADING_COLUMNS = 3  # name, label and unit
@@ -70,10 +71,10 @@ def _iter_rows(
             before = [""] * (len(NUMBER_HEADS) - len(cells))
             # the heading holds the key: "energy after" becomes "after"
             label = rows[0].vector or rows[0].label.removeprefix(f"{block.key} ")
-            yield (group.name, label, rows[0].unit, *before, *cells, group.note)
+            yield (group.name, label, certain.units.find(rows[0].unit)[0], *before, *cells, group.note)
 
 
-def _repeats_magnitude(row: NumberRow, texts: Mapping[str, str], magnitudes: Mapping[str, str]) -> bool:
+def _repeats_magnitude(row: Channel, texts: Mapping[str, str], magnitudes: Mapping[str, str]) -> bool:
     """Return whether the row only repeats the vector's magnitude, as a radial force without an axial one."""
     known = texts[row.label] not in (OPEN, UNKNOWN)
     return known and not row.vector and row.is_magnitude and texts[row.label] == magnitudes.get(row.family)

@@ -22,6 +22,7 @@ from heuncli.output.tables.table_plans import IMPULSES
 from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results.results_schema import IMPULSE_BLOCKS, IMPULSE_UNITS, SHARES, find_quantity
+from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.digits import (
     UNKNOWN,
     StatedErrors,
@@ -31,7 +32,6 @@ from heuncli.study.quantities.digits import (
     write_times,
 )
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, convert_units, iter_impulse_series
 
 MAX_SHOWN, MAX_LISTED = 3, 20  # impacts with tables, impacts in the list, unless all are requested
 UNIT = "N·s"
@@ -97,19 +97,15 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
     impulses, certain = report.results.impulses, report.certain
     times = np.array([float(impulse["time"]) for impulse in impulses])
     energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in impulses]) for key in ENERGIES}
-    (energy_unit, joules), *impulse_units = (
-        report.labels.units.find(unit) for unit in ("J", UNIT, IMPULSE_UNITS["N·m"])
-    )
-    shown_energies = [joules * values for values in energies.values()]
+    si_units = (UNIT, IMPULSE_UNITS["N·m"])
+    (energy_unit, joules), *impulse_units = (certain.units.find(unit) for unit in ("J", *si_units))
     energy = write_numbers(
-        np.concatenate(shown_energies).tolist(),
-        certain.choose_style("energy", energy_unit, max(map(largest_magnitude, shown_energies))),
+        (joules * np.concatenate(list(energies.values()))).tolist(),
+        certain.choose_style("energy", "J", max(map(largest_magnitude, energies.values()))),
     )
     impulse, moment = (
-        write_numbers(
-            (size * values).tolist(), certain.choose_style("reactions", unit, size * largest_magnitude(values))
-        )
-        for values, (unit, size) in zip(sizes.T, impulse_units, strict=True)
+        write_numbers((size * values).tolist(), certain.choose_style("reactions", unit, largest_magnitude(values)))
+        for values, unit, (_, size) in zip(sizes.T, si_units, impulse_units, strict=True)
     )
     clock = write_times(times.tolist(), float(np.ptp(report.results.time)) or float(np.ptp(times)))
     horizon = report.results.horizon
@@ -139,42 +135,41 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
     title = f"IMPULSE at t = {float(impulse['time']):.6g} s ({', '.join(impulse['names'])})"
     lead = f"{title}  "
     horizon = report.results.horizon
-    certain = add_axis_errors(report.certain, view, report.magnitudes, labels.units, UNIT)
-    series = convert_units(iter_impulse_series(impulse, labels), labels.units)
-    by_cause = any(item.cause for item in series)
+    certain = add_axis_errors(report.certain, view, report.magnitudes, UNIT)
+    channels = list(iter_impulse_channels(impulse, labels))
+    by_cause = any(channel.cause for channel in channels)
     blocks, tables, share_tables = list[TableBlock](), list[TextTable](), list[TextTable]()
     for plan in IMPULSES:
-        block = build_block(plan, view, labels, series) if report.details or not plan.is_detail else None
+        block = build_block(plan, view, labels, channels) if report.details or not plan.is_detail else None
         if block is None:
             continue
         named = block._replace(heading=lead + block.heading)
         blocks += [block] * plan.has_extremes
         tables += make_instants_tables(named, view.time, horizon, certain) if not plan.has_extremes else []
-        share_tables += make_share_tables(named, view, series, certain, horizon) if by_cause else []
+        share_tables += make_share_tables(named, view, channels, certain, horizon) if by_cause else []
     tables[:0] = [make_impact_table(title, blocks, view.time, horizon, certain)] if blocks else []
     run_extremes = report.run_extremes[number] if report.run_extremes else {}
     for run in cut_runs.collect_runs(view, labels, IMPULSE_UNITS):
         run_tables = cut_runs.make_instants_tables(run, view.time, horizon, certain, every_cut=show_all)
         if run.name in run_extremes:
-            extremes = cut_runs.convert_extremes(run, run_extremes[run.name])
-            table = cut_runs.make_extremes_table(run, view.time, extremes, extremes.places, certain)
+            table = cut_runs.make_extremes_table(run, view.time, run_extremes[run.name], certain)
             run_tables = [table, run_tables[0]._replace(heading=""), *run_tables[1:]]
         tables += [run_tables[0]._replace(heading=lead + run_tables[0].heading), *run_tables[1:]]
         share_tables += [
             own._replace(heading=lead + own.heading) for own in make_run_share_tables(run, view, certain, horizon)
         ]
     tables += share_tables
-    sums = make_sums_table(view, certain, shown_unit=labels.units.find(UNIT))
+    sums = make_sums_table(view, certain, unit=UNIT)
     return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
 
 
 def make_share_tables(
-    block: TableBlock, view: Results, series: Sequence[Series], certain: StatedErrors, horizon: float | None
+    block: TableBlock, view: Results, channels: Sequence[Channel], certain: StatedErrors, horizon: float | None
 ) -> list[TextTable]:
     """Make the tables of what each cause contributes to the impulses of a block."""
     from heuncli.output.tables import cause_tables  # few runs need it
 
-    numbers = cause_tables.collect_shares(view, series)
+    numbers = cause_tables.collect_shares(channels, view)
     return cause_tables.make_instants_tables(block, numbers, view.time, horizon, certain)
 
 

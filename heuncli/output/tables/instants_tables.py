@@ -34,7 +34,7 @@ def make_instants_tables(
     layout = _layout_single_instant if len(times) == 1 else _layout_instants
     for groups in _split_by_units(block.groups):
         cells = {group.name: format_group(block, group, times, horizon, certain) for group in groups}
-        units = {row.label: row.unit for group in groups for row in group.rows}
+        units = {row.label: certain.units.find(row.unit)[0] for group in groups for row in group.rows}
         labels = _find_nonzero_labels(groups, cells) if word == OPEN else _order_labels(groups)
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")

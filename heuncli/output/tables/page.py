@@ -1,14 +1,15 @@
-"""The whole report of a run as tables, and the columns whose extremes must be searched.
+"""The whole report of a run as tables, and the channels whose extremes they need.
 
-Call `make_page(results, labels, magnitudes)` first. Then search with `make_columns` and `make_groups` and pass the
-outcome to `make_tables_of_extremes`, or call `make_tables_at_instants`.
+Call `make_page(results, labels, magnitudes)` first. Then search `page.make_search()` and pass the extremes to
+`make_tables_of_extremes`, or call `make_tables_at_instants`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol
+from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,22 +18,19 @@ from heuncli.output.tables import cut_runs
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants, drop_components, make_extremes_tables
 from heuncli.output.tables.instants_tables import make_instants_tables
-from heuncli.output.tables.run_searches import NO_EXTREMES, RunExtremes, append_stresses
-from heuncli.output.tables.table_blocks import NumberRow, TableBlock, build_block
+from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
 from heuncli.output.tables.text_table import TextTable
-from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Mask, Results
+from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Results
 from heuncli.results.results_schema import REPORT_OF, REPORTS, find_quantity
+from heuncli.study.quantities.channels import ChannelSelection, iter_channels
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, convert_units, iter_series
+from heuncli.study.search.columns import ChannelSearch
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
-
-
-if TYPE_CHECKING:
-    from heuncli.output.tables import cause_tables
+NO_EXTREMES: Mapping[str, Extremes] = MappingProxyType({})
 
 
 class ShareSource(Protocol):
@@ -51,7 +49,7 @@ class Page(NamedTuple):
     magnitudes: what its numbers are summed from
     last_instant: results at the last instant, if the run ends beyond its horizon
     impact_extremes: for each impact, the extremes along its runs of cuts
-    run_extremes: for the whole run, further extremes of its runs of cuts
+    cut_extremes: for each run of cuts, the extremes at the cuts that are shown
     details: whether to include tables that are shown only on request
     doubtful: instants whose extremes are marked
     """
@@ -62,62 +60,36 @@ class Page(NamedTuple):
     magnitudes: Magnitudes
     last_instant: Results | None = None
     impact_extremes: Sequence[Mapping[str, Extremes]] = ()
-    run_extremes: Mapping[str, RunExtremes] = NO_EXTREMES
+    cut_extremes: Mapping[str, Extremes] = NO_EXTREMES
     details: bool = True
     doubtful: DoubtfulInstants = NO_DOUBT
-
-    def make_columns(self, results: Results) -> Array:
-        """Return all rows of all blocks as columns for the search, (n_t, n), magnitudes squared."""
-        rows = [row.values**2 if row.is_magnitude else row.values for row in self._find_rows(results)]
-        return np.stack(rows, axis=1) if rows else np.zeros((len(results.time), 0))
-
-    def make_run_columns(self, results: Results) -> list[tuple[str, Array]]:
-        """Return the section forces of the runs of cuts, (n_t, n_cuts) each, with the names of their runs."""
-        runs = cut_runs.collect_runs(results, self.labels)
-        return [(run.name, values) for run in runs for values in run.values[: len(cut_runs.LOADS)]]
 
     @property
     def has_runs(self) -> bool:
         """Whether there are runs of cuts."""
         return any("s" in section for section in self.results.sections.values())
 
-    def make_groups(self) -> list[list[int]]:
-        """Return the groups of columns that are compared with each other: here each column is its own group."""
-        return [[column] for column in range(len(self._find_rows(self.results)))]
-
-    def find_errors(self) -> Array:
-        """Return the error of each row and of each section force of runs, (n,)."""
-        errors = [self.certain.error_of(row.kind, row.unit) for row in self._find_rows(self.results)]
-        for _ in cut_runs.collect_runs(self.results, self.labels):
-            errors += [self.certain.error_of("sections", load.unit) for load in cut_runs.LOADS]
-        return np.array(errors)
-
-    def find_magnitude_mask(self) -> Mask:
-        """Return the mask of columns that are squares of magnitudes, (n,)."""
-        rows = [row.is_magnitude for row in self._find_rows(self.results)]
-        n_loads = len(cut_runs.LOADS) * len(cut_runs.collect_runs(self.results, self.labels))
-        return np.array(rows + [False] * n_loads, dtype=bool)
+    def make_search(self) -> ChannelSearch:
+        """Make the search of the numbers of all blocks, and of the section forces along runs of cuts."""
+        blocks = self._make_blocks(self.results, only_searched=True)
+        numbers = [row for block in blocks for group in block.groups for row in group.rows]
+        selection = ChannelSelection.from_numbers(self.labels, numbers, has_runs=self.has_runs)
+        return ChannelSearch(selection.collect, self.certain.find_error)
 
     def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[TextTable]:
         """Make the tables of extremes.
 
-        search_result: the extremes of each group of columns
+        search_result: the extremes of the channels
         shares: source of loads by cause, if they are requested
         """
         tables: list[TextTable] = []
-        start = 0
-        times, all_last_values = self.results.time, self._find_last_values()
-        for block in self._find_searched_blocks(self.results):
-            rows = [row for group in block.groups for row in group.rows]
-            columns = slice(start, start + len(rows))
-            part = self._take_roots(block, search_result.select(columns))
-            last_values = all_last_values[columns] if all_last_values is not None else None
+        times, last_values = self.results.time, self._find_last_values()
+        for block in self._make_blocks(self.results, only_searched=True):
+            part = search_result.find(block.paths)
             tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful)
-            start += len(rows)
-        for k, run in enumerate(cut_runs.collect_runs(self.results, self.labels)):
-            found = self.run_extremes.get(run.name, RunExtremes())
-            loads_and_stresses = append_stresses(run, *self._find_run_extremes(search_result, k), found.stresses)
-            tables += cut_runs.make_extremes_tables(run, times, *loads_and_stresses, self.certain, found.cuts)
+        for run in cut_runs.collect_runs(self.results, self.labels):
+            cuts = self.cut_extremes.get(run.name)
+            tables += cut_runs.make_extremes_tables(run, times, search_result, self.certain, cuts)
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
         return [*tables, *share_tables, *self._make_last_tables()]
 
@@ -125,41 +97,32 @@ class Page(NamedTuple):
         """Make the tables of what each cause contributes to the extremes."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
-        n = len(search_result.low) - len(search_result.places)
-        instants = np.unique(np.concatenate([search_result.low_at[:n], search_result.high_at[:n]]))
-        numbers = self._collect_shares(shares.compute_shares(instants)) if n else {}
-        span, tables, start = float(np.ptp(self.results.time)), list[TextTable](), 0
-        for block in self._find_searched_blocks(self.results):
-            count = sum(len(group.rows) for group in block.groups)
-            block_extremes = self._take_roots(block, search_result.select(slice(start, start + count)))
-            tables += cause_tables.make_extremes_tables(block, numbers, instants, block_extremes, self.certain, span)
-            start += count
-        for k, run in enumerate(cut_runs.collect_runs(self.results, self.labels)):
-            tables += self._make_run_share_tables(run, search_result, k, shares)
+        blocks = self._make_blocks(self.results, only_searched=True)
+        found = search_result.find([path for block in blocks for path in block.paths])
+        instants = np.unique(np.concatenate([found.low_at, found.high_at]))
+        numbers = self._collect_shares(shares.compute_shares(instants)) if len(instants) else {}
+        span, tables = float(np.ptp(self.results.time)), list[TextTable]()
+        for block in blocks:
+            tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.certain, span)
+        for run in cut_runs.collect_runs(self.results, self.labels):
+            tables += self._make_run_share_tables(run, search_result, shares)
         return tables
 
-    def _collect_shares(self, results: Results) -> dict[cause_tables.NumberKey, cause_tables.NumberWithShares]:
+    def _collect_shares(self, results: Results) -> Mapping[str, Any]:
         from heuncli.output.tables import cause_tables
 
-        return cause_tables.collect_shares(results, convert_units(iter_series(results, self.labels), self.labels.units))
+        return cause_tables.collect_shares(iter_channels(results, self.labels), results)
 
     def _make_run_share_tables(
-        self, run: cut_runs.CutRun, search_result: Extremes, k: int, shares: ShareSource
+        self, run: cut_runs.CutRun, search_result: Extremes, shares: ShareSource
     ) -> list[TextTable]:
         """Make the tables of what each cause contributes to the extremes along a run of cuts."""
         from heuncli.output.tables import cause_tables
 
-        extremes, places = self._find_run_extremes(search_result, k)
-        instants = np.unique(np.concatenate([extremes.low_at, extremes.high_at]))
-        results = shares.compute_shares_along(run.name, instants, [place for both in places for place in both])
-        return cause_tables.make_run_extremes_tables(run, results, extremes, places, self.certain)
-
-    @staticmethod
-    def _take_roots(block: TableBlock, extremes: Extremes) -> Extremes:
-        """Replace the extremes of squared magnitudes by those of the magnitudes."""
-        is_magnitude = np.array([row.is_magnitude for group in block.groups for row in group.rows], dtype=bool)
-        low, high = (np.where(is_magnitude, np.sqrt(np.abs(bound)), bound) for bound in (extremes.low, extremes.high))
-        return extremes._replace(low=low, high=high)
+        found = search_result.find([load.path for load in run.loads])
+        instants = np.unique(np.concatenate([found.low_at, found.high_at]))
+        results = shares.compute_shares_along(run.name, instants, [place for both in found.places for place in both])
+        return cause_tables.make_run_extremes_tables(run, results, found, self.certain)
 
     def make_tables_at_instants(
         self,
@@ -175,17 +138,13 @@ class Page(NamedTuple):
         """
         horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))
-        certain = add_axis_errors(
-            self.certain._replace(singular_times=unknown), results, self.magnitudes, self.labels.units
-        )
+        certain = add_axis_errors(self.certain._replace(singular_times=unknown), results, self.magnitudes)
         tables: list[TextTable] = []
         for block in self._make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
-        for k, run in enumerate(cut_runs.collect_runs(results, self.labels)):
+        for run in cut_runs.collect_runs(results, self.labels):
             if search_result is not None:
-                found = self.run_extremes.get(run.name, RunExtremes())
-                loads_and_stresses = append_stresses(run, *self._find_run_extremes(search_result, k), found.stresses)
-                tables.append(cut_runs.make_extremes_table(run, results.time, *loads_and_stresses, self.certain))
+                tables.append(cut_runs.make_extremes_table(run, results.time, search_result, self.certain))
             run_tables = cut_runs.make_instants_tables(run, results.time, horizon, self.certain, every_cut=every_cut)
             tables += [run_tables[0]._replace(heading=""), *run_tables[1:]] if search_result is not None else run_tables
         if shares is not None:
@@ -202,44 +161,30 @@ class Page(NamedTuple):
         numbers, tables = self._collect_shares(results), list[TextTable]()
         for block in self._make_blocks(results):
             tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
-        for k, run in enumerate(cut_runs.collect_runs(results, self.labels)):
+        for run in cut_runs.collect_runs(results, self.labels):
             if search_result is not None:
-                tables += self._make_run_share_tables(run, search_result, k, shares)
+                tables += self._make_run_share_tables(run, search_result, shares)
             else:
                 tables += cause_tables.make_run_instants_tables(run, results, horizon, certain)
         return tables
 
-    def _find_run_extremes(
-        self, search_result: Extremes, k: int
-    ) -> tuple[Extremes, tuple[tuple[CutPosition, CutPosition], ...]]:
-        """Return the extremes of the section forces of run k, and their places."""
-        n = len(cut_runs.LOADS)
-        first = len(search_result.low) - len(search_result.places) + n * k
-        return search_result.select(slice(first, first + n)), search_result.places[n * k : n * (k + 1)]
-
-    def _find_last_values(self) -> Array | None:
-        """Return the values of all rows at the last instant, or None if the run ends within its horizon."""
+    def _find_last_values(self) -> dict[str, float]:
+        """Return the numbers at the last instant by their paths, if the run ends beyond its horizon."""
         if self.last_instant is None:
-            return None
-        blocks = self._find_searched_blocks(self.last_instant)
-        return np.array([row.values[-1] for block in blocks for group in block.groups for row in group.rows])
-
-    def _find_rows(self, results: Results) -> list[NumberRow]:
-        return [row for block in self._find_searched_blocks(results) for group in block.groups for row in group.rows]
-
-    def _find_searched_blocks(self, results: Results) -> list[TableBlock]:
-        return self._make_blocks(results, only_searched=True)
+            return {}
+        blocks = self._make_blocks(self.last_instant, only_searched=True)
+        return {row.path: float(row.values[-1]) for block in blocks for group in block.groups for row in group.rows}
 
     def _make_blocks(self, results: Results, *, only_searched: bool = False) -> list[TableBlock]:
-        series: Sequence[Series] = convert_units(iter_series(results, self.labels), self.labels.units)
+        channels = list(iter_channels(results, self.labels))
         plans = [
             plan for plan in PLANS if (plan.has_extremes or not only_searched) and (self.details or not plan.is_detail)
         ]
-        blocks = [block for plan in plans if (block := build_block(plan, results, self.labels, series)) is not None]
+        blocks = [block for plan in plans if (block := build_block(plan, results, self.labels, channels)) is not None]
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
     def _make_last_tables(self, show_all: bool = False) -> list[TextTable]:
-        sums = make_sums_table(self.results, self.certain, self.last_instant, self.labels.units.find("N"))
+        sums = make_sums_table(self.results, self.certain, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
     def _make_event_tables(self, show_all: bool) -> list[TextTable]:

@@ -5,9 +5,8 @@ Each block is what `Results` holds under its name: arrays over the instants, SI 
 The types that a joint's reaction passes through: the kernel's solutions (`Recovered`) are summed to `JointLoads`
 (loads/kinetostatics/reactions.py), split where redundancy requires it (loads/redundancy/resolve.py), and become a
 `JointBlock` here, with shares by cause, turned into the requested axes, and marked where they are indeterminate. JSON
-is written of that block (output/tables/export.py). For CSV and tables it becomes a `Series`
-(study/quantities/series.py), for tables a `NumberRow` per component (output/tables/table_blocks.py), whose text is a
-cell of a `TextTable` (output/tables/text_table.py).
+is written of that block (output/tables/export.py). For all else it becomes a `Channel` (study/quantities/channels.py),
+whose numbers are channels as well, and their texts the cells of a `TextTable` (output/tables/text_table.py).
 """
 
 from __future__ import annotations

@@ -20,9 +20,9 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Magnitudes, Results
-from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND, SHARES, error_kind_of_path
-from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.series import Series, iter_impulse_series, iter_series
+from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND
+from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
+from heuncli.study.quantities.labels import DEFAULT_UNITS, Labels
 from heuncli.study.quantities.table_units import Units
 
 DIGITS = 6
@@ -69,14 +69,16 @@ class Style(NamedTuple):
 
 
 class StatedErrors(NamedTuple):
-    """The absolute errors of numbers by kind and unit, and their rounding by unit; 0 where none is known.
+    """The absolute errors of numbers by kind and unit, and their rounding by unit, SI; 0 where none is known.
 
     singular_times: instants close to singular poses, at which nan means unknown
+    units: in which numbers are printed
     """
 
     errors: Mapping[tuple[str, str], float]
     rounding: Mapping[str, float]
     singular_times: frozenset[float] = frozenset()
+    units: Units = DEFAULT_UNITS
 
     def error_of(self, kind: str, unit: str) -> float:
         """The estimated error of numbers of this kind and unit, at least their rounding."""
@@ -86,9 +88,16 @@ class StatedErrors(NamedTuple):
         """The rounding error of numbers of this unit."""
         return self.rounding.get(unit, 0.0)
 
+    def find_error(self, channel: Channel) -> float:
+        """The estimated error of a channel's numbers, SI."""
+        return self.error_of(channel.error_kind, channel.unit)
+
     def choose_style(self, kind: str, unit: str, scale: float) -> Style:
-        """Choose the style of a family of this kind and unit whose largest magnitude is `scale`."""
-        return choose_style(scale, self.error_of(kind, unit), self.rounding_of(unit))
+        """Choose the style, in the display unit, of a family of this kind and unit whose largest magnitude is `scale`;
+        SI.
+        """
+        size = self.units.find(unit)[1]
+        return choose_style(size * scale, size * self.error_of(kind, unit), size * self.rounding_of(unit))
 
 
 def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes) -> StatedErrors:
@@ -118,7 +127,7 @@ def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes)
     horizon = results.horizon
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
-    return add_units(StatedErrors(errors, rounding), labels.units)
+    return StatedErrors(errors, rounding, units=labels.units)
 
 
 def find_scales(results: Results, labels: Labels, only_kind: str | None = None) -> dict[tuple[str, str], float]:
@@ -126,11 +135,11 @@ def find_scales(results: Results, labels: Labels, only_kind: str | None = None) 
     kind.
     """
     scales: dict[tuple[str, str], float] = {}
-    impulse_series = (series for impulse in results.impulses for series in iter_impulse_series(impulse, labels))
-    for series in chain(iter_series(results, labels), impulse_series):
-        key = (find_error_kind(series), series.unit)
+    of_impulses = (channel for impulse in results.impulses for channel in iter_impulse_channels(impulse, labels))
+    for channel in chain(iter_channels(results, labels), of_impulses):
+        key = (channel.error_kind, channel.unit)
         if only_kind is None or key[0] == only_kind:
-            scales[key] = max(scales.get(key, 0.0), largest_magnitude(series.values))
+            scales[key] = max(scales.get(key, 0.0), largest_magnitude(channel.values))
     return scales
 
 
@@ -146,24 +155,6 @@ def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, ki
     return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
 
 
-def add_units(certain: StatedErrors, units: Units) -> StatedErrors:
-    """Add errors and rounding in the display units of tables to those in SI units."""
-    errors, roundings = dict(certain.errors), dict(certain.rounding)
-    for (kind, unit), error in certain.errors.items():
-        display_unit, size = units.find(unit)
-        errors[kind, display_unit] = size * error
-    for unit, rounding in certain.rounding.items():
-        display_unit, size = units.find(unit)
-        roundings[display_unit] = size * rounding
-    return certain._replace(errors=errors, rounding=roundings)
-
-
-def find_error_kind(series: Series) -> str:
-    """Return the kind of estimate (`accuracy.estimate`) that states the error of a series."""
-    name = f"{series.name}.{SHARES}.{series.cause}" if series.cause else series.name
-    return error_kind_of_path(series.kind, name, series.quantity)
-
-
 def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
     """Return the errors of forces and moments of one kind of loads; a force counts as a moment with the scene's size as
     lever.
@@ -175,9 +166,7 @@ def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> d
     return errors
 
 
-def add_axis_errors(
-    certain: StatedErrors, results: Results, magnitudes: Magnitudes, units: Units, unit: str = "N"
-) -> StatedErrors:
+def add_axis_errors(certain: StatedErrors, results: Results, magnitudes: Magnitudes, unit: str = "N") -> StatedErrors:
     """Add the errors of the central axis at the shown instants: it is no more accurate than its force.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
@@ -188,8 +177,7 @@ def add_axis_errors(
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
     relative = certain.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = magnitudes.size + largest_magnitude(axis["point"]) + largest_magnitude(axis["pitch"])
-    display_unit, size = units.find("m")
-    bounds = {("axis", "1"): relative, ("axis", display_unit): relative * lever * size}
+    bounds = {("axis", "1"): relative, ("axis", "m"): relative * lever}
     axis_errors = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
     return certain._replace(errors={**certain.errors, **axis_errors})
 

@@ -16,7 +16,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Curve, Expect
-from heuncli.study.queries.measure import NOT_CLAIMED, find_reports, stated_error
+from heuncli.study.queries.measure import NOT_CLAIMED, find_reports
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Bracket, find_roots
 from heuncli.study.search.extremes import find_jump_sides, sort_distinct
@@ -151,7 +152,7 @@ def estimate_error(study: Study, path: str, values: Array) -> float:
     """Return the error of a number of the results, as tables state it; of exactly solved numbers, their rounding
     error.
     """
-    stated = float(np.nan_to_num(stated_error(study, find_values(study.results, path).keys)))
+    stated = float(np.nan_to_num(find_search_error(study, find_values(study.results, path).keys)))
     return max(stated, tolerances.WRITTEN * float(np.max(np.abs(values))))
 
 

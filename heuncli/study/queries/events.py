@@ -23,10 +23,8 @@ from heuncli.motion.integration.check.changes import ConditionChanges, impulse_t
 from heuncli.results.results import Array, Block, Results, Status
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import (
-    CUT,
     ESTIMATE_OF_ERROR_KIND,
     EVENTS,
-    MAGNITUDES,
     SHARES,
     error_kind_of_path,
     find_quantity,
@@ -36,7 +34,9 @@ from heuncli.scene.file_format.resolve_couplings import format_rounded_up
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
 from heuncli.study.model.setup import Setup
-from heuncli.study.queries.measure import find_reports, stated_error
+from heuncli.study.quantities.channels import make_path_channel
+from heuncli.study.queries.measure import find_reports
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Crossings, find_crossings
 from heuncli.study.search.extremes import search_extremes
@@ -225,7 +225,7 @@ class WatchedNumber(NamedTuple):
         kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
         relative = float(estimate.get(ESTIMATE_OF_ERROR_KIND.get(kind, kind), 0.0))  # type: ignore[arg-type]
         known = (*(self.study.magnitudes.errors.get((kind, unit), 0.0) for unit in row.units),) if row else ()
-        error = stated_error(self.study, keys) if any(known) else relative * largest
+        error = find_search_error(self.study, keys) if any(known) else relative * largest
         return max(float(np.nan_to_num(error)), tolerances.WRITTEN * largest)
 
 
@@ -261,12 +261,12 @@ def watch_number(
     numbers = find_values(
         study.compute_reports(times[:1], reports if reports is not None else frozenset(), setup), condition.of
     )
-    even, along = numbers.is_vector or numbers.keys[-1] in MAGNITUDES, CUT in numbers.axes
-    if along:
+    channel = make_path_channel(numbers)
+    if channel.has_cuts:
         from heuncli.study.search.stretches import replace_runs
 
-        setup = replace_runs(setup, numbers.is_nonlinear)
-    return WatchedNumber(study, setup, condition, even, along), numbers.keys
+        setup = replace_runs(setup, channel.is_nonlinear)
+    return WatchedNumber(study, setup, condition, channel.is_magnitude, channel.has_cuts), numbers.keys
 
 
 def describe_reasons(

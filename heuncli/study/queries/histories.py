@@ -7,20 +7,22 @@ points between them. It is refused if any part of it is unknown, because a missi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
-from heuncli.results.results import Array, Mask, Results
+from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import IMPULSES, REPORTS, add_shared_reports
 from heuncli.study.load_cycles.collective import LoadHistory
-from heuncli.study.queries.measure import NOT_CLAIMED, NotOneNumber, find_reports, is_magnitude, make_several_error
+from heuncli.study.quantities.channels import Channel, make_path_channel
+from heuncli.study.queries.measure import NOT_CLAIMED, NotOneNumber, find_reports, make_several_error
 from heuncli.study.queries.study import Study
-from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, replace_non_finite, sort_distinct
+from heuncli.study.search.columns import ChannelSearch, StudyColumns
+from heuncli.study.search.extremes import GOOD_ENOUGH, replace_non_finite, sort_distinct
 from heuncli.study.search.turnings import add_turning_points
 
 CODE = "no-collective"
@@ -39,12 +41,11 @@ def make_histories(study: Study, errors: Mapping[str, float], units: Mapping[str
     for path in paths:
         require_history(study, path)
     require_claimed(study, paths)
-    is_square = np.array([is_magnitude(study.find_numbers(path)) for path in paths])
     reports = [find_reports(path) for path in paths]
     needed_reports = frozenset[str]().union(*(frozenset(REPORTS) if report is None else report for report in reports))
-    error = np.array([errors[path] for path in paths])
-    search = ColumnSearch(lambda results: read_columns(study, results, paths, is_square), [], error, is_square)
-    study_columns = StudyColumns(study, search, add_shared_reports(needed_reports), None)
+    search = ChannelSearch(lambda results: collect_channels(study, results, paths), lambda channel: math.nan)
+    study_columns = StudyColumns(study, search, add_shared_reports(needed_reports))
+    is_square, error = study_columns.is_squared, np.array([errors[path] for path in paths])
     grid, is_close_enough = study.find_close_times(MAX_INSTANTS)
     grid = sort_distinct(np.concatenate([grid, np.linspace(grid[0], grid[-1], MIN_INTERVALS + 1)]))
     rows = study_columns.sample(grid) if is_close_enough else np.zeros((len(grid), len(paths)))
@@ -65,16 +66,12 @@ def make_histories(study: Study, errors: Mapping[str, float], units: Mapping[str
     ]
 
 
-def read_columns(study: Study, results: Results, paths: Sequence[str], is_square: Mask) -> Array:
-    """Return the numbers at paths, (n_t, n); of vectors and magnitudes the squares, which are smooth where these are
-    zero.
-    """
-    rows = []
-    for path, squared in zip(paths, is_square.tolist(), strict=True):
-        numbers = study.find_numbers(path) if results is study.results else find_values(results, path)
-        values = numbers.values.reshape(len(numbers.values), -1)
-        rows.append(np.einsum("nk,nk->n", values, values) if squared else values[:, 0])
-    return np.stack(rows, axis=1)
+def collect_channels(study: Study, results: Results, paths: Sequence[str]) -> list[Channel]:
+    """Collect the channels at paths."""
+    return [
+        make_path_channel(study.find_numbers(path) if results is study.results else find_values(results, path))
+        for path in paths
+    ]
 
 
 def require_history(study: Study, path: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -19,16 +18,16 @@ from heuncli.results.results_schema import (
     CUT,
     EVENTS,
     IMPULSES,
-    MAGNITUDES,
     SHARES,
     SPACE,
-    error_kind_of_path,
-    find_quantity,
     first_element_suffix,
     independent_axes,
 )  # fmt: skip
+from heuncli.study.quantities.channels import Channel, make_path_channel
+from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import BOTH_SIDES, ColumnSearch, make_no_columns
+from heuncli.study.search.columns import ChannelSearch
+from heuncli.study.search.extremes import BOTH_SIDES
 
 NOT_CLAIMED = "not reliable from t = {:.4g} s on"
 
@@ -190,74 +189,41 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     if not asked.is_timed:
         raise NotOneNumber(f"{path} has no time history, so no largest value", f"give the path alone: {path}")
     require_extreme(path, asked)
-    even = is_magnitude(asked)
     open_at: list[float] = []
 
-    def columns(results: Results) -> Array:
-        values = (asked if results is study.results else find_values(results, path)).values
-        is_open = np.isnan(values)
+    def collect(results: Results) -> list[Channel]:
+        channel = make_path_channel(asked if results is study.results else find_values(results, path))
+        is_open = np.isnan(channel.values)
         if is_open.any():
-            left = is_open.reshape(len(values), -1).any(axis=1)
+            left = is_open.any(axis=1)
             open_at.extend(results.time[left & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
-        # the square of a magnitude is smooth where the magnitude is zero
-        if asked.is_vector:
-            values = np.einsum("...k,...k->...", values, values)
-        elif even:
-            values = values * values
-        return values.reshape(len(values), -1)
+        return [channel]
 
     if study.has_one_instant and CUT not in asked.axes:
         at = float((study.results.time if times is None else times)[0])
-        low, high = find_lowest_and_highest(columns(study.results)[0], at)
+        low, high = find_lowest_and_highest(collect(study.results)[0], at)
     else:
-        low, high = search_peaks(study, path, columns, SIDES["max" if even and how == "abs" else how], times)
+        is_one_sided = how == "abs" and make_path_channel(asked).is_magnitude
+        sides = BOTH_SIDES if CUT in asked.axes else SIDES["max" if is_one_sided else how]
+        error = find_search_error(study, asked.keys)
+        search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, sides)
+        bounds = study.search_extremes(search, find_reports(path), times=times)
+        lowest, highest = bounds.places[0] if bounds.places else (None, None)
+        low = Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest)
+        high = Peak(float(bounds.high[0]), float(bounds.high_at[0]), highest)
     is_low = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
     found = low if is_low else high
-    result = (abs(found.value) if how == "abs" else found.value) + 0.0
-    value = float(np.sqrt(np.abs(result))) if even else result
+    value = (abs(found.value) if how == "abs" else found.value) + 0.0
     return found._replace(value=value, open_at=float(min(open_at)) if open_at else None)
 
 
-def is_magnitude(numbers: PathValues) -> bool:
-    """Whether the numbers are magnitudes: their squares are searched, which are smooth where the magnitudes are
-    zero.
-    """
-    return numbers.is_vector or numbers.keys[-1] in MAGNITUDES
-
-
-def find_lowest_and_highest(values: Array, time: float) -> tuple[Peak, Peak]:
-    """Return the lowest and the highest of some values (n,) at an instant; nan if all are indeterminate."""
+def find_lowest_and_highest(channel: Channel, time: float) -> tuple[Peak, Peak]:
+    """Return the lowest and the highest number of a channel at its only instant; nan if all are indeterminate."""
+    values = channel.searched_values[0]
     known = values[~np.isnan(values)]
+    known = np.sqrt(known) if channel.is_magnitude else known
     low, high = (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
     return Peak(low, time), Peak(high, time)
-
-
-def search_peaks(
-    study: Study, path: str, columns: Callable[[Results], Array], sides: tuple[float, ...], times: Array | None
-) -> tuple[Peak, Peak]:
-    """Search the lowest and the highest value of a motion, between the samples too; along a run of cuts with its
-    place.
-    """
-    numbers = study.find_numbers(path)
-    is_square = is_magnitude(numbers)
-    error = np.nan_to_num(np.array([stated_error(study, numbers.keys)]), nan=np.nan, posinf=np.nan)
-    n = columns(study.results).shape[1]
-    search = ColumnSearch(columns, [list(range(n))], error, np.array([is_square]), sides=sides)
-    if CUT in numbers.axes:
-        name = numbers.keys[1]
-        search = search._replace(
-            columns=make_no_columns,
-            groups=[],
-            cut_columns=lambda results: [(name, columns(results))],
-            bent=numbers.is_nonlinear,
-            sides=BOTH_SIDES,
-        )
-    bounds = study.search_extremes(search, find_reports(path), times=times)
-    lowest, highest = bounds.places[0] if bounds.places else (None, None)
-    return (
-        Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest),
-        Peak(float(bounds.high[0]), float(bounds.high_at[0]), highest),
-    )
 
 
 def mark_indeterminate(extreme: Peak) -> Peak:
@@ -265,20 +231,6 @@ def mark_indeterminate(extreme: Peak) -> Peak:
     value.
     """
     return extreme if extreme.open_at is None else extreme._replace(value=math.nan, time=extreme.open_at, place=None)
-
-
-def stated_error(study: Study, keys: Sequence[str]) -> float:
-    """Return the error of the quantity under some keys, as the tables state it; nan where they state none.
-
-    If angles and travels have different units, it is the smaller of the two errors.
-    """
-    row, magnitudes = find_quantity(keys), study.magnitudes
-    if row is None:
-        return np.nan
-    kind, lost = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1]), magnitudes.rounding_errors()
-    error_kind = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in magnitudes.errors else kind
-    known = [(magnitudes.errors.get((error_kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
-    return min(map(max, known)) or np.nan
 
 
 def read_one_number(path: str, numbers: PathValues, k: int) -> float:

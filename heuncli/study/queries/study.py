@@ -21,8 +21,7 @@ from heuncli.study.compose.warnings import warn_left_out
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
-from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import ColumnSearch
+from heuncli.study.search.columns import ChannelSearch, StudyColumns
 from heuncli.study.search.instants import MAX_INSTANTS as MOST_INSTANTS
 from heuncli.study.search.instants import choose_search_times
 from heuncli.study.solve.history import History, resample
@@ -155,8 +154,8 @@ class Study:
             return []
         return (self.impulse_results if setup is None else self.impulse_results.with_cuts(setup)).make_blocks()
 
-    def find_impulse_extremes(self, quantities: Sequence[str]) -> list[dict[str, Extremes]]:
-        """Return the lowest and highest of some quantities along whole runs of cuts: one mapping by run for each
+    def find_impulse_extremes(self) -> list[dict[str, Extremes]]:
+        """Return the lowest and highest of the section forces along whole runs of cuts: one mapping by run for each
         impulse.
         """
         if not any(cuts.s is not None for cuts in self.setup.cuts):
@@ -164,7 +163,7 @@ class Study:
         from heuncli.study.search.stretches import find_impulse_extremes  # only runs of cuts are worth it
 
         setup = self.with_whole_cuts(False)
-        return [find_impulse_extremes(setup, block, quantities) for block in self.make_impulse_blocks(setup)]
+        return [find_impulse_extremes(setup, block) for block in self.make_impulse_blocks(setup)]
 
     def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
         """Return only the blocks of some reports at other instants of the same run; setup: with other cuts."""
@@ -251,44 +250,42 @@ class Study:
 
     def search_extremes(
         self,
-        search: ColumnSearch,
+        search: ChannelSearch,
         report_names: frozenset[str] | None,
         *,
         whole: bool = False,
         times: Array | None = None,
     ) -> Extremes:
-        """Search the extremes over the run, before its horizon, of columns made of its results.
+        """Search the extremes over the run, before its horizon, of channels of its results.
 
-        report_names: the reports that the columns are made of, None for any
+        report_names: the reports that the channels are of, None for any
         whole: of a whole report, which may have so many columns that a search would take longer than the run: then the
         extremes are those of the requested instants
         times: restricts the search to these instants
         """
+        reports = frozenset(REPORTS) if report_names is None else add_shared_reports(report_names)
+        study_columns = StudyColumns(self, search, reports)
         between = times is None
         times = self.search_times if times is None else times
-        if whole and len(search.errors) * len(times) > MOST_SEARCHED:
+        if whole and len(study_columns.paths) * len(times) > MOST_SEARCHED:
             times, between = self.results.time, False
         horizon = self.results.horizon
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
-        reports = frozenset(REPORTS) if report_names is None else add_shared_reports(report_names)
         # closed chains need both sides, to report where numbers are indeterminate
         is_one_sided = search.sides != extremes.BOTH_SIDES and not self.setup.scene.layout.rows
         sides = search.sides if is_one_sided else extremes.BOTH_SIDES
-        study_columns = StudyColumns(
-            self, search, reports, self.with_whole_cuts(search.bent) if search.cut_columns else None
-        )
         bounds = extremes.search_extremes(
             study_columns.sample,
             times,
             study_columns.groups,
-            errors=search.errors,
-            is_squared=search.even,
+            errors=study_columns.errors,
+            is_squared=study_columns.is_squared,
             search_between=between,
             max_groups=extremes.MAX_COLUMNS if whole else None,
             sides=sides,
         )
-        bounds = study_columns.add_places(bounds)
+        bounds = study_columns.finish(bounds)
         self.left_out.update(study_columns.unknown)
         self.later_warnings.update(dict.fromkeys(warn_left_out(study_columns.unknown)))
         if not bounds.is_complete:

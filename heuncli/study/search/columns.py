@@ -1,22 +1,38 @@
-"""A study as columns of numbers over the instants, for a search of their extremes."""
+"""The channels of a study as columns over the instants, for a search of their extremes."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from heuncli.results.results import Array, CutPosition, Extremes, Results
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import NOWHERE, Array, CutPosition, Extremes, Results
 from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 from heuncli.study.model.setup import Setup
+from heuncli.study.quantities.channels import Channel
 from heuncli.study.search import extremes
-from heuncli.study.search.extremes import ColumnSearch
+from heuncli.study.search.extremes import BOTH_SIDES
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains
     from heuncli.study.compose.near_singular import OpenMarker
     from heuncli.study.search.open_between import VerdictsBetween
+
+
+class ChannelSearch(NamedTuple):
+    """What is searched for its lowest and highest values: channels of the results at any instants, in one order.
+
+    collect: takes the channels from results; those along runs of cuts stand last, and are searched as whole lengths
+    find_error: gives the error of a channel's numbers
+    sides: the extremes that are needed, -1 the lowest, 1 the highest; others are not searched between the samples
+    """
+
+    collect: Callable[[Results], Sequence[Channel]]
+    find_error: Callable[[Channel], float]
+    sides: tuple[float, ...] = BOTH_SIDES
 
 
 class Sampleable(Protocol):
@@ -29,6 +45,9 @@ class Sampleable(Protocol):
     @property
     def chunk_size(self) -> int:
         """How many instants are solved in one call."""
+
+    def with_whole_cuts(self, bent: bool) -> Setup:
+        """Return the setup with its runs of cuts as whole lengths."""
 
     def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
         """Return some reports' blocks at other instants; setup: with other cuts."""
@@ -49,18 +68,28 @@ class Sampleable(Protocol):
 class StudyColumns:
     """The columns of a study that are searched; collects the instants at which rounding decides some of them.
 
-    setup: with runs of cuts as whole lengths; each of their quantities gives two columns, its lowest and its highest
+    Runs of cuts are whole lengths; each channel along them gives two columns, its lowest and its highest.
 
     The first instants sampled are the grid of the search: between them, what is indeterminate follows from the grid.
     """
 
-    def __init__(self, study: Sampleable, search: ColumnSearch, reports: frozenset[str], setup: Setup | None) -> None:
-        self.study, self.search, self.reports, self.setup = study, search, reports, setup
+    def __init__(
+        self, study: Sampleable, search: ChannelSearch, reports: frozenset[str], setup: Setup | None = None
+    ) -> None:
+        """setup: with runs of cuts as whole lengths; by default all of the study's, if channels run along them."""
+        self.study, self.reports, self.collect = study, reports, search.collect
+        channels = search.collect(study.results)
+        self.paths = tuple(channel.path for channel in channels)
+        self.errors = np.array([search.find_error(channel) for channel in channels])
+        self.is_squared = np.array([channel.is_magnitude for channel in channels], dtype=bool)
+        along = [channel for channel in channels if channel.has_cuts]
+        self.bent = any(channel.is_nonlinear for channel in along)
+        self.setup = study.with_whole_cuts(self.bent) if along and setup is None else setup
         self.unknown: list[float] = []
         self.grid: list[Recovery] = []
-        first = sum(map(len, search.groups))
-        runs = len(search.errors) - len(search.groups)
-        self.groups = [*search.groups, *([first + 2 * k, first + 2 * k + 1] for k in range(runs))]
+        self.n_single = len(channels) - len(along)
+        self.groups = [[k] for k in range(self.n_single)]
+        self.groups += ([k, k + 1] for k in range(self.n_single, self.n_single + 2 * len(along), 2))
 
     def compute_results(self, times: Array, setup: Setup | None = None) -> Results:
         """Return the results of the study at some instants, ascending; setup: with other cuts."""
@@ -118,34 +147,40 @@ class StudyColumns:
         return results
 
     def _rows(self, results: Results) -> Array:
-        if self.search.cut_columns is None:
-            return self.search.columns(results)
-        from heuncli.study.search.stretches import compute_envelope
+        channels = self.collect(results)
+        columns = [channel.searched_values for channel in channels[: self.n_single]]
+        if self.setup is not None:
+            from heuncli.study.search.stretches import compute_envelope
 
-        along = [compute_envelope(values) for _, values in self.search.cut_columns(results)]
-        return np.concatenate([self.search.columns(results), *along], axis=1)
+            columns += [compute_envelope(channel.searched_values) for channel in channels[self.n_single :]]
+        return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
 
-    def add_places(self, peaks: Extremes) -> Extremes:
-        """Add the places along runs of cuts to the extremes; quantities that are no polynomial of loads are searched
-        there again.
+    def finish(self, peaks: Extremes) -> Extremes:
+        """Return the extremes of the channels: with their paths, places along runs of cuts, and of magnitudes instead
+        of their squares.
+
+        Quantities along runs that are no polynomial of loads are searched there again.
         """
-        if self.search.cut_columns is None:
-            return peaks
-        first, n = len(self.search.groups), len(self.search.errors)
-        low, high, places = peaks.low.copy(), peaks.high.copy(), []
+        if self.setup is not None:
+            peaks = self._add_places(peaks)
+        low, high = (np.where(self.is_squared, np.sqrt(np.abs(bound)), bound) for bound in (peaks.low, peaks.high))
+        return peaks._replace(low=low, high=high, paths=self.paths)
+
+    def _add_places(self, peaks: Extremes) -> Extremes:
+        first = self.n_single
+        low, high, places = peaks.low.copy(), peaks.high.copy(), [(NOWHERE, NOWHERE)] * first
         peak_times = np.stack([peaks.low_at, peaks.high_at])[:, first:]
         instants = extremes.sort_distinct(peak_times)
         results = self.compute_results(instants)
-        for k, (name, values) in enumerate(self.search.cut_columns(results)):
-            side_places = []
+        for k, channel in enumerate(self.collect(results)[first:]):
+            name, values, side_places = channel.name.split(".")[0], channel.searched_values, []
             for side, bounds in ((-1.0, low), (1.0, high)):
                 i = int(np.searchsorted(instants, peak_times[int(side > 0.0), k]))
                 s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
                 own = name, float(instants[i]), s, values[i]
-                bounds[first + k], place = self._find_place(k, side, own, float(bounds[first + k]))
+                bounds[first + k], place = self._find_place(first + k, side, own, float(bounds[first + k]))
                 side_places.append(place)
             places.append((side_places[0], side_places[1]))
-        assert first + len(places) == n
         return peaks._replace(low=low, high=high, places=tuple(places))
 
     def _find_place(
@@ -155,21 +190,18 @@ class StudyColumns:
 
         run_sample: name of the run, instant, nodes along the run, and the values at these
         """
-        assert self.search.cut_columns is not None and self.setup is not None
+        assert self.setup is not None
         from heuncli.study.search.stretches import cut_at, find_sides, find_stretch, locate_summit
 
-        name, at, nodes, values = run_sample
+        setup, (name, at, nodes, values) = self.setup, run_sample
         s, end, ends = locate_summit(nodes, values, side)
-        if self.search.bent and math.isfinite(value):
+        if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
-                assert self.search.cut_columns is not None and self.setup is not None
-                return self.search.cut_columns(self.compute_results(np.array([at]), cut_at(self.setup, name, s, ends)))[
-                    k
-                ][1].T
+                cut_results = self.compute_results(np.array([at]), cut_at(setup, name, s, ends))
+                return self.collect(cut_results)[k].searched_values.T
 
-            one = slice(len(self.search.groups) + k, len(self.search.groups) + k + 1)
-            errors, is_squared = self.search.errors[one], self.search.even[one]
+            errors, is_squared = self.errors[k : k + 1], self.is_squared[k : k + 1]
             search_result = extremes.search_extremes(
                 sample_places, np.linspace(*ends, 17), errors=errors, is_squared=is_squared, sides=(side,)
             )
@@ -182,4 +214,4 @@ class StudyColumns:
                 )
             )
             end = float(find_sides(np.array(s), ends))
-        return value, find_stretch(self.setup, name).make_place(s, end)
+        return value, find_stretch(setup, name).make_place(s, end)

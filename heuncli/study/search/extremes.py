@@ -16,7 +16,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.results.results import Array, Extremes, Indices, Mask, Results
+from heuncli.results.results import Array, Extremes, Indices, Mask
 from heuncli.scene.expressions.discontinuities import MAX_TIED_DOUBLES
 from heuncli.study.search.intervals import (
     FOURTH_DERIVATIVE_SHARE,
@@ -37,33 +37,7 @@ MAX_PROBES = 100_000  # instants sampled in one search
 MAX_COLUMNS = 400  # of varying quantities, in tables; if there are more, the grid's own values are shown
 SAME_PROBE = 1e-4  # of an interval: closer instants are sampled as one; the summit's error is the square of it
 GOOD_ENOUGH = 0.1  # of a quantity's own error: a smaller gain is not searched for
-
-
 BOTH_SIDES = (-1.0, 1.0)
-
-
-class ColumnSearch(NamedTuple):
-    """The inputs of a search: columns of results, (n_t, n_columns), and the groups of columns that are compared.
-
-    cut_columns: quantities of runs of cuts, each with the name of its run, (n_t, n_cuts); each is one more group
-    errors: of the groups' numbers
-    even: whether the columns of a group are squares of its numbers
-    bent: whether the quantities along runs are no polynomials of the loads, as stresses
-    sides: the extremes that are needed, -1 the lowest, 1 the highest; others are not searched between the samples
-    """
-
-    columns: Callable[[Results], Array]
-    groups: Sequence[Sequence[int]]
-    errors: Array
-    even: Mask
-    cut_columns: Callable[[Results], Sequence[tuple[str, Array]]] | None = None
-    bent: bool = False
-    sides: tuple[float, ...] = BOTH_SIDES
-
-
-def make_no_columns(results: Results) -> Array:
-    """Return no columns, (n_t, 0), for a search only along runs of cuts."""
-    return np.zeros((len(results.time), 0))
 
 
 class Targets(NamedTuple):

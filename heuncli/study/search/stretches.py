@@ -16,6 +16,7 @@ from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts, list_attachment_points, list_distributed_loads
 from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, find_peaks, make_cuts_at, make_stretch
 from heuncli.results.results import Array, Block, CutPosition, Extremes
+from heuncli.results.results_schema import RESULTANTS
 from heuncli.study.model.setup import Setup
 
 HALVINGS = 2  # times that pieces are halved for kinks where loads change their sign: stresses, reduction lines
@@ -67,22 +68,23 @@ def compute_envelope(values: Array) -> Array:
     return np.stack([-low.height, high.height], axis=1)
 
 
-def find_impulse_extremes(setup: Setup, impulse: Block, quantities: Sequence[str]) -> dict[str, Extremes]:
-    """Return the lowest and the highest of some quantities along each stretch, at an impulse that was solved with these
-    cuts.
+def find_impulse_extremes(setup: Setup, impulse: Block) -> dict[str, Extremes]:
+    """Return the lowest and the highest of the section forces along each stretch, at an impulse that was solved with
+    these cuts.
     """
     found: dict[str, Extremes] = {}
     for cuts in setup.cuts:
         if isinstance(cuts, Stretch):
             section = impulse["sections"][cuts.name]
-            summits_of_quantities = [find_cut_extremes(cuts, section["s"], section[name]) for name in quantities]
+            summits_of_quantities = [find_cut_extremes(cuts, section["s"], section[name]) for name in RESULTANTS]
             low, high = (np.array([one[side].value for one in summits_of_quantities]) for side in (0, 1))
             times, column = (
                 np.full(len(summits_of_quantities), float(impulse["time"])),
                 np.zeros(len(summits_of_quantities), dtype=np.intp),
             )
             places = tuple((low.place, high.place) for low, high in summits_of_quantities)
-            found[cuts.name] = Extremes(low, times, column, high, times, column, is_searched=True, places=places)
+            paths = tuple(f"sections.{cuts.name}.{name}" for name in RESULTANTS)
+            found[cuts.name] = Extremes(low, times, column, high, times, column, True, True, places, paths)
     return found
 
 

@@ -28,8 +28,8 @@ from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.measure_uncertainty import find_unit
 
 DEFAULT_SCAN, DEFAULT_EVALUATIONS = 7, 300  # default numbers of variants: of the scan, in all
 FORM = "expected MEASURE = VALUE, or <, >, <=, >= in place of ="

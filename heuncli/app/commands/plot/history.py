@@ -16,8 +16,8 @@ from heuncli.output.figures.measured_points import MeasuredPoints
 from heuncli.output.snapshots import measure
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.queries.measure import MeasureRequest
+from heuncli.study.queries.measure_uncertainty import find_unit
 
 
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:

@@ -15,7 +15,6 @@ from heuncli.base.spelling import suggest
 from heuncli.output.client_report.report_data import AS_IT_STANDS, LOADS, Imprint, ReportData, ReportedRun
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
-from heuncli.output.tables.cut_runs import LOADS as RESULTANTS
 from heuncli.output.tables.page import make_page
 from heuncli.scene.file_format.digest import digest
 from heuncli.scene.file_format.load import load_with_cases
@@ -138,7 +137,7 @@ def _make_run(name: str, title: str, study: Study, units: Units) -> ReportedRun:
     labels = replace(make_labels(study.spec), units=units)
     page = make_page(study.results, labels, study.magnitudes)
     if study.results.impulses:
-        page = page._replace(impact_extremes=study.find_impulse_extremes([load.name for load in RESULTANTS]))
+        page = page._replace(impact_extremes=study.find_impulse_extremes())
     reports = select_reports(study.spec)
     snapshot, searched = (
         take_run_snapshot(study, reports, whole_course=False),

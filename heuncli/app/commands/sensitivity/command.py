@@ -27,7 +27,7 @@ from heuncli.base.errors import Problem
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
-from heuncli.study.quantities.measure_uncertainty import find_unit
+from heuncli.study.queries.measure_uncertainty import find_unit
 
 VARIANTS_PER_NUMBER = 10  # usual number
 NO_ERROR = Reason("no-error", "the run states no error for it (as for counts), so no step can be chosen")

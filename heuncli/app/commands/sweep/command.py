@@ -34,7 +34,7 @@ from heuncli.base.records import replace
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.memory_estimate import MemoryBudget
-from heuncli.study.quantities.measure_uncertainty import find_unit
+from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 
 USAGE = "heun sweep SPEC NAME=VALUES --measure WHAT"

@@ -20,8 +20,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.quantities.measure_uncertainty import find_unit
 from heuncli.study.queries.measure import MeasureRequest
+from heuncli.study.queries.measure_uncertainty import find_unit
 
 FORM = "expected MEASURE < VALUE"
 HINT = "for example 'max abs sections.web.M2 < 40 N*m'"

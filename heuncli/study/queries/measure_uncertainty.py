@@ -14,7 +14,6 @@ from heuncli.study.model.selection import list_entries, split_entry
 from heuncli.study.quantities.digits import find_load_error, find_stated_errors, is_load
 from heuncli.study.quantities.labels import make_unit_labels
 from heuncli.study.quantities.table_units import Units
-from heuncli.study.queries.measure import MeasureRequest, Peak
 from heuncli.study.queries.study import Study
 
 SI = Units({})
@@ -41,26 +40,40 @@ def _unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
     return row.units[1 if turns else 0]
 
 
-def find_measure_error(request: MeasureRequest, peak: Peak, study: Study) -> float | None:
-    """Return the error of a measure, as tables and golden files state it; None if the run states none, as for
-    counts.
+def measure_uncertainty(study: Study, path: str, how: str = "", value: float = math.nan) -> float | None:
+    """Return the error of the number at a path, as tables and golden files state it, SI; None if the run states none,
+    as for counts.
+
+    how, value: of a measure: an event's value decides which instant it is, and a least magnitude along a run of cuts
+    is less certain
     """
-    numbers = study.find_numbers(request.path)
+    numbers = study.find_numbers(path)
     keys = numbers.keys
     if keys[0] == EVENTS:
-        return _find_event_error(keys, peak, study)
+        return _find_event_error(keys, value, study)
     unit = _unit_of_keys(keys, study.spec)
     if not unit:
         return None
     error = _find_unit_error(keys, unit, study)
-    if (
-        error is not None
-        and request.how == "min"
-        and CUT in numbers.axes
-        and (numbers.is_vector or keys[-1] in MAGNITUDES)
-    ):
-        return max(error, _find_root_error(peak.value, study.magnitudes.by_unit.get(unit, 0.0)))
+    is_magnitude = numbers.is_vector or keys[-1] in MAGNITUDES
+    if error is not None and how == "min" and CUT in numbers.axes and is_magnitude:
+        return max(error, _find_root_error(value, study.magnitudes.by_unit.get(unit, 0.0)))
     return error
+
+
+def find_search_error(study: Study, keys: Sequence[str]) -> float:
+    """Return the error to which extremes of the quantity under some keys are searched: the one that the check run
+    found, without the estimates, which need all results; nan where it found none.
+
+    If angles and travels have different units, it is the smaller of the two errors.
+    """
+    row, magnitudes = find_quantity(keys), study.magnitudes
+    if row is None:
+        return math.nan
+    kind, lost = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1]), magnitudes.rounding_errors()
+    error_kind = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in magnitudes.errors else kind
+    known = [(magnitudes.errors.get((error_kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
+    return min(map(max, known)) or math.nan
 
 
 def _find_unit_error(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
@@ -83,10 +96,10 @@ def _find_root_error(value: float, largest: float) -> float:
     return rounding / max(value, math.sqrt(rounding)) if rounding > 0.0 else 0.0
 
 
-def _find_event_error(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:
+def _find_event_error(keys: tuple[str, ...], value: float, study: Study) -> float | None:
     """Return the error of an event's instant [s]."""
     event = study.results.events.get(keys[1])
     if event is None or "time" not in keys[2:3]:
         return None
-    errors = [e for t, e in zip(event["time"], event["error"], strict=True) if float(t) == peak.value]
+    errors = [e for t, e in zip(event["time"], event["error"], strict=True) if float(t) == value]
     return float(max(errors)) if errors and all(map(math.isfinite, errors)) else None
