@@ -41,17 +41,19 @@ def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
     for ways in families.values():
         least = LEAST if len(ways) == 1 else LEAST_OF_A_WAY
         for cases in ways.values():
-            found.update(item for seed in list_long_seeds(sorted(cases), least) for item in cases[seed])
+            daily = set(list_daily_seeds(cases, least))
+            found.update(item for seed, own in cases.items() if seed not in daily for item in own)
     return found
 
 
-def list_long_seeds(seeds: list[int], least: int) -> list[int]:
-    """The seeds, in ascending order, that only a long run takes."""
-    step = min((after - before for before, after in pairwise(seeds)), default=1)
+def list_daily_seeds(seeds: Iterable[int], least: int = LEAST) -> list[int]:
+    """Those of the seeds that run every time."""
+    ordered = sorted(seeds)
+    step = min((after - before for before, after in pairwise(ordered)), default=1)
     rows: list[list[int]] = []
-    for seed in seeds:
+    for seed in ordered:
         if rows and seed - rows[-1][-1] == step:
             rows[-1].append(seed)
         else:
             rows.append([seed])
-    return [seed for row in rows for seed in row[max(least, -(-len(row) // SHARE)) :]]
+    return [seed for row in rows for seed in row[: max(least, -(-len(row) // SHARE))]]
