@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Container, Hashable, Iterable
 from itertools import pairwise
@@ -24,19 +25,16 @@ LEAST, LEAST_OF_A_WAY = 13, 6
 def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
     """The cases that only a long run takes: of each row of consecutive seeds all but the first.
 
-    They are those whose parameter is called `seed`. A seed that stands alone was chosen for what it showed, and stays.
+    They are those with a parameter called `seed`, or called `name` with a seed behind a word: `tree 17`. A seed that
+    stands alone was chosen for what it showed, and stays.
     """
     families: defaultdict[str, defaultdict[Hashable, dict[int, list[pytest.Item]]]]
     families = defaultdict(lambda: defaultdict(dict))
     for item in items:
-        params = item.callspec.params if isinstance(item, pytest.Function) and hasattr(item, "callspec") else {}
-        if isinstance(seed := params.get("seed"), int):
-            way = tuple(
-                value if isinstance(value, str | float) else id(value)
-                for name, value in params.items()
-                if name != "seed"
-            )
-            families[item.nodeid.split("[")[0]][way].setdefault(seed, []).append(item)
+        if isinstance(item, pytest.Function) and hasattr(item, "callspec"):
+            seed, way = split_seed(item.callspec.params)
+            if seed is not None:
+                families[item.nodeid.split("[")[0]][way].setdefault(seed, []).append(item)
     found: set[pytest.Item] = set()
     for ways in families.values():
         least = LEAST if len(ways) == 1 else LEAST_OF_A_WAY
@@ -44,6 +42,21 @@ def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
             daily = set(list_daily_seeds(cases, least))
             found.update(item for seed, own in cases.items() if seed not in daily for item in own)
     return found
+
+
+def split_seed(parameters: dict[str, Any]) -> tuple[int | None, Hashable]:
+    """The seed among a test's parameters, and the others."""
+    seed: int | None = None
+    way: list[Hashable] = []
+    for name, value in parameters.items():
+        if name == "seed" and isinstance(value, int):
+            seed = value
+        elif name == "name" and isinstance(value, str) and (parts := re.fullmatch(r"([a-z ]+) (\d+)", value)):
+            seed = int(parts[2])
+            way.append(parts[1])
+        else:
+            way.append(value if isinstance(value, str | float) else id(value))
+    return seed, tuple(way)
 
 
 def list_daily_seeds(seeds: Iterable[int], least: int = LEAST) -> list[int]:
