@@ -27,7 +27,7 @@ SHOWN = {"browser", "pictures", "report", "reporting", "show"}
 SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_api"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
-SHARE = 4
+SHARE = 2
 SHARES = {"laws": 1, "oracle": 1, "references": 1}
 
 

@@ -209,6 +209,7 @@ def whole_by_laws() -> Results:
     return solve(load("scene.yaml", LAWS), Options(reduce=False)).results
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("path", LAW_PATHS)
 def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> None:
     """Laws of a load's own line, joint or shift, of a table, of another part's coordinate or point."""
@@ -217,6 +218,7 @@ def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> No
     assert a.shape == b.shape and np.abs(a - b).max() <= 10.0 * SMALL * max(float(np.abs(b).max()), 1.0)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("words", [["--only", "joints.A"], ["--only", "forces"], ["--measure", "max forces.own.value"]])
 def test_words_that_name_a_spring_by_its_own_law(heun: Heun, folder: Path, words: list[str]) -> None:
     (folder / "laws.yaml").write_text(LAWS)
