@@ -17,6 +17,7 @@ from heuncli.base.spelling import reset_effort
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 from tests.shared.processes import hand_down_signals
+from tests.shared.seeds import list_long_cases
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 # And pictures, pages, reports, decks, collectives and what Python gets, which are shown numbers; and additions, which
@@ -26,7 +27,7 @@ SHOWN = {"browser", "pictures", "report", "reporting", "show"}
 SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_api"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
-SHARE = 4
+SHARE = 2
 SHARES = {"laws": 1, "oracle": 1, "references": 1}
 
 
@@ -56,6 +57,10 @@ def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
         return Done(code, *capsys.readouterr())
 
     return run
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all-seeds", action="store_true", help="all random cases, not those of every day alone")
 
 
 def pytest_configure() -> None:
@@ -93,6 +98,9 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    named = any("[" in argument for argument in config.args)  # a case that is named runs
+    long = set() if named or config.getoption("all_seeds") else list_long_cases(items)
+    keep(config, items, {item for item in items if item not in long})
     if KERNEL == "compiled":
         return
     families: dict[str, list[pytest.Item]] = {}
@@ -100,6 +108,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if not item.get_closest_marker("heavy") and not is_spared(item.path.parent):
             families.setdefault(item.nodeid.split("[")[0], []).append(item)
     kept = {item for family in families.values() for item in share_of(family)}
+    keep(config, items, kept)
+
+
+def keep(config: pytest.Config, items: list[pytest.Item], kept: set[pytest.Item]) -> None:
+    """Deselect all others."""
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
     items[:] = [item for item in items if item in kept]
 

@@ -209,6 +209,7 @@ def whole_by_laws() -> Results:
     return solve(load("scene.yaml", LAWS), Options(reduce=False)).results
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("path", LAW_PATHS)
 def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> None:
     """Laws of a load's own line, joint or shift, of a table, of another part's coordinate or point."""
@@ -217,6 +218,7 @@ def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> No
     assert a.shape == b.shape and np.abs(a - b).max() <= 10.0 * SMALL * max(float(np.abs(b).max()), 1.0)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("words", [["--only", "joints.A"], ["--only", "forces"], ["--measure", "max forces.own.value"]])
 def test_words_that_name_a_spring_by_its_own_law(heun: Heun, folder: Path, words: list[str]) -> None:
     (folder / "laws.yaml").write_text(LAWS)
@@ -290,6 +292,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
     assert study.results.accuracy["estimate"].keys() == {"motion", "sections"}
 
 
+@pytest.mark.heavy
 def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / "four_bar.yaml"))
     monkeypatch.setattr(Recovery, "decided", property(forbidden))
@@ -339,6 +342,7 @@ def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:
     assert words in done.stderr and told in done.stderr
 
 
+@pytest.mark.heavy
 def test_the_axis_and_the_mass_effect_are_shown_where_they_are_asked_for(heun: Heun, folder: Path) -> None:
     def tables(*words: str, spec: str = "hanging.yaml") -> set[str]:
         text = heun("run", spec, *words).stdout
@@ -359,6 +363,7 @@ def test_the_axis_and_the_mass_effect_are_shown_where_they_are_asked_for(heun: H
     assert alone["foundation"] == {key: written[key] for key in ("about", "force", "moment", "axis")}
 
 
+@pytest.mark.heavy
 def test_what_is_left_out_is_told(heun: Heun, folder: Path) -> None:
     more = "  other: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}\njoints:\n"
     (folder / "two.yaml").write_text(SPECS_OF["swinging"].replace("joints:\n", more) + "report: [joints]\n")

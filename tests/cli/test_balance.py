@@ -43,6 +43,7 @@ def found(heun: Heun, *words: str) -> Any:
     return json.loads(done.stdout)
 
 
+@pytest.mark.heavy
 def test_json_keeps_to_the_contract(heun: Heun, crank: str) -> None:
     told = found(heun, crank)
     assert told["cycle"] | {"samples": 0} == {
@@ -60,6 +61,7 @@ def test_json_keeps_to_the_contract(heun: Heun, crank: str) -> None:
     assert told["per_rate"]["angle"][0] == pytest.approx(1.0)
 
 
+@pytest.mark.heavy
 def test_csv_has_the_numbers_of_the_json(heun: Heun, crank: str) -> None:
     rows = list(csv.DictReader(io.StringIO(heun("balance", crank, "--format", "csv").stdout)))
     told = found(heun, crank)["harmonics"]["force"]
@@ -69,6 +71,7 @@ def test_csv_has_the_numbers_of_the_json(heun: Heun, crank: str) -> None:
     assert {row["unit"] for row in rows if row["kind"] == "moment"} == {"N·m", "rad"}
 
 
+@pytest.mark.heavy
 def test_orders_rate_and_turns_are_asked_for(heun: Heun, crank: str) -> None:
     two, one = found(heun, crank, "--turns", "2", "--orders", "0.5,1,2"), found(heun, crank, "--rate", "200 rad/s")
     assert [row["order"] for row in two["harmonics"]["force"]] == [0.5, 1.0, 2.0]
@@ -87,6 +90,7 @@ def test_two_turns_where_a_load_has_them(heun: Heun, folder: Path) -> None:
     assert found(heun, "gas.yaml", "--turns", "1")["cycle"]["turns"] == 1
 
 
+@pytest.mark.heavy
 def test_moments_about_a_point_by_name_or_numbers(heun: Heun, crank: str) -> None:
     by_name = found(heun, crank, "--about", "P")
     by_numbers = found(heun, crank, "--about", "500mm,0,0")
@@ -117,6 +121,7 @@ def test_a_flywheel(heun: Heun, folder: Path) -> None:
     assert "FLYWHEEL  on main" in heun("balance", "gas.yaml", "--rate", "500rpm", "--flywheel", "0.02").stdout
 
 
+@pytest.mark.heavy
 def test_the_table_draws_the_orders_in_letters(heun: Heun, crank: str) -> None:
     lines = heun("balance", crank).stdout.splitlines()
     begin = next(k for k, line in enumerate(lines) if line.startswith("ORDERS"))
@@ -126,6 +131,7 @@ def test_the_table_draws_the_orders_in_letters(heun: Heun, crank: str) -> None:
     assert lines[-1] == "F force, M moment, T torque"
 
 
+@pytest.mark.heavy
 def test_a_picture_is_saved(heun: Heun, crank: str, folder: Path) -> None:
     assert heun("balance", crank, "--save", "orders.svg", "-o", "orders.json").returncode == 0
     drawn = (folder / "orders.svg").read_text()
@@ -209,6 +215,7 @@ def test_what_comes_back_after_two_turns_alone_is_told(heun: Heun, folder: Path)
     assert verdicts[1.0] == verdicts[1.5] == "remains" and verdicts[0.5] == "does not arise"
 
 
+@pytest.mark.heavy
 def test_a_title_forges_nothing(heun: Heun, folder: Path) -> None:
     title = '"A\\n\\u001b[31mforce    none"'
     (folder / "evil.yaml").write_text(SCENE.replace("A crank that turns its rod about", title) + DRIVE)

@@ -24,6 +24,7 @@ def test_the_same_spec_has_not_changed(heun: Heun) -> None:
     assert done.stdout.startswith("no change exceeds both stated errors: ")
 
 
+@pytest.mark.heavy
 def test_the_largest_relative_change_comes_first(heun: Heun, pair: tuple[str, str]) -> None:
     """A heavier bar of the same inertia: its weight is 1.1 of what it was."""
     done = heun("diff", *pair, "--format", "json", "--exit-code")
@@ -73,11 +74,13 @@ def test_what_is_neither_is_told_by_its_path(heun: Heun, folder: Path, text: str
     assert "[not-a-result]" in done.stderr
 
 
+@pytest.mark.heavy
 def test_forms_for_a_pull_request(heun: Heun, pair: tuple[str, str]) -> None:
     assert heun("diff", *pair, "--format", "markdown").stdout.startswith("### heun diff: ")
     assert heun("diff", *pair, "--format", "github").stdout.startswith("::warning file=heavier.yaml,title=heun%3A ")
 
 
+@pytest.mark.heavy
 def test_results_at_other_instants_are_compared_where_both_are(heun: Heun, folder: Path) -> None:
     """Samples at other instants have other extremes of the same motion; at the common ones nothing differs."""
     for name, samples in (("few", 5), ("many", 9), ("other", 4)):

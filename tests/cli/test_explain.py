@@ -227,6 +227,7 @@ def test_quantities_of_one_row_have_their_own_meanings(heun: Heun) -> None:
     assert "bending moment about e2" in heun("explain", "sections.boom.M2@0.28").stdout
 
 
+@pytest.mark.heavy
 def test_a_terminal_gets_pages_and_where_errors_are_explained(folder: Path) -> None:
     """A pipe gets the text as it is; a terminal a pager, and a line behind its errors."""
     env = {**os.environ, "PAGER": "sed s/^/paged:/", "TERM": "dumb"}

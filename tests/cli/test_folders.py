@@ -82,6 +82,7 @@ def test_folders_that_meet_again_and_again_are_looked_into_once(tmp_path: Path) 
     assert len(passed_by) == 40
 
 
+@pytest.mark.heavy
 def test_eleven_hundred_nested_folders(heun: Heun, folder: Path) -> None:
     names = ["nested", *"x" * 1100]
     for name in names:

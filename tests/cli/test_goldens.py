@@ -97,6 +97,7 @@ def test_a_run_of_the_whole_scene_passes(name: str) -> None:
     ] == []
 
 
+@pytest.mark.heavy
 def test_what_one_of_them_lacks_is_told_by_name() -> None:
     run = run_of("double")
     path = next(path for path, number in run.numbers.items() if number.greatest is not None)
@@ -125,6 +126,7 @@ def test_a_file_reads_back_as_it_was_and_has_one_number_a_line(heun: Heun, folde
     assert json.dumps(json.loads(text), indent=1, sort_keys=True, ensure_ascii=False) + "\n" == text
 
 
+@pytest.mark.heavy
 def test_what_was_kept_passes_and_what_changed_fails_with_the_change_of_the_spec(heun: Heun, folder: Path) -> None:
     assert heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g", "--update", "--force").returncode == 0
     assert heun("check", "hanging.yaml", "swinging.yaml", "--golden", "g").returncode == 0
@@ -253,6 +255,7 @@ def without_courses(text: str) -> str:
     return json.dumps(data, indent=1, sort_keys=True)
 
 
+@pytest.mark.heavy
 def test_a_file_of_format_1_is_read_passes_and_is_renewed(heun: Heun, folder: Path) -> None:
     heun("check", "swinging.yaml", "--golden", "g", "--update", "--force")
     file = folder / "g" / "swinging.json"
@@ -266,6 +269,7 @@ def test_a_file_of_format_1_is_read_passes_and_is_renewed(heun: Heun, folder: Pa
     assert file.read_text() == whole
 
 
+@pytest.mark.heavy
 def test_a_spec_that_changed_without_a_number_is_said_and_renewed(heun: Heun, folder: Path) -> None:
     heun("check", "swinging.yaml", "--golden", "g", "--update", "--force")
     spec, file = folder / "swinging.yaml", folder / "g" / "swinging.json"

@@ -72,6 +72,7 @@ def test_k_picks_by_path_and_title(heun: Heun, many: Path) -> None:
     assert heun("check", "many", "-k", "nothing").returncode == 2
 
 
+@pytest.mark.heavy
 def test_the_slowest_are_told_apart_from_the_results(heun: Heun, many: Path) -> None:
     done = heun("check", "many", "--durations", "3")
     assert "slowest 3 of 12:" in done.stderr
@@ -99,6 +100,7 @@ def at_work_in(group: int) -> list[str]:
     return found
 
 
+@pytest.mark.heavy
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the processes of a group are read from /proc")
 def test_an_interrupt_ends_all_processes_and_leaves_no_file(tmp_path: Path) -> None:
     for number in range(4):
@@ -145,6 +147,7 @@ def test_what_a_process_was_at_that_dies_is_tried_once_more(tmp_path: Path, jobs
     ]
 
 
+@pytest.mark.heavy
 def test_a_process_of_a_search_that_dies_costs_no_variant(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -163,6 +166,7 @@ def test_a_process_of_a_search_that_dies_costs_no_variant(
     assert undisturbed.returncode == 0 and (folder / "tried").exists()
 
 
+@pytest.mark.heavy
 def test_a_spec_that_is_not_solved_goes_from_process_to_process(heun: Heun, folder: Path) -> None:
     """With what it expects, which is not compared."""
     text = (SPECS / "broken" / "does-not-fit.yaml").read_text(encoding="utf-8")

@@ -58,6 +58,7 @@ def test_a_measure_that_no_unit_fits_stays_in_si(heun: Heun) -> None:
     assert told == [f"unit: N ({FORCE})", f"unit: N·mm ({MOMENT})"]
 
 
+@pytest.mark.heavy
 def test_a_stress_is_in_mpa_only_if_asked(heun: Heun) -> None:
     spec, path = str(SPECS / "jib.yaml"), "max sections.root.stress.mises"
     plain = heun("run", spec, "--measure", path)

@@ -150,6 +150,7 @@ def test_without_what_excites(heun: Heun, folder: Path) -> None:
     assert refused.returncode == 3 and "--without push,pull leaves out the excitation" in refused.stderr
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("drive", "rests"),
     [
@@ -184,6 +185,7 @@ def test_a_name_left_out_is_one_of_the_scene(heun: Heun, folder: Path) -> None:
     assert "has no forces or drives" in heun("modes", "bare.yaml", "--without", "push").stderr
 
 
+@pytest.mark.heavy
 def test_a_motion_is_looked_at_about_the_pose_that_rests() -> None:
     """Drawn askew and let go, or looked for: the same pose, hanging, and the same frequencies as drawn so."""
     spring = "forces: {k: {type: spring, from: ground.W, to: cart.c, stiffness: 90, length: 1}}\n"

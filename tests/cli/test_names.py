@@ -38,6 +38,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(found)
 
 
+@pytest.mark.heavy
 def test_every_form_holds_them(path: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", path]) == 0
     tables = capsys.readouterr()

@@ -97,6 +97,7 @@ print(' '.join(sys.modules))
 """
 
 
+@pytest.mark.heavy
 def test_help_imports_no_numpy() -> None:
     for line in ("--help", "run --help", "nonsense", "schema x"):
         assert not {"numpy", "yaml", "rich", "scipy"} & (imported(line) - loaded_by("typer")), line

@@ -63,6 +63,7 @@ def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monke
     assert heun("run", "dense.yaml", "--quiet").returncode == 0
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["double", "overhang", "door"])
 @pytest.mark.parametrize("shares", [False, True])
 def test_the_estimate_counts_what_is_told(name: str, shares: bool) -> None:

@@ -247,7 +247,7 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
     with subprocess.Popen(command, cwd=scene, stdout=-1, stderr=terminal, env=environment) as process:
         os.close(terminal)
         shown, until = b"", time.monotonic() + 60.0
-        while b" to go" not in shown and time.monotonic() < until:
+        while b" left" not in shown and time.monotonic() < until:
             shown += os.read(control, 4096)
         process.kill()
     os.close(control)

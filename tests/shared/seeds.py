@@ -1,8 +1,11 @@
-"""Seeds of random scenes as parameters of tests, with marks on those that the plain kernel is spared."""
+"""Seeds of random scenes as parameters of tests: which of them run every time, which the plain kernel is spared."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+import re
+from collections import defaultdict
+from collections.abc import Container, Hashable, Iterable
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -11,3 +14,59 @@ import pytest
 def spared(seeds: Iterable[Any], quick: Container[Any]) -> list[Any]:
     """The seeds, all but the quick ones marked heavy: a plain run of theirs takes more than a second or two."""
     return [seed if seed in quick else pytest.param(seed, marks=pytest.mark.heavy) for seed in seeds]
+
+
+SHARE = 4  # one seed of so many runs every time
+# At least so many of a family, which chooses what it draws by the seed's remainder, by 13 at most; of one that is run
+# in several ways at least so many in each.
+LEAST, LEAST_OF_A_WAY = 13, 6
+
+
+def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
+    """The cases that only a long run takes: of each row of consecutive seeds all but the first.
+
+    They are those with a parameter called `seed`, or called `name` with a seed behind a word: `tree 17`. A seed that
+    stands alone was chosen for what it showed, and stays.
+    """
+    families: defaultdict[str, defaultdict[Hashable, dict[int, list[pytest.Item]]]]
+    families = defaultdict(lambda: defaultdict(dict))
+    for item in items:
+        if isinstance(item, pytest.Function) and hasattr(item, "callspec"):
+            seed, way = split_seed(item.callspec.params)
+            if seed is not None:
+                families[item.nodeid.split("[")[0]][way].setdefault(seed, []).append(item)
+    found: set[pytest.Item] = set()
+    for ways in families.values():
+        least = LEAST if len(ways) == 1 else LEAST_OF_A_WAY
+        for cases in ways.values():
+            daily = set(list_daily_seeds(cases, least))
+            found.update(item for seed, own in cases.items() if seed not in daily for item in own)
+    return found
+
+
+def split_seed(parameters: dict[str, Any]) -> tuple[int | None, Hashable]:
+    """The seed among a test's parameters, and the others."""
+    seed: int | None = None
+    way: list[Hashable] = []
+    for name, value in parameters.items():
+        if name == "seed" and isinstance(value, int):
+            seed = value
+        elif name == "name" and isinstance(value, str) and (parts := re.fullmatch(r"([a-z ]+) (\d+)", value)):
+            seed = int(parts[2])
+            way.append(parts[1])
+        else:
+            way.append(value if isinstance(value, str | float) else id(value))
+    return seed, tuple(way)
+
+
+def list_daily_seeds(seeds: Iterable[int], least: int = LEAST) -> list[int]:
+    """Those of the seeds that run every time."""
+    ordered = sorted(seeds)
+    step = min((after - before for before, after in pairwise(ordered)), default=1)
+    rows: list[list[int]] = []
+    for seed in ordered:
+        if rows and seed - rows[-1][-1] == step:
+            rows[-1].append(seed)
+        else:
+            rows.append([seed])
+    return [seed for row in rows for seed in row[: max(least, -(-len(row) // SHARE))]]

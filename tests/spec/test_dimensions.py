@@ -285,6 +285,7 @@ def test_a_wrong_parameter_is_told_once() -> None:
 YAML = re.compile(r"(heun: 1\n(?:.|\n)*?)(?:\"\"\"|```)")
 
 
+@pytest.mark.heavy
 def test_no_scene_of_ours_is_refused() -> None:
     texts = [path.read_text() for path in (ROOT / "specs").glob("*.yaml")]
     for path in [*map(file_of, TEXTS.keys() - {"codes"}), *(ROOT / "tests").rglob("*.py")]:

@@ -63,6 +63,7 @@ def plan(*words: str) -> Plan:
     return make_axes_plan([parse_axis_values(word) for word in words or AXES])
 
 
+@pytest.mark.heavy
 def test_variants_answer_elsewhere_what_they_answer_here(beside: Path) -> None:
     recipe = recipe_in(beside)
     here = VariantEvaluator(recipe)
@@ -118,6 +119,7 @@ PULLS = ("joints.clamp.force.z", "joints.clamp.moment.y", "sections.root.N")
 SOLIDS = ("bodies.solid.shapes.0.file=a.stl,b.stl,open.stl,none.stl", "turn=0,1")
 
 
+@pytest.mark.heavy
 def test_variants_of_meshes_answer_as_each_alone_here_and_elsewhere(tmp_path: Path) -> None:
     box = triangles.box([10, -5, 0], [40, 15, 60])
     for name, surface in {"a": box, "b": triangles.torus(9, 7, 30.0, 20.0), "open": box[1:]}.items():

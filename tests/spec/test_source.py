@@ -171,6 +171,7 @@ def test_lines_count_the_same_however_they_end(end: str) -> None:
     assert codes(end.join(("a: 1", "b: [1", "d: 3"))) == [("not-yaml", 2, 4)]
 
 
+@pytest.mark.heavy
 @given(st.text(alphabet=st.sampled_from("ab:-[]{}'\"#&*!|>%@`,? \n\r\t0.1é\u2028\x00~<"), max_size=60))
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_any_text_is_a_source_or_an_error(text: str) -> None:
