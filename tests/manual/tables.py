@@ -31,6 +31,7 @@ from tests.shared.cited_texts import equations
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
+MOST_LINKS = 3  # to commands that know an option
 SEEN = 3  # words by which a group of equations is seen
 SOLVED = [row for row in ROWS if row.meaning != NOT_YET]
 
@@ -147,16 +148,18 @@ def options(command: Command) -> Iterator[tuple[str, str]]:
 
 
 def keys() -> Iterator[tuple[str, str]]:
-    """Each key of the format with the chapters of the page on it."""
+    """The keys of the format with the chapters of the page on them; those of the same chapters together."""
     places: dict[str, dict[str, list[str]]] = {}
     for place in PLACES:
         places.setdefault(place.key, {}).setdefault(place.heading, []).extend(place.types)
+    alike: dict[str, list[str]] = {}
     for key in sorted(places, key=str.lower):
         links = []
         for heading, types in places[key].items():
             of = f" of {quoted(sorted(set(types)))}" if types else ""
             links.append(f"[{heading}](format.md#{anchor(heading)}){of}")
-        yield f"`{key}`", "; ".join(links)
+        alike.setdefault("; ".join(links), []).append(key)
+    return ((quoted(names), links) for links, names in alike.items())
 
 
 def types() -> Iterator[tuple[str, str]]:
@@ -190,19 +193,24 @@ def results_by_word() -> Iterator[tuple[str, str]]:
         path = "shares.CAUSE" if is_share(row) else whole
         paths.setdefault(word, []).append(f"`{path}.{word}`" if path else f"`{word}`")
     for word in sorted(paths, key=str.lower):
-        yield f"`{word}`", f"[Paths](results.md#paths): {', '.join(dict.fromkeys(paths[word]))}"
+        yield f"`{word}`", ", ".join(dict.fromkeys(paths[word]))
 
 
 def options_by_word() -> Iterator[tuple[str, str]]:
-    """Each option with the commands that know it."""
-    known: dict[str, list[str]] = {}
+    """Each option with the commands that know it; of those that many know, the first."""
+    known: dict[tuple[str, ...], list[str]] = {}
     for command in COMMANDS:
         for option in (field.option for field in list_fields(command.request)):
-            for word in option.words:
-                known.setdefault(word, []).append(command.name)
-    for word in sorted(known, key=str.lower):
-        links = (f"[heun {name}](commands.md#{anchor(f'heun {name}')})" for name in known[word])
-        yield f"`{word}`", ", ".join(links)
+            if option.words:
+                known.setdefault(tuple(sorted(option.words, reverse=True)), []).append(command.name)
+    alike: dict[str, list[str]] = {}
+    for words in sorted(known, key=lambda words: words[0].lower()):
+        names = known[words]
+        shown = names if len(names) <= MOST_LINKS else names[:1]
+        links = [f"[heun {name}](commands.md#{anchor(f'heun {name}')})" for name in shown]
+        more = f" and {len(names) - 1} other commands" if len(names) > MOST_LINKS else ""
+        alike.setdefault(f"{', '.join(links)}{more}", []).extend(words)
+    return ((quoted(words), links) for links, words in alike.items())
 
 
 def pages() -> Iterator[tuple[str, str]]:
