@@ -32,6 +32,9 @@ from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
 MOST_LINKS = 3  # to commands that know an option
+(RUN,) = (command for command in COMMANDS if command.name == "run")
+OF_RUN = {(field.option.words, field.option.help) for field in list_fields(RUN.request)}
+ALIKE = ("`--case NAME`", "`--units UNIT,...`")  # mean what they mean in `heun run`, in other words
 SEEN = 3  # words by which a group of equations is seen
 SOLVED = [row for row in ROWS if row.meaning != NOT_YET]
 
@@ -141,10 +144,17 @@ def methods() -> Iterator[tuple[str, ...]]:
 
 
 def options(command: Command) -> Iterator[tuple[str, str]]:
-    """The arguments and options of a command."""
+    """The arguments and options of a command; those that mean the same as in `heun run` stand in the last row."""
+    shared: list[str] = []
     for option in (field.option for field in list_fields(command.request)):
         value = (option.metavar or "").replace("|", "\\|")
-        yield f"`{' '.join([', '.join(option.words), value]).strip()}`", option.help.replace("|", "\\|")
+        cell = f"`{' '.join([', '.join(option.words), value]).strip()}`"
+        if command.name != "run" and (cell in ALIKE or (option.words, option.help) in OF_RUN):
+            shared.append(cell)
+        else:
+            yield cell, option.help.replace("|", "\\|")
+    if shared:
+        yield ", ".join(shared), "as in [heun run](#heun-run)"
 
 
 def keys() -> Iterator[tuple[str, str]]:
