@@ -19,7 +19,7 @@ from heuncli.base import units as u
 from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
-from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
+from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
@@ -31,7 +31,6 @@ from tests.shared.cited_texts import equations
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
-MOST_LINKS = 3  # to commands that know an option
 (RUN,) = (command for command in COMMANDS if command.name == "run")
 OF_RUN = {(field.option.words, field.option.help) for field in list_fields(RUN.request)}
 ALIKE = ("`--case NAME`", "`--units UNIT,...`")  # mean what they mean in `heun run`, in other words
@@ -195,34 +194,6 @@ def words_of_expressions() -> Iterator[tuple[str, str]]:
     yield quoted([row.name for row in METHODS]), "[The list](methods.md#the-list)"
 
 
-def results_by_word() -> Iterator[tuple[str, str]]:
-    """Each last word of a path of the results with its paths; those of shares stand together."""
-    paths: dict[str, list[str]] = {}
-    for row in SOLVED:
-        whole, _, word = row.path.rpartition(".")
-        path = "shares.CAUSE" if is_share(row) else whole
-        paths.setdefault(word, []).append(f"`{path}.{word}`" if path else f"`{word}`")
-    for word in sorted(paths, key=str.lower):
-        yield f"`{word}`", ", ".join(dict.fromkeys(paths[word]))
-
-
-def options_by_word() -> Iterator[tuple[str, str]]:
-    """Each option with the commands that know it; of those that many know, the first."""
-    known: dict[tuple[str, ...], list[str]] = {}
-    for command in COMMANDS:
-        for option in (field.option for field in list_fields(command.request)):
-            if option.words:
-                known.setdefault(tuple(sorted(option.words, reverse=True)), []).append(command.name)
-    alike: dict[str, list[str]] = {}
-    for words in sorted(known, key=lambda words: words[0].lower()):
-        names = known[words]
-        shown = names if len(names) <= MOST_LINKS else names[:1]
-        links = [f"[heun {name}](commands.md#{anchor(f'heun {name}')})" for name in shown]
-        more = f" and {len(names) - 1} other commands" if len(names) > MOST_LINKS else ""
-        alike.setdefault(f"{', '.join(links)}{more}", []).extend(words)
-    return ((quoted(words), links) for links, words in alike.items())
-
-
 def pages() -> Iterator[tuple[str, str]]:
     """The pages of the manual."""
     for name in PAGES:
@@ -260,8 +231,6 @@ TABLES = (
     Table("index", "Keys of a spec", ("key", "see"), list(keys())),
     Table("index", "Types", ("type", "see"), list(types())),
     Table("index", "Units, functions, methods", ("words", "see"), list(words_of_expressions())),
-    Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
-    Table("index", "Options", ("option", "of"), list(options_by_word())),
 )
 
 
