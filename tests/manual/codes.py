@@ -16,8 +16,8 @@ from tests.shared.folders import ROOT
 PAGE = ROOT / "heuncli" / "manual" / "codes.md"
 GENERATED = "Each with its cause, the remedy, and a spec's lines before (-) and after (+) the cure.\n"
 WIDEST = 120
-NEAR = 24  # characters that are shown around what changes in a line
-LONGEST = 60  # characters of a line that is shown whole
+NEAR = 8  # characters that are shown around what changes in a line
+LONGEST = 50  # characters of a line that is shown whole
 SPECIFIC = ("did you mean", "for '", "known ", "along the normal", "it is called", "call it")  # the cure says it
 
 
@@ -79,7 +79,9 @@ def part(line: str, start: int, end: int) -> str:
     first = max(line.rfind(" ", 0, max(start - NEAR, 0)) + 1, 0)
     last = line.find(" ", end + NEAR)
     last = len(line) if last < 0 else last
-    opening = f"{name}: ... " if colon and first > len(name) + 2 else "... " if first else ""
+    opening = (
+        f"{name}: ... " if colon and len(name) < LONGEST // 2 and first > len(name) + 2 else "... " if first else ""
+    )
     shown = line[first:last]
     shown = shown if len(shown) <= WIDEST - 20 else f"{shown[:LONGEST]} ... {shown[-LONGEST // 2 :]}"
     return f"{opening}{shown}{' ...' if last < len(line) else ''}"
