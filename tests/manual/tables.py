@@ -119,14 +119,12 @@ def joints() -> Iterator[tuple[str, ...]]:
     """What each kind of joint is called, holds and takes."""
     for kind in TYPES.values():
         accepted = list_aliases("joints", kind.name)
-        refused = [word for word in kind.synonyms if word not in accepted]
         yield (
             f"`{kind.name}`",
             quoted(accepted),
             str(kind.row_count),
             quoted(driven(kind)),
             quoted(kind.loads),
-            ", ".join(refused),
         )
 
 
@@ -224,7 +222,7 @@ TABLES = (
     Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
-    Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
+    Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes"), list(joints())),
     Table("format", "Forces", ("type", "what it is"), list(loads())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "orientation", "purpose"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
