@@ -36,7 +36,7 @@ def section(path: Path) -> Iterator[str]:
     says = f"{'A warning: ' if kind == 'warning' else ''}{see[0].upper()}{see[1:]}.{remedy}"
     yield "\n".join(textwrap.wrap(says, WIDEST, break_long_words=False, break_on_hyphens=False)) + "\n"
     if not is_in_words(path):
-        yield f"\n```text\n{''.join(changes(path))}```\n"
+        yield "\n" + textwrap.indent("".join(changes(path)), "    ")
 
 
 def changes(path: Path) -> Iterator[str]:

@@ -147,7 +147,7 @@ def options(command: Command) -> Iterator[tuple[str, str]]:
         value = (option.metavar or "").replace("|", "\\|")
         cell = f"`{' '.join([', '.join(option.words), value]).strip()}`"
         if command.name != "run" and (cell in ALIKE or (option.words, option.help) in OF_RUN):
-            shared.append(cell)
+            shared.append(cell if "--format" in option.words else quoted(option.words) or cell)
         else:
             yield cell, option.help.replace("|", "\\|")
     if shared:
