@@ -19,7 +19,7 @@ from heuncli.base import units as u
 from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
-from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity
+from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
@@ -77,8 +77,8 @@ def grouped(chosen: Sequence[Quantity]) -> Iterator[tuple[str, list[Quantity], s
 
 
 def results() -> Iterator[tuple[str, str, str]]:
-    """The numbers of the results with their units."""
-    for names, members, meaning in grouped([row for row in SOLVED if row.units]):
+    """The numbers of the results with their units; those of shares stand above the table."""
+    for names, members, meaning in grouped([row for row in SOLVED if row.units and not is_share(row)]):
         each = [unit_of(row) for row in members]
         yield names, ", ".join(each[:1] if len(set(each)) == 1 else each), meaning
 
