@@ -18,7 +18,16 @@ GENERATED = "Each with its cause, the remedy, and a spec's lines before (-) and 
 WIDEST = 120
 NEAR = 8  # characters that are shown around what changes in a line
 LONGEST = 50  # characters of a line that is shown whole
-SPECIFIC = ("did you mean", "for '", "known ", "along the normal", "it is called", "call it")  # the cure says it
+SPECIFIC = (
+    "did you mean",
+    "for '",
+    "known ",
+    "along the normal",
+    "it is called",
+    "call it",
+    "add radius",
+    "a direction",
+)  # the cure says it
 
 
 def text() -> str:
