@@ -124,7 +124,10 @@ def shares(prefix: str, *quantities: Quantity) -> tuple[Quantity, ...]:
     return rows(f"{prefix}.shares.CAUSE", meaning, *(quantities or wrench))
 
 
-DIRECT = "its direct part, the load itself: if it acts on the far side of a section, or on the foundation from outside"
+DIRECT = (
+    "direct part of the contribution of CAUSE: the load itself, if it acts on the far side "
+    "of the section, or on the foundation from outside"
+)
 # The loads of a section: along n, e1 and e2, and about them. The stresses they make.
 SECTION_FORCES, SECTION_MOMENTS = ("N", "Q1", "Q2"), ("T", "M1", "M2")
 RESULTANTS = SECTION_FORCES + SECTION_MOMENTS

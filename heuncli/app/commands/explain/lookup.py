@@ -86,14 +86,10 @@ def read_rows() -> list[Row]:
 
 
 def _group_results() -> dict[str, list[str]]:
-    """Group the paths of the results by their last word; those of shares stand together."""
+    """Group the paths of the results by their last word; those of contributions by cause come last."""
     paths: dict[str, list[str]] = {}
-    for row in ROWS:
-        whole, _, word = row.path.rpartition(".")
-        place = "shares.CAUSE" if is_share(row) else whole
-        path = f"{place}.{word}" if place else word
-        if row.meaning != NOT_YET and path not in paths.setdefault(word, []):
-            paths[word].append(path)
+    for row in sorted((row for row in ROWS if row.meaning != NOT_YET), key=is_share):
+        paths.setdefault(row.path.rpartition(".")[2], []).append(row.path)
     return paths
 
 
