@@ -120,13 +120,13 @@ def block(name: str) -> Quantity:
 def shares(prefix: str, *quantities: Quantity) -> tuple[Quantity, ...]:
     """Make the rows of the shares that each cause has in the force and moment (or other quantities) at a path."""
     wrench = vector("force", "N"), vector("moment", "N·m")
-    meaning = "contribution of CAUSE: `gravity`, the name of a force, `drives` or `motion`"
+    meaning = "contribution of CAUSE"
     return rows(f"{prefix}.shares.CAUSE", meaning, *(quantities or wrench))
 
 
 DIRECT = (
-    "direct part of that contribution, the load itself: for a section if it acts "
-    "on the far side, for the foundation if it is external"
+    "direct part of the contribution of CAUSE: the load itself, if it acts on the far side "
+    "of the section, or on the foundation from outside"
 )
 # The loads of a section: along n, e1 and e2, and about them. The stresses they make.
 SECTION_FORCES, SECTION_MOMENTS = ("N", "Q1", "Q2"), ("T", "M1", "M2")

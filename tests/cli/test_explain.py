@@ -178,8 +178,8 @@ def test_every_code_is_explained(heun: Heun) -> None:
 
 def test_a_code_is_told_with_its_example_and_cure(heun: Heun) -> None:
     told = heun("explain", "unknown-joint").stdout
-    assert told.startswith("# unknown-joint\n\nA torque in a joint that there is not.\n")
-    assert "- pivott\n+ pivot\n" in told
+    assert told.startswith("# unknown-joint\n\nThere is no joint of this name.\n")
+    assert "joint: pivott, value: 3}\n    + motor: {type: torque, joint: pivot, value: 3}\n" in told
     assert heun("explain", "[unknown-joint]").stdout == told
     done = heun("explain", "unknown-jiont")
     assert (done.returncode, "did you mean: heun explain unknown-joint?" in done.stderr) == (2, True)

@@ -31,6 +31,9 @@ from tests.shared.cited_texts import equations
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
+(RUN,) = (command for command in COMMANDS if command.name == "run")
+OF_RUN = {(field.option.words, field.option.help) for field in list_fields(RUN.request)}
+ALIKE = ("`--case NAME`", "`--units UNIT,...`")  # mean what they mean in `heun run`, in other words
 SEEN = 3  # words by which a group of equations is seen
 SOLVED = [row for row in ROWS if row.meaning != NOT_YET]
 
@@ -74,8 +77,8 @@ def grouped(chosen: Sequence[Quantity]) -> Iterator[tuple[str, list[Quantity], s
 
 
 def results() -> Iterator[tuple[str, str, str]]:
-    """The numbers of the results with their units."""
-    for names, members, meaning in grouped([row for row in SOLVED if row.units]):
+    """The numbers of the results with their units; those of shares stand above the table."""
+    for names, members, meaning in grouped([row for row in SOLVED if row.units and not is_share(row)]):
         each = [unit_of(row) for row in members]
         yield names, ", ".join(each[:1] if len(set(each)) == 1 else each), meaning
 
@@ -116,14 +119,12 @@ def joints() -> Iterator[tuple[str, ...]]:
     """What each kind of joint is called, holds and takes."""
     for kind in TYPES.values():
         accepted = list_aliases("joints", kind.name)
-        refused = [word for word in kind.synonyms if word not in accepted]
         yield (
             f"`{kind.name}`",
             quoted(accepted),
             str(kind.row_count),
             quoted(driven(kind)),
             quoted(kind.loads),
-            ", ".join(refused),
         )
 
 
@@ -140,23 +141,32 @@ def methods() -> Iterator[tuple[str, ...]]:
 
 
 def options(command: Command) -> Iterator[tuple[str, str]]:
-    """The arguments and options of a command."""
+    """The arguments and options of a command; those that mean the same as in `heun run` stand in the last row."""
+    shared: list[str] = []
     for option in (field.option for field in list_fields(command.request)):
         value = (option.metavar or "").replace("|", "\\|")
-        yield f"`{' '.join([', '.join(option.words), value]).strip()}`", option.help.replace("|", "\\|")
+        cell = f"`{' '.join([', '.join(option.words), value]).strip()}`"
+        if command.name != "run" and (cell in ALIKE or (option.words, option.help) in OF_RUN):
+            shared.append(cell if "--format" in option.words else quoted(option.words) or cell)
+        else:
+            yield cell, option.help.replace("|", "\\|")
+    if shared:
+        yield ", ".join(shared), "as in [heun run](#heun-run)"
 
 
 def keys() -> Iterator[tuple[str, str]]:
-    """Each key of the format with the chapters of the page on it."""
+    """The keys of the format with the chapters of the page on them; those of the same chapters together."""
     places: dict[str, dict[str, list[str]]] = {}
     for place in PLACES:
         places.setdefault(place.key, {}).setdefault(place.heading, []).extend(place.types)
+    alike: dict[str, list[str]] = {}
     for key in sorted(places, key=str.lower):
         links = []
         for heading, types in places[key].items():
             of = f" of {quoted(sorted(set(types)))}" if types else ""
             links.append(f"[{heading}](format.md#{anchor(heading)}){of}")
-        yield f"`{key}`", "; ".join(links)
+        alike.setdefault("; ".join(links), []).append(key)
+    return ((quoted(names), links) for links, names in alike.items())
 
 
 def types() -> Iterator[tuple[str, str]]:
@@ -180,29 +190,6 @@ def words_of_expressions() -> Iterator[tuple[str, str]]:
     yield quoted(list(u.UNITS)), "[Units](format.md#units)"
     yield quoted([*ARITY, *CONSTANTS]), "[Expressions](format.md#expressions)"
     yield quoted([row.name for row in METHODS]), "[The list](methods.md#the-list)"
-
-
-def results_by_word() -> Iterator[tuple[str, str]]:
-    """Each last word of a path of the results with its paths; those of shares stand together."""
-    paths: dict[str, list[str]] = {}
-    for row in SOLVED:
-        whole, _, word = row.path.rpartition(".")
-        path = "shares.CAUSE" if is_share(row) else whole
-        paths.setdefault(word, []).append(f"`{path}.{word}`" if path else f"`{word}`")
-    for word in sorted(paths, key=str.lower):
-        yield f"`{word}`", f"[Paths](results.md#paths): {', '.join(dict.fromkeys(paths[word]))}"
-
-
-def options_by_word() -> Iterator[tuple[str, str]]:
-    """Each option with the commands that know it."""
-    known: dict[str, list[str]] = {}
-    for command in COMMANDS:
-        for option in (field.option for field in list_fields(command.request)):
-            for word in option.words:
-                known.setdefault(word, []).append(command.name)
-    for word in sorted(known, key=str.lower):
-        links = (f"[heun {name}](commands.md#{anchor(f'heun {name}')})" for name in known[word])
-        yield f"`{word}`", ", ".join(links)
 
 
 def pages() -> Iterator[tuple[str, str]]:
@@ -235,15 +222,13 @@ TABLES = (
     Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
-    Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes", "also called"), list(joints())),
+    Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes"), list(joints())),
     Table("format", "Forces", ("type", "what it is"), list(loads())),
     Table("methods", "The list", ("name", "order", "kind", "steps", "orientation", "purpose"), list(methods())),
     *(Table("commands", f"heun {each.name}", ("option", "meaning"), list(options(each))) for each in COMMANDS),
     Table("index", "Keys of a spec", ("key", "see"), list(keys())),
     Table("index", "Types", ("type", "see"), list(types())),
     Table("index", "Units, functions, methods", ("words", "see"), list(words_of_expressions())),
-    Table("index", "Words of the results", ("word", "paths"), list(results_by_word())),
-    Table("index", "Options", ("option", "of"), list(options_by_word())),
 )
 
 

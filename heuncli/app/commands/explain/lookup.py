@@ -1,4 +1,4 @@
-"""Look a word up in the manual: its pages on engineering terms and index, and the headings of all pages.
+"""Look a word up in the manual: engineering terms, the index, options of commands, paths of results, and headings.
 
 A place that treats the word comes before one that only mentions it: first the terms and subjects that are the word,
 then headings, then keys, types, results, units and options; last those that contain it.
@@ -18,11 +18,12 @@ from heuncli.app.commands.explain.pages import (
     read_sections,
 )
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results_schema import NOT_YET, ROWS, is_share
 
 TABLES = ("words", "index")  # pages whose tables lead from words to places
+OPTION = re.compile(r"(?<![\w`-])--?[a-zA-Z][\w-]*")
 LINK = re.compile(r"\[([^]]*)\]\((\w+)\.md(?:#([\w-]+))?\)")
-PATH = re.compile(r"`([\w.]+)`")
-SUBJECTS, RESULTS, OPTIONS = "Subjects", "Words of the results", "Options"
+SUBJECTS, RESULTS, OPTIONS = "Subjects", "Paths", "Options"
 UNITS = "Units, functions, methods"
 MAX_MENTIONS = 3
 
@@ -62,21 +63,44 @@ class Row(NamedTuple):
     def list_places(self) -> Iterator[Place]:
         """Yield the places that it leads to."""
         if self.heading == RESULTS:
-            yield from (Place("results", "Paths", path) for path in PATH.findall(self.text) if "." in path)
-        for text, page, anchor in () if self.heading == RESULTS else LINK.findall(self.text):
+            yield from (Place("results", RESULTS, path) for path in self.text.split() if "." in path)
+        elif self.heading == OPTIONS:
+            yield from (Place("commands", heading) for heading in self.text.split("; "))
+        for text, page, anchor in () if self.heading in (RESULTS, OPTIONS) else LINK.findall(self.text):
             section = find_section(page, anchor) if anchor else None
             yield Place(page, section.heading if section else text if anchor else "")
 
 
 def read_rows() -> list[Row]:
-    """Read the rows of the tables that lead from words to places."""
-    return [
+    """Read the rows that lead from words to places: of the tables, of the results, and of the options of commands."""
+    tables = [
         Row(page, section.heading, *map(str.strip, line[2:].rstrip("|").split(" | ", 1)))
         for page in TABLES
         for section in read_sections(page)
         if section.level == 2
         for line in _list_rows(section.text)
     ]
+    results = [Row("results", RESULTS, word, " ".join(paths)) for word, paths in _group_results().items()]
+    options = [Row("commands", OPTIONS, word, "; ".join(commands)) for word, commands in _group_options().items()]
+    return [*tables, *results, *options]
+
+
+def _group_results() -> dict[str, list[str]]:
+    """Group the paths of the results by their last word; those of contributions by cause come last."""
+    paths: dict[str, list[str]] = {}
+    for row in sorted((row for row in ROWS if row.meaning != NOT_YET), key=is_share):
+        paths.setdefault(row.path.rpartition(".")[2], []).append(row.path)
+    return paths
+
+
+def _group_options() -> dict[str, list[str]]:
+    """Group the sections on commands by the options in their tables."""
+    sections: dict[str, list[str]] = {}
+    for section in read_sections("commands"):
+        cells = (line.split(" | ", 1)[0] for line in _list_rows(section.text) if section.level == 2)
+        for option in dict.fromkeys(word for cell in cells for word in OPTION.findall(cell.replace("`", " "))):
+            sections.setdefault(option, []).append(section.heading)
+    return sections
 
 
 def _list_rows(text: str) -> list[str]:
