@@ -4,6 +4,10 @@ A program runs on jets (value, first and second derivative) as evaluator.py runs
 each operation. `jet` propagates the derivatives in time on the selected branches; at a jump or kink they are those of
 the piece that begins there, which the derivatives of equal values decide. `slope` is the first derivative along any
 direction of the variables, on the branches that `evaluate_program` takes.
+
+An infinite rate marks a value that is continuous and has no derivative, as sqrt(x) at 0; a rate that is not a number
+may belong to a jump, as of an angle at the origin. Where u(x) = 0 and v is continuous, (u v)' = u' v, whatever v' is:
+x*sqrt(abs(x)) has the derivative 0 at 0. A program's own rate is finite or NaN.
 """
 
 from __future__ import annotations
@@ -37,7 +41,7 @@ if not cython.compiled:
         whole_power,
     )
     from heuncli.kernel.expressions import Expressions, address_of
-    from heuncli.kernel.libm import NAN, cos, cosh, floor, sin, sinh
+    from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, floor, sin, sinh
     from heuncli.kernel.programs import (
         ABS,
         ADD,
@@ -90,7 +94,9 @@ if not cython.compiled:
 def jet(programs: cython.pointer[Programs], program: Program, t: cython.double) -> Jet:
     """Return value, first and second derivative of a program in time alone; NaN if it cannot be computed."""
     x: Jet = run_on_jets(programs, program, t, cython.NULL)
-    return x if x.value - x.value == 0.0 else Jet(NAN, NAN, NAN)
+    if x.value - x.value != 0.0:
+        return Jet(NAN, NAN, NAN)
+    return x if x.rate - x.rate == 0.0 else Jet(x.value, NAN, NAN)
 
 
 def slope(programs: cython.pointer[Programs], program: Program, slopes: cython.p_double) -> cython.double:
@@ -103,7 +109,7 @@ def slope(programs: cython.pointer[Programs], program: Program, slopes: cython.p
         programs.holding = FREE
         x = run_on_jets(programs, program, t, slopes)
         programs.holding = HELD
-    return x.rate if x.value - x.value == 0.0 else NAN
+    return x.rate if x.value - x.value == 0.0 and x.rate - x.rate == 0.0 else NAN
 
 
 def run_on_jets(programs: cython.pointer[Programs], program: Program, t: cython.double, slopes: cython.p_double) -> Jet:
@@ -175,7 +181,7 @@ def subtract_jets(a: Jet, b: Jet) -> Jet:
 
 def sign_after(u: Jet) -> cython.double:
     """Return a number of the sign that a value has just after its instant, as far as its derivatives tell."""
-    if u.value != 0.0 or u.rate != u.rate:
+    if u.value != 0.0 or u.rate - u.rate != 0.0:
         return u.value
     if u.rate != 0.0 or u.second != u.second:
         return u.rate
@@ -265,10 +271,25 @@ def constant_jet(f: cython.double) -> Jet:
     return Jet(f, 0.0, 0.0)
 
 
+def is_infinite(x: cython.double) -> cython.bint:
+    """Return whether x is inf or -inf."""
+    return x == x and x - x != 0.0
+
+
+def scale_rate(factor: cython.double, rate: cython.double) -> cython.double:
+    """Return factor times a rate, and 0 for the factor 0 even if the rate is infinite."""
+    return 0.0 if factor == 0.0 and is_infinite(rate) else factor * rate
+
+
 def chain_jets(u: Jet, f: cython.double, df: cython.double, ddf: cython.double) -> Jet:
-    """Return f(u) from f and its derivatives at u; if u is constant so is f(u), whatever f' is."""
+    """Return f(u) from f and its derivatives at u; if u is constant so is f(u), whatever f' is.
+
+    f is continuous at u where f' is not NaN.
+    """
     if u.rate == 0.0 and u.second == 0.0:
         return Jet(f, u.rate, u.second)
+    if (is_infinite(df) and u.rate == u.rate) or (is_infinite(u.rate) and df == df):
+        return Jet(f, INFINITY, NAN)
     return Jet(f, df * u.rate, ddf * u.rate * u.rate + df * u.second)
 
 
@@ -298,7 +319,7 @@ def jet_of_product(a: Jet, b: Jet) -> Jet:
     """(a b)' = a' b + a b',  (a b)'' = a'' b + 2 a' b' + a b''."""
     return Jet(
         a.value * b.value,
-        a.rate * b.value + a.value * b.rate,
+        scale_rate(b.value, a.rate) + scale_rate(a.value, b.rate),
         a.second * b.value + 2.0 * a.rate * b.rate + a.value * b.second,
     )
 
@@ -308,7 +329,7 @@ def jet_of_quotient(a: Jet, b: Jet) -> Jet:
     if b.value == 0.0:
         return constant_jet(NAN)
     q: cython.double = a.value / b.value
-    rate: cython.double = (a.rate - q * b.rate) / b.value
+    rate: cython.double = (a.rate - scale_rate(q, b.rate)) / b.value
     return Jet(q, rate, (a.second - 2.0 * rate * b.rate - q * b.second) / b.value)
 
 
@@ -318,7 +339,8 @@ def jet_of_power(a: Jet, b: Jet) -> Jet:
     n: cython.double = b.value
     y: cython.double = real_power(x, n)
     if b.rate == 0.0 and b.second == 0.0:
-        return chain_jets(a, y, scaled_power(n, x, n - 1.0), scaled_power(n * (n - 1.0), x, n - 2.0))
+        df: cython.double = INFINITY if x == 0.0 and 0.0 < n < 1.0 else scaled_power(n, x, n - 1.0)
+        return chain_jets(a, y, df, scaled_power(n * (n - 1.0), x, n - 2.0))
     rate: cython.double = NAN
     second: cython.double = NAN
     if x > 0.0:
@@ -348,7 +370,7 @@ def jet_of_length(a: Jet, b: Jet) -> Jet:
     """r² = a² + b²:  r r' = a a' + b b',  r r'' = a'² + b'² + a a'' + b b'' - r'²."""
     r: cython.double = hypotenuse(a.value, b.value)
     if not r > 0.0:
-        return Jet(r, NAN, NAN)
+        return Jet(r, INFINITY if a.rate == a.rate and b.rate == b.rate else NAN, NAN)
     rate: cython.double = (a.value * a.rate + b.value * b.rate) / r
     square: cython.double = a.rate * a.rate + b.rate * b.rate + a.value * a.second + b.value * b.second
     return Jet(r, rate, (square - rate * rate) / r)
@@ -398,7 +420,7 @@ def jet_of_trigonometric(op: cython.int, u: Jet) -> Jet:
     elif f != f:
         return constant_jet(NAN)
     root: cython.double = sqrt((1.0 - a) * (1.0 + a))
-    df = 1.0 / root if root > 0.0 else NAN
+    df = 1.0 / root if root > 0.0 else INFINITY
     if op == ASIN:
         return chain_jets(u, f, df, a * df * df * df)
     return chain_jets(u, f, -df, -a * df * df * df)
@@ -423,7 +445,7 @@ def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
     elif op == LOG:
         df = 1.0 / a
         return chain_jets(u, f, df, -df * df)
-    df = 0.5 / f if f > 0.0 else NAN
+    df = 0.5 / f if f > 0.0 else INFINITY
     return chain_jets(u, f, df, -df * df / f if f > 0.0 else NAN)
 
 

@@ -31,6 +31,7 @@ from tests.shared.scenes import solved
 H = 2e-3  # [rad], [m], of their rates [1/s], of forces [N]: of differences of the fourth order
 FINER = 8.0  # where the scene bends much: the error falls with its fourth power, rounding grows with it
 SAME = 1e-6  # of the largest entry of the row
+ROUNDING = 64.0 * float(np.finfo(float).eps)  # of the largest value: what an acceleration is summed from
 DIRECTIONS = 2  # random ones of states and inputs together: a wrong entry shows in any
 
 
@@ -167,8 +168,10 @@ def add_to_force(force: dict[str, Any], by: float) -> None:
         force["value"] = force["value"] + by
 
 
-def slope(case: Case, changes: dict[str, float], names: list[str], h: float) -> Array:
-    """The derivative of some values along a direction, differences of the fourth order."""
+def slope(case: Case, changes: dict[str, float], names: list[str], h: float) -> tuple[Array, float]:
+    """The derivative of some values along a direction, differences of the fourth order, and what rounding makes of it:
+    an acceleration that is 0 is the sum of those that are not.
+    """
     at = {}
     for k in (-2, -1, 1, 2):
         values = values_of(moved(case, {name: k * h * by for name, by in changes.items()}))
@@ -176,19 +179,22 @@ def slope(case: Case, changes: dict[str, float], names: list[str], h: float) -> 
     near, far = at[1] - at[-1], at[2] - at[-2]
     turns = np.array([n.endswith(".angle") for n in names])
     near, far = (np.where(turns, np.angle(np.exp(1j * d)), d) for d in (near, far))
-    return np.asarray((8.0 * near - far) / (12.0 * h))
+    largest = max(float(np.abs(values).max()) for values in at.values())
+    return np.asarray((8.0 * near - far) / (12.0 * h)), 1.5 * ROUNDING * largest / h
 
 
-def along(case: Case, space: StateSpace, direction: Array, h: float) -> tuple[Array, Array]:
-    """[accelerations; outputs] along a direction of [states, inputs]: by differences, and by A, B, C, D."""
+def along(case: Case, space: StateSpace, direction: Array, h: float) -> tuple[Array, float, Array]:
+    """[accelerations; outputs] along a direction of [states, inputs]: by differences, with their rounding, and by A, B,
+    C, D.
+    """
     n = len(space.states) // 2
     places = list(space.states[:n])
     wanted = [f"{name.partition('.')[0]}.{acceleration(name, case)}" for name in places] + list(space.outputs)
     inputs = [name.removesuffix(" acceleration") for name in space.inputs]
     of_drive = {own: drive for drive, own in case.driven.items()}
     columns = [*places, *map(rate_name, places), *(of_drive.get(name, f"force {name}") for name in inputs)]
-    found = slope(case, dict(zip(columns, direction.tolist(), strict=True)), wanted, h)
-    return found, np.vstack([np.hstack([space.A[n:], space.B[n:]]), np.hstack([space.C, space.D])])
+    found, rounding = slope(case, dict(zip(columns, direction.tolist(), strict=True)), wanted, h)
+    return found, rounding, np.vstack([np.hstack([space.A[n:], space.B[n:]]), np.hstack([space.C, space.D])])
 
 
 def acceleration(name: str, case: Case) -> str:
@@ -251,10 +257,10 @@ def by_differences(case: Case, inputs: list[str], names: list[str], rng: np.rand
         off = np.full(len(rows), np.inf)
         for h in (H, H / FINER, H / FINER**2):
             with suppress(SolveError):
-                found, right = along(case, space, direction, h)
+                found, rounding, right = along(case, space, direction, h)
                 size = np.abs(right).max(axis=1, initial=0.0)
                 size = np.maximum(size, SAME * size.max())
-                off = np.minimum(off, np.abs(found - right @ direction) / size)
+                off = np.minimum(off, np.maximum(np.abs(found - right @ direction) - rounding, 0.0) / size)
             if off.max() <= SAME:
                 break
         if not np.isfinite(off.max()):

@@ -40,7 +40,7 @@ def test_what_the_hint_says_makes_the_loads_determinate(heun: Heun, words: tuple
     assert PINS_NOTE not in told and "open:" not in told
 
 
-@pytest.mark.parametrize("spec", ["table", "bricard", "engine"])
+@pytest.mark.parametrize("spec", ["table", "bricard", "engine", "planetary"])
 def test_other_models_do_not_get_it(heun: Heun, spec: str) -> None:
     assert PINS_NOTE not in joints(heun, str(SPECS / f"{spec}.yaml"))
 

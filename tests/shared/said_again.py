@@ -174,7 +174,7 @@ def turns(study: Study, path: tuple[str, ...]) -> bool:
         if name in of:
             joint = getattr(of[name], "joint", None)
             return type(of[name]).__name__ == "Couple" if joint is None else turns(study, ("joints", joint))
-    return name in spec.joints and spec.joints[name].kind not in ("slide", "line", "plane", "rod")
+    return name in spec.joints and spec.joints[name].kind not in ("slide", "line", "plane", "curve", "rod")
 
 
 def error_of(study: Study, path: tuple[str, ...], unit: str) -> float:

@@ -11,6 +11,7 @@ from jsonschema import Draft7Validator
 from heuncli.app.cli.completion import complete_measures, complete_overrides
 from heuncli.base.errors import SpecError
 from heuncli.output.tables.export import to_json
+from heuncli.scene.file_format.entries import keys_of
 from heuncli.scene.file_format.foreign_words import TYPES
 from heuncli.scene.file_format.format import ENTRY_BLOCKS
 from heuncli.scene.file_format.json_schema import make_spec_schema
@@ -192,7 +193,7 @@ def test_a_load_without_type_is_named_by_its_keys(entry: str, message: str, hint
     assert second == f"  hint: {hint}"
 
 
-@pytest.mark.parametrize("entry", ["{}", "{joint: pivot}", "{from: ground.O, to: arm.end}", "{joint: pivot, k: 3}"])
+@pytest.mark.parametrize("entry", ["{}", "{joint: pivot}", "{from: ground.O, to: arm.end}"])
 def test_where_no_type_fits_all_are_listed(entry: str) -> None:
     (found,) = problems(SPEC.replace("forces:\n", f"forces:\n  f: {entry}\n"))
     assert "forces.f: 'type' is missing [missing-key]" in found
@@ -205,3 +206,38 @@ def test_joints_and_shapes_without_type_are_named_too() -> None:
     mass = "mass: 2, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1]"
     (found,) = problems(SPEC.replace(mass, "shapes: [{at: [0, 0, 0], mass: 2}]"))
     assert "bodies.sled.shapes.0: 'type' is missing; with 'at', 'mass' this is a point [missing-key]" in found
+
+
+def misspelt(key: str) -> str:
+    """The key without its last letter but one, or with one more."""
+    return key[:-2] + key[-1] if len(key) > 4 else f"{key}x"
+
+
+KEYS_OF_TYPES = [
+    (block, key)
+    for block in ("joints", "forces")
+    for key in dict.fromkeys(key for model in dict(ENTRY_BLOCKS[block]).values() for key in keys_of(model))
+    if key != "type"
+]
+
+
+@pytest.mark.parametrize(("block", "key"), KEYS_OF_TYPES, ids=[f"{block}.{key}" for block, key in KEYS_OF_TYPES])
+def test_a_misspelt_key_is_told_beside_the_missing_type(block: str, key: str) -> None:
+    """Each of the two has its place and its hint, whatever else the entry lacks."""
+    word = misspelt(key)
+    found = problems(SPEC.replace(f"{block}:\n", f"{block}:\n  one: {{{word}: 3}}\n"))
+    assert any(f"{block}.one: 'type' is missing" in problem for problem in found)
+    assert any(f"{block}.one.{word}: '{word}' is not known here [unknown-key]" in problem for problem in found)
+
+
+@pytest.mark.parametrize(
+    ("entry", "key", "hint"),
+    [("{joint: pivot, stifness: 3}", "stifness", "did you mean stiffness?"),
+     ("{joint: pivot, k: 3}", "k", "it is called stiffness here"),
+     ("{stiffness: 3, bogus: 1, joint: pivot}", "bogus", "known keys here: type, joint, stiffness, angle, damping, torque")],
+)  # fmt: skip
+def test_the_type_is_told_by_what_a_misspelt_key_means(entry: str, key: str, hint: str) -> None:
+    first, second = problems(SPEC.replace("forces:\n", f"forces:\n  f: {entry}\n"))
+    assert "with 'joint', 'stiffness' this is a turn_spring" in first or "with 'stiffness', 'joint'" in first
+    assert f"forces.f.{key}: '{key}' is not known here [unknown-key]" in second
+    assert hint in second

@@ -6,7 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli.base import tolerances
 from heuncli.output.tables.text_table import TextTable
+from heuncli.results.results import Array
+from heuncli.study.compose.recovery import Recovery
 from heuncli.study.quantities.digits import OPEN_NOTE
 from heuncli.study.queries.study import Study
 
@@ -15,7 +18,6 @@ PINS_NOTE = (
     "place of some pins; heun model lists what helps, heun explain open says why"
 )
 HEADING = "JOINTS"  # as tables of joints begin
-PARALLEL = 1e-6  # largest sine between the axes
 
 
 def add_pins_note(tables: Sequence[TextTable], study: Study) -> list[TextTable]:
@@ -31,7 +33,9 @@ def add_pins_note(tables: Sequence[TextTable], study: Study) -> list[TextTable]:
 
 
 def has_open_parallel_pins(study: Study) -> bool:
-    """Whether several pins of a spatial model have open reactions, and the axes of all these are parallel."""
+    """Whether several pins of a spatial model have open reactions, the axes of all these are parallel, and something
+    is open that a planar model does not have: gears leave open what is in the plane, which no other joints change.
+    """
     names = {name for name, block in study.results.joints.items() if block["open"]}
     if len(names) < 2 or study.results.model.get("space") != "spatial":
         return False
@@ -44,4 +48,15 @@ def has_open_parallel_pins(study: Study) -> bool:
     if len(axes) < 2:
         return False
     sines = np.linalg.norm(np.cross(axes[0], np.array(axes[1:])), axis=1)
-    return bool((sines < PARALLEL).all())
+    return bool((sines < tolerances.PARALLEL).all()) and is_open_across_plane(recovery, axes[0])
+
+
+def is_open_across_plane(recovery: Recovery, normal: Array) -> bool:
+    """Whether a joint's force along a normal (3,), or its moment about an axis in the plane, is open."""
+    stress = recovery.indeterminate
+    if stress is None:
+        return False
+    forces, moments = stress.shares[:, :, :3], stress.shares[:, :, 3:]
+    along = np.einsum("i,jtik->jtk", normal, forces)[:, :, None]
+    tilting = moments - normal[:, None] * np.einsum("i,jtik->jtk", normal, moments)[:, :, None]
+    return bool(stress.has_share(along).any() or stress.has_share(tilting, stress.length).any())

@@ -13,8 +13,8 @@ from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import Entry, fields_of, keys_of
 from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.foreign_words import FORM_HINTS
-from heuncli.scene.file_format.missing_types import missing_type_error
-from heuncli.scene.file_format.pydantic_errors import translate_errors, unknown_key_error, unknown_type_error
+from heuncli.scene.file_format.missing_types import missing_type_errors
+from heuncli.scene.file_format.pydantic_errors import translate_errors, unknown_key_error
 from heuncli.scene.file_format.quantity import describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
 from heuncli.scene.file_format.validation import validate_entry
@@ -75,10 +75,8 @@ class DocumentReader:
         model = models.get(tag) if type(tag) is str else None
         if model is not None:
             return self.read_model(path, data, model)
-        code, violation = missing_type_error(data, models, self.context) or unknown_type_error(
-            data, block, list(models)
-        )
-        self.report(code, violation._replace(path=(*path, *violation.path)))
+        for code, violation in missing_type_errors(data, models, block, self.context):
+            self.report(code, violation._replace(path=(*path, *violation.path)))
         return None
 
     def read_head(self) -> f.HeadEntry:

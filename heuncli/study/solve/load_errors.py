@@ -30,7 +30,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates, KernelBodyStates, mak
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_coupling_actions, list_rope_actions
 from heuncli.loads.kinetostatics.energy import energy_block
-from heuncli.loads.kinetostatics.foundation import central_axis, total_load
+from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.joint_axes import rotate_joint_loads
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
 from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
@@ -166,8 +166,7 @@ class LoadErrors:
                 terms,
             )
         if "foundation" in self.compared:
-            driven = [load for load in joints if load.drive is not None]
-            self.add_foundation(states, [*acting, *list_joint_actions(driven)], terms)
+            self.add_foundation(states, [*acting, *list_joint_actions(joints)], terms)
         if self.setup.cuts and "sections" in self.compared:
             self.add_sections(states, [*list_whole_joint_actions(joints), *acting], terms)
         if "forces" in self.compared:
@@ -268,6 +267,8 @@ class LoadErrors:
         """Add the total of the foundation, its elements and the mass effects.
 
         The orbital and the spin part of a rolling wheel may have opposite errors: each is shown, so each is compared.
+        The parts of an element are compared as they are shown, summed about the point of the first: a rope pulls at
+        the ground by its drum and by sheaves that are far from it.
         """
         mechanism, origin = self.setup.scene.mechanism, self.setup.moment_point
         arm = states.centre - origin
@@ -275,20 +276,19 @@ class LoadErrors:
         self.reach = max(self.reach, float(reach.max()))
         moments = terms.moment + reach * terms.force
         forces_rounding, moments_rounding = terms.rounding
-        load_actions = [action for action in actions if action.kind != "joint" and action.from_end is not None]
-        elements = [on for action in load_actions if (on := action.ground_load()) is not None]
+        elements = [load for (kind, _), load in find_ground_loads(mechanism, actions).items() if kind == "elements"]
         total_wrench = total_load(states, terms.weight - terms.ma, terms.spin, actions, origin)
         self.add_axis(*total_wrench)
         wrenches = [
-            ("foundation", *total_wrench),
-            ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1)),
-            ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1)),
-            *(("elements", force, moment) for force, moment, _ in elements),
+            ("foundation", *total_wrench, reach),
+            ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1), reach),
+            ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1), reach),
+            *(("elements", *load[:2], reach + np.abs(load.point - origin).max(axis=1)) for load in elements),
         ]
-        for kind, force, moment in wrenches:
+        for kind, force, moment, lever in wrenches:
             F, M = project_to_plane(force, moment) if mechanism.planar else (force, moment)
             self.add_values((kind, "force"), F, forces_rounding, terms.force)
-            self.add_values((kind, "moment"), M, moments_rounding + reach * forces_rounding, moments)
+            self.add_values((kind, "moment"), M, moments_rounding + lever * forces_rounding, moments)
 
     def add_axis(self, force: Array, moment: Array) -> None:
         """Add the central axis of the wrench at the requested instants: where the force is small, its error is far

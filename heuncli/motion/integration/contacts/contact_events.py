@@ -29,7 +29,7 @@ from heuncli.motion.integration.contacts.latches import (
     add_catches,
     work_of_catches,
 )
-from heuncli.motion.integration.contacts.resting import find_contradicted, find_resting, is_short_flight
+from heuncli.motion.integration.contacts.resting import acceleration_terms, find_contradicted, find_resting, is_short_flight
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
     chattering_error,
@@ -151,6 +151,29 @@ def require_caught(
             raise SolveError(Problem("latch-contradicts", message, None, hint, f"latches.{contact.name}"))
 
 
+def require_yielding(layout: Layout, problem: ContactProblem, opening: Array, noise: Array, t: float) -> None:
+    """Raise SolveError for contacts that close on, though nothing that they load can move: drives prescribe it.
+
+    opening (k,): the rates, or the accelerations, at which the contacts open
+    """
+    mechanism = layout.mechanism
+    is_driven_on = ~problem.moves & (opening < -noise)
+    if not (is_driven_on.any() and mechanism.laws):
+        return
+    contact = layout.contacts[problem.touching.indices[np.flatnonzero(is_driven_on)[0]]]
+    owner = mechanism.owner_path(contact.joint)
+    drives = join_names([law.name for law in mechanism.laws])
+    if contact.is_rope:
+        message = f"at t = {t:.9g} s the rope {contact.name} is taut, and the prescribed motion ({drives}) stretches it"
+        hint = "end the prescribed motion before, or give the rope a stiffness"
+    else:
+        message = f"at t = {t:.9g} s the drive ({drives}) pushes against the stop {contact.name} of {owner}"
+        hint = "end the prescribed motion before the stop, or drive by a force or torque, which yield"
+    raise SolveError(
+        Problem("stop-contradicts", message, hint=hint, entry_path=owner if contact.is_rope else f"stops.{contact.name}")
+    )
+
+
 @record
 class UnrefinedImpulses:
     """Impulses as the contact problem gives them, and the columns of unit impulses.
@@ -211,6 +234,8 @@ class Contacts:
         sides = add_catches(self.layout, sides, catches)
         solution, problem = self.make_problem(given_impulse, sides, contacts_touching)
         require_caught(self.evaluator, sides, solution, catches, given_impulse.before_time)
+        rates = contacts_touching.rate + problem.rates
+        require_yielding(self.layout, problem, rates, contacts_touching.noise, given_impulse.before_time)
         outcome = self.solve(given_impulse, sides, solution.columns, problem, catches)
         self.holding = latches.holding()
         self.holding[contacts_touching.indices] = outcome.holding
@@ -285,6 +310,13 @@ class Contacts:
             )
             holding, acceleration = find_resting(
                 contacts_touching, problem.A, problem.moves, impulses.rate, after_evaluation, self.layout
+            )
+            noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(
+                self.layout, contacts_touching, problem.A, after_evaluation
+            )
+            is_still = impulses.rate == 0.0
+            require_yielding(
+                self.layout, problem, np.where(is_still, acceleration, 0.0), noise, given_impulse.after_time
             )
             shortest_time = tolerances.SHORTEST_FLIGHT * self.last
             is_short = (

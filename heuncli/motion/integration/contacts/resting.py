@@ -37,7 +37,7 @@ def find_resting(
     holding = np.full(len(contacts), OPEN)
     holding[candidates[solution.bears]] = CLOSED
     holding[candidates[solution.depends]] = CLOSED_BY_OTHERS
-    holding[is_still & ~moves] = CLOSED_BY_OTHERS
+    holding[is_still & ~moves & (q <= noise)] = CLOSED_BY_OTHERS  # beyond, a drive opens it
     return holding, q + A @ scatter(solution.z, candidates, len(contacts))
 
 
