@@ -1,16 +1,19 @@
 """`python -m tests.gallery OUT [--only KIND,...]`: all that a client sees, drawn into a folder, with an index.html.
 
-OUT gets pictures as SVG and PNG, moving pages as HTML and PNG, reports as HTML, PDF and a PNG of each chapter's sheet;
-findings.txt lists what tests/gallery/checks.py finds in them. Kinds: those of tests/gallery/contents.py (scene, history,
-sections, polar, modes, balance, sweep, chart), page, report. PNG, PDF and findings of pages need a Chromium.
+OUT gets pictures as SVG and PNG, moving pages as HTML and PNG, reports as HTML, PDF and one long PNG;
+findings.txt lists what tests/gallery/checks.py finds in them. Kinds: those of tests/gallery/contents.py (scene,
+history, sections, polar, modes, balance, sweep, chart), page, report. PNG, PDF and findings of pages need a Chromium.
 """
 
 from __future__ import annotations
 
 import argparse
 import html
+import io
+import shlex
 import sys
 import time
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,6 +42,7 @@ def draw_picture(row: Picture, folder: Path, browser: Chromium | None) -> Drawn:
     target = folder / f"{row.name}.svg"
     spec = str(find_spec(row.spec))
     if row.before:
+        target.with_suffix(".sqlite").unlink(missing_ok=True)
         run(row.before.format(spec=spec, target=target.with_suffix("")))
         spec = str(target.with_suffix(".sqlite"))
     option = "-o" if row.command == "plot" else "--save"
@@ -81,7 +85,8 @@ def draw_report(row: Report, folder: Path, browser: Chromium | None) -> Drawn:
 def run(words: str) -> float:
     """Run a command in this process; returns its seconds. Raises RuntimeError where it fails."""
     begun = time.perf_counter()
-    code = enter(tuple(words.split()))
+    with redirect_stdout(io.TextIOWrapper(io.BytesIO())):
+        code = enter(tuple(shlex.split(words)))
     if code:
         raise RuntimeError(f"heun {words}: exit code {code}")
     return time.perf_counter() - begun

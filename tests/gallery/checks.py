@@ -23,7 +23,7 @@ SHRUNK = 0.2  # of a box's height, on each side: a stroke beyond is a touch, not
 FAINT = 0xD8  # each colour of a stroke that is paler is a grid line
 SAMPLES = 60  # places along a side of a picture at which ink is looked for
 PATH = re.compile(r"\b(?:joints|forces|coordinates|bodies|couplings|foundation|points|sections|energy|stops)\.\w+")
-NOISE = re.compile(r"\d[eE][-−](?:[6-9]|\d\d)\b|\b0\.0000\d+ ")
+NOISE = re.compile(r"\d[eE][-−](?:[6-9]|\d\d)\b|\b0\.000\d+ (?!s\b)")
 DIGITS = re.compile(r"(?<![\w.])[-−]?(\d+\.?\d*)(?:e[-−+]?\d+)?(?![\w.])")
 FOLDER = re.compile(r"(?:^|\s)/[\w.-]+/[\w./-]+")
 MOST_DIGITS = 5  # significant ones that a reader takes in
@@ -124,7 +124,9 @@ def find_empty_thirds(svg: str) -> list[Finding]:
             low, high = third * size / 3.0, (third + 1) * size / 3.0
             filled = {int(SAMPLES * (place[of] - low) / (high - low)) for place in places if low <= place[of] < high}
             if len(filled) < SAMPLES // 3:
-                found.append(Finding("empty", f"{side} {third + 1} of 3: ink in {len(filled)} of {SAMPLES} strips", low, 0))
+                found.append(
+                    Finding("empty", f"{side} {third + 1} of 3: ink in {len(filled)} of {SAMPLES} strips", low, 0)
+                )
     return found
 
 

@@ -1,4 +1,4 @@
-"""What the gallery draws: a row a picture, a row a page, a row a report; `{spec}` is a spec beside the package or here."""
+"""What the gallery draws: a row a picture, a page, a report; their specs are those beside the package and in scenes/."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import NamedTuple
 from tests.shared.folders import ROOT
 
 SCENES = Path(__file__).with_name("scenes")
+ANGLE = "--x coordinates.main.angle --units deg,kN"
+SWEEP = "sweep {spec} %s --measure 'max joints.main.force' -q --store {target}.sqlite"
 
 
 class Picture(NamedTuple):
-    """A picture of heun plot: its kind, its spec, the words behind it; before: another command that writes its source."""
+    """A picture of heun plot: its kind, spec, the words behind it; before: a command that writes its source."""
 
     kind: str
     spec: str
@@ -58,7 +60,7 @@ PICTURES = (
     Picture("scene", "suspension", "scene --units kN,mm"),
     Picture("scene", "suspension", "scene --view x --units kN,mm"),
     Picture("scene", "press", "scene --units kN,mm"),
-    Picture("scene", "press", "scene wrist --at 0.1,0.25".replace(" wrist", " rod.small")),
+    Picture("scene", "press", "scene rod.small --at 0.1,0.25"),
     Picture("scene", "gearbox", "scene --units N,mm"),
     Picture("scene", "gearbox", "scene --view z --units N,mm"),
     Picture("scene", "crane_ropes", "scene --units kN,m"),
@@ -70,10 +72,10 @@ PICTURES = (
     Picture("scene", "planetary", "scene --units N,mm"),
     Picture("history", "suspension", "forces.lower_front.force forces.spring.value --case all --units kN,mm"),
     Picture("history", "press", "joints.main.force coordinates.main.rate forces.tool.value --units kN,rpm"),
-    Picture("history", "press", "joints.main.force joints.big.force joints.guide.force --x coordinates.main.angle --units deg,kN"),
-    Picture("history", "gearbox", "joints.in_float.radial joints.mid_float.radial joints.out_float.radial couplings.second.force --units kN"),
+    Picture("history", "press", f"joints.main.force joints.big.force joints.guide.force {ANGLE}"),
+    Picture("history", "gearbox", "joints.in_float.radial joints.out_float.radial couplings.second.force --units kN"),
     Picture("history", "crane_ropes", "couplings.hoist.tension couplings.pendant.tension --units kN"),
-    Picture("history", "v_engine", "joints.main.force joints.rear.force --x coordinates.main.angle --units deg,kN"),
+    Picture("history", "v_engine", f"joints.main.force joints.rear.force {ANGLE}"),
     Picture("history", "engine", "joints.main.force joints.wrist.force coordinates.main.rate --units kN,rpm"),
     Picture("history", "engine", "forces.gas.value --x coordinates.bore.travel --units kN,mm"),
     Picture("history", "axle_loads", "joints.front.force joints.rear.force --case all --units kN"),
@@ -94,8 +96,8 @@ PICTURES = (
     Picture("modes", "chain", "modes"),
     Picture("balance", "six_cylinder", "balance"),
     Picture("balance", "slider_crank", "--counterweight crank.main", command="balance"),
-    Picture("sweep", "press", "", before="sweep {spec} r=60:100/9mm F=400:630/5kN --measure joints.main.force -q --store {target}.sqlite"),
-    Picture("sweep", "engine", "", before="sweep {spec} n=1000:3000/9rpm --measure joints.main.force -q --store {target}.sqlite"),
+    Picture("sweep", "press", "", before=SWEEP % "r=70:90/5mm F=400:560/5kN"),
+    Picture("sweep", "engine", "", before=SWEEP % "n=1000:3000/9rpm"),
     Picture("chart", "double", "--time-limit 20", command="chart"),
 )  # fmt: skip
 
