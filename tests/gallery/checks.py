@@ -232,11 +232,16 @@ DOCUMENT = """(() => {
   const boxes = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node; (node = walker.nextNode());) {
     const home = node.parentElement;
-    if (!node.data.trim() || home.closest("script, style, desc, title, details:not([open]) > :not(summary)")) continue;
+    if (!node.data.trim() || home.closest("script, style, desc, title, code, details:not([open]) > :not(summary)")) continue;
     const range = document.createRange();
     range.selectNodeContents(node);
+    let [low, high] = [-Infinity, Infinity];  // what is scrolled out of a part of the page is not seen
+    for (let e = home; e && e !== document.body; e = e.parentElement)
+      if (getComputedStyle(e).overflowY !== "visible")
+        [low, high] = [Math.max(low, e.getBoundingClientRect().top), Math.min(high, e.getBoundingClientRect().bottom)];
     for (const b of range.getClientRects())
-      if (b.width && b.height) boxes.push([b.left, b.top + scrollY, b.right, b.bottom + scrollY, node.data.trim()]);
+      if (b.width && b.height && b.bottom > low && b.top < high)
+        boxes.push([b.left, b.top + scrollY, b.right, b.bottom + scrollY, node.data.trim()]);
   }
   const tables = [...document.querySelectorAll("table")].filter(e => e.offsetParent).map(e => {
     const b = e.getBoundingClientRect(), home = e.parentElement.getBoundingClientRect();

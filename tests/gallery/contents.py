@@ -1,4 +1,4 @@
-"""What the gallery draws: a row a picture, a page, a report; their specs are those beside the package and in scenes/."""
+"""What the gallery draws: a row a picture, a page, a report, of specs beside the package and of those in scenes/."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ PICTURES = (
     Picture("balance", "slider_crank", "--counterweight crank.main", command="balance"),
     Picture("sweep", "press", "", before=SWEEP % "r=70:90/5mm F=400:560/5kN"),
     Picture("sweep", "engine", "", before=SWEEP % "n=1000:3000/9rpm"),
-    Picture("chart", "double", "--time-limit 20", command="chart"),
+    Picture("chart", "double", "--methods RK4,DOPRI5,DOP853,Gauss6,Radau5 --tolerances 1e-4,1e-6,1e-8,1e-10", command="chart"),
 )  # fmt: skip
 
 PAGES = (
