@@ -37,6 +37,10 @@ class Units(NamedTuple):
         """Return the display unit of an SI unit, and how many of it make one."""
         return self.display_units.get(unit, (unit, 1.0))
 
+    def is_chosen(self, unit: str) -> bool:
+        """Whether the user chose the display unit of an SI unit, or one from which it is derived."""
+        return unit in self.display_units and self.display_units[unit] != STRESS.get(unit)
+
 
 def parse_units(words: str) -> Units:
     """Parse the display units of `--units kN,mm,deg`. Raises Finding."""
