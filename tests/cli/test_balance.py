@@ -43,7 +43,6 @@ def found(heun: Heun, *words: str) -> Any:
     return json.loads(done.stdout)
 
 
-@pytest.mark.heavy
 def test_json_keeps_to_the_contract(heun: Heun, crank: str) -> None:
     told = found(heun, crank)
     assert told["cycle"] | {"samples": 0} == {

@@ -13,6 +13,8 @@ from tests.oracle.turns import random_rotation
 from tests.shared.cycling import Cylinder, amplitude, balance_of, engine, four_bar
 from tests.shared.scenes import moving, solved
 
+pytestmark = pytest.mark.heavy  # a cycle of many instants; the plain kernel balances in tests/cli/test_balance.py
+
 SEEDS = range(4)
 ROUNDING = 1e-12  # of the largest: some hundred roundings, and what closed chains are settled to
 SETTLED = 1e-10  # of the largest: where a run's poses enter, closed to OPEN_GAP

@@ -15,6 +15,7 @@ from tests.shared.misdrawn_loops import MODES, drawn, known
 
 pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, which has the same bits
 
+
 @pytest.mark.parametrize("seed", range(500))
 def test_loops_close_near_their_drawing(seed: int) -> None:
     """Off by up to 3 %, in every way of drawing by turns; the closed pose is known by construction."""

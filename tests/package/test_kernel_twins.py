@@ -222,6 +222,7 @@ def test_what_becomes_of_a_text() -> None:
     ]
 
 
+@pytest.mark.heavy  # texts, which are those of both kernels
 def test_every_module_is_included_line_for_line(tmp_path: Path) -> None:
     """So errors name the right line; and what says the same stays as it is, with its time."""
     package = one_module.write_sources(FOLDER, tmp_path).parent

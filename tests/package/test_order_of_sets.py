@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+import pytest
+
 from heuncli.base.spelling import list_words, suggest
 from tests.shared.folders import ROOT
 
@@ -36,6 +38,7 @@ def written_out(tree: ast.Module, sets: set[str]) -> Iterator[int]:
                 yield node.lineno
 
 
+@pytest.mark.heavy  # texts, which are those of both kernels
 def test_no_set_of_a_module_is_written_out() -> None:
     found = []
     for path in (ROOT / "heuncli").rglob("*.py"):

@@ -38,6 +38,7 @@ def iter_sentences(source: str) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.value
 
 
+@pytest.mark.heavy  # a text, which is that of both kernels
 def test_the_sentences_of_the_package() -> None:
     found = [
         f"{path.relative_to(ROOT)}:{line}: {old[0]}"
