@@ -186,6 +186,9 @@ FLEET_ANGLE = 0.07  # rad, 4 deg: how far a rope may leave a sheave's plane (DIN
 # 1 - cos of it, 0.25 %
 FLEET_SEEN = 1e-4  # rad: below, what that makes is 5e-9 of a force, as little as the loads of a run are known to
 ASKEW = 1e-7  # rad: axes of two sheaves that a strand runs between, which only rounding may part
+# relative to a sheave's radius: where a run fails with a strand this short, it was wound up. At a distance d from the
+# rim the strand is sqrt(2 R d) long, and steps end where d is rounding, some thousand EPS of R: 1e-6
+WOUND_UP = 1e-4
 OFF_SHEAVE = 1e-9  # rad: an arc that is less than none by more has left its sheave
 
 # -- same instant, same place, same direction

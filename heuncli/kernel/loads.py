@@ -18,6 +18,7 @@ if not cython.compiled:
     from heuncli.kernel.closures import apply_condition_load
     from heuncli.kernel.directions import world_direction
     from heuncli.kernel.evaluator import evaluate_program
+    from heuncli.kernel.libm import NAN
     from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
     from heuncli.kernel.scene import (
         ACTUATOR,
@@ -29,6 +30,7 @@ if not cython.compiled:
         SHIFT_DAMPER,
         SHIFT_FRICTION,
         SPRING,
+        STRAND,
         THREAD_FRICTION,
         THRUST,
         TORQUE,
@@ -188,12 +190,22 @@ def apply_rope_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
     """
     motion: RopeMotion = measure_rope(scene, load)
     load.from_at = load.at
-    load.value = vector.x
+    load.value = NAN if vector.x != 0.0 and has_wound_up(scene, load) else vector.x
     load.span = motion.S
     load.rate = motion.rate
     load.power = load.value * load.rate
     apply_rope_pull(scene, load)
     return rope_power(scene, load)
+
+
+def has_wound_up(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.bint:
+    """Return whether a strand of a rope has no length left, because its end is on the rim of its sheave or inside."""
+    i: cython.Py_ssize_t
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        if part.kind == STRAND and not part.gap > 0.0:
+            return True
+    return False
 
 
 def apply_rope_pull(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.void:

@@ -76,7 +76,9 @@ def test_it_is_told_as_a_drive_against_a_stop(seed: int) -> None:
         solved(text)
     (problem,) = caught.value.problems
     assert problem.code == "stop-contradicts"
-    found = re.fullmatch(r"at t = (\S+) s the drive \(motor\) pushes against the stop block of joints\.D", problem.message)
+    found = re.fullmatch(
+        r"at t = (\S+) s the drive \(motor\) pushes against the stop block of joints\.D", problem.message
+    )
     assert found is not None
     assert float(found[1]) == pytest.approx(when, abs=2e-9 + 2e-9 * when)
 

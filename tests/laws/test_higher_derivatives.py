@@ -17,7 +17,14 @@ FLAT = (
     "X*sqrt(abs(X))", "sqrt(abs(X))*X", "-X*abs(X)", "X*sqrt(X**2)", "X*abs(X)**0.5", "abs(X)**1.5*sign(X)",
     "X*sqrt(abs(X))/(2 + X)", "X*(1 - sqrt(abs(X)))- X", "X*hypot(X, X)", "sin(X)*sqrt(abs(sin(X)))",
 )  # fmt: skip
-STEEP = ("sqrt(abs(X))*sign(X)", "sqrt(abs(X))", "X/sqrt(abs(X) + 1e-300)", "asin(1 - abs(X))", "X*0 + sqrt(X**2)", "atan2(X, X)*X")
+STEEP = (
+    "sqrt(abs(X))*sign(X)",
+    "sqrt(abs(X))",
+    "X/sqrt(abs(X) + 1e-300)",
+    "asin(1 - abs(X))",
+    "X*0 + sqrt(X**2)",
+    "atan2(X, X)*X",
+)
 PLACES = (0.0, 0.25)
 
 

@@ -157,4 +157,5 @@ ROPES = Part(
         Row("ASKEW", lambda x: roped(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
         Row("OFF_SHEAVE", lifted, "fine", "refused: rope-off-sheave"),
     ),
+    wanted={"WOUND_UP": "the words on a run that fails"},
 )

@@ -29,7 +29,12 @@ from heuncli.motion.integration.contacts.latches import (
     add_catches,
     work_of_catches,
 )
-from heuncli.motion.integration.contacts.resting import acceleration_terms, find_contradicted, find_resting, is_short_flight
+from heuncli.motion.integration.contacts.resting import (
+    acceleration_terms,
+    find_contradicted,
+    find_resting,
+    is_short_flight,
+)
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
     chattering_error,
@@ -170,7 +175,9 @@ def require_yielding(layout: Layout, problem: ContactProblem, opening: Array, no
         message = f"at t = {t:.9g} s the drive ({drives}) pushes against the stop {contact.name} of {owner}"
         hint = "end the prescribed motion before the stop, or drive by a force or torque, which yield"
     raise SolveError(
-        Problem("stop-contradicts", message, hint=hint, entry_path=owner if contact.is_rope else f"stops.{contact.name}")
+        Problem(
+            "stop-contradicts", message, hint=hint, entry_path=owner if contact.is_rope else f"stops.{contact.name}"
+        )
     )
 
 

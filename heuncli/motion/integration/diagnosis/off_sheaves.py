@@ -17,6 +17,8 @@ from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 
+WOUND_UP = "winds up: a strand has no length left between a sheave and the next point"
+WOUND_UP_HINT = "end the run before it is wound up, or start further from the sheave"
 HINT = "mount the sheave on a bearing that swivels with the rope, or use a plain point instead"
 
 
@@ -36,6 +38,9 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
                 is_taut & (np.abs(slant_angle(layout, evaluation, part, k)) > tolerances.FLEET_ANGLE)
             )
             message, hint = f"leaves a sheave's plane by more than {FLEET}", HINT
+            wound_up = np.flatnonzero(is_taut & (evaluation.parts["gap"][:, k] <= 0.0))
+            if len(wound_up) and not (len(violations) and violations[0] <= wound_up[0]):
+                violations, message, hint = wound_up, WOUND_UP, WOUND_UP_HINT
             skewed_instants = np.flatnonzero(is_taut & is_skewed(layout, evaluation, part))
             if len(skewed_instants) and not (len(violations) and violations[0] <= skewed_instants[0]):
                 violations, message = skewed_instants, "runs between two sheaves whose axes are no longer parallel"
@@ -86,6 +91,21 @@ def iter_rope_parts(layout: Layout, evaluation: Evaluation) -> Iterator[tuple[Co
             is_taut = evaluation.rows["closed"][:, r] != 0.0
             for k, part in enumerate(row.parts, first):
                 yield coupling, part, k, is_taut
+
+
+def find_wound_up(layout: Layout, evaluation: Evaluation) -> list[Problem]:
+    """Return the problems of ropes with a strand that all but ends at its sheave, in the one state where a run failed.
+
+    Towards that the strand turns without bound, so that steps collapse a little before.
+    """
+    problems: dict[str, Problem] = {}
+    for coupling, part, k, _ in iter_rope_parts(layout, evaluation):
+        limit = tolerances.WOUND_UP * max(abs(part.g[0]), abs(part.g[1]))
+        if part.kind == "strand" and evaluation.parts["gap"][0, k] <= limit:
+            path = f"couplings.{coupling.name}"
+            message = f"at t = {float(evaluation.times[0]):.9g} s {path} {WOUND_UP}"
+            problems[path] = Problem("rope-off-sheave", message, None, WOUND_UP_HINT, path)
+    return list(problems.values())
 
 
 def is_skewed(layout: Layout, evaluation: Evaluation, part: CouplingPart) -> Mask:

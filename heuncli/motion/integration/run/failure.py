@@ -89,7 +89,8 @@ def no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint
     code.
     """
     progress, t, scene, mechanism = run_failure.progress, run_failure.t, run_failure.scene, run_failure.mechanism
-    problems = find_without_value(mechanism, t, progress.last, run_failure.coordinates)
+    problems = find_wound_ropes(run_failure)
+    problems = problems or find_without_value(mechanism, t, progress.last, run_failure.coordinates)
     if not problems and mechanism.joint_friction:
         problems = find_jammed_after(mechanism, progress.integrated_scene.workspace, t)
     problems = problems or find_turned_bushings(run_failure)
@@ -104,6 +105,15 @@ def no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint
     if massless_bodies and name == "step-collapsed":
         hint += f", or closed loops release the rotation of bodies without inertia: {', '.join(massless_bodies)}"
     return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
+
+
+def find_wound_ropes(run_failure: RunFailure) -> list[Problem]:
+    """Return the ropes whose strands have been wound up there, which ends the run whatever fails."""
+    if not any(coupling.entry.type == "rope" for coupling in run_failure.mechanism.couplings):
+        return []
+    from heuncli.motion.integration.diagnosis.off_sheaves import find_wound_up
+
+    return find_wound_up(run_failure.scene.layout, run_failure.evaluation)
 
 
 def find_turned_bushings(run_failure: RunFailure) -> list[Problem]:
