@@ -159,7 +159,7 @@ def test_a_worker_stops_in_time_and_says_what_it_cannot(held: CachedRecipe, monk
 
 
 def test_a_bug_is_the_answer_of_its_variant(held: CachedRecipe, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails(*inputs):  # type: ignore[no-untyped-def]
+    def fails(asker, values):  # type: ignore[no-untyped-def]
         if values["m"] == "2":
             raise ZeroDivisionError("none")
         return plain(asker, values)
