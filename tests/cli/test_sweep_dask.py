@@ -186,10 +186,10 @@ def test_a_variant_that_ends_its_workers_is_found_out(
     ending = (
         "import os\n"
         "from heuncli.app.commands.sweep.cluster import worker as cluster_worker\n"
-        "def answer_of(asker, values, plain=cluster_worker.answer_of):\n"
-        "    os._exit(9) if values['m'] == '5' else None\n"
-        "    return plain(asker, values)\n"
-        "cluster_worker.answer_of = answer_of\n"
+        "def ending(evaluator, values, *more, plain=cluster_worker.solve_contained):\n"
+        "    os._exit(9) if values['m'].value == 5 else None\n"
+        "    return plain(evaluator, values, *more)\n"
+        "cluster_worker.solve_contained = ending\n"
     )
     dask.with_workers(0)
     dask.work("--nanny", "--preload", dask.preload(ending))

@@ -14,6 +14,7 @@ import pytest
 
 from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.app.commands.sweep import workers
+from heuncli.scene.file_format.quantity import NumberWithUnit
 from tests.shared.command import Heun
 from tests.shared.sweeps import (
     COUNT,
@@ -119,8 +120,8 @@ def test_a_variant_that_ends_its_process_is_tried_once_more(
     """The others of its batch are none the worse; it is tried again by the next call, for the store has no answer."""
     answer = VariantEvaluator.answer
 
-    def deadly(self: VariantEvaluator, values: dict[str, str]) -> object:
-        if values["m"] == "3.0":
+    def deadly(self: VariantEvaluator, values: dict[str, NumberWithUnit]) -> object:
+        if values["m"].value == 3.0:
             signal.raise_signal(signal.SIGKILL)
         return answer(self, values)
 

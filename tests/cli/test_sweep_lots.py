@@ -107,15 +107,15 @@ def test_tasks_of_one_process_work_one_after_the_other(held: CachedRecipe, monke
     """Also those of several recipes: what heun keeps in its modules is that of one piece of work."""
     inside, most = [], []
 
-    def watched(asker, values, plain=cluster_worker.answer_of):  # type: ignore[no-untyped-def]
+    def watched(*inputs, plain=cluster_worker.solve_contained):  # type: ignore[no-untyped-def]
         inside.append(1)
         most.append(len(inside))
         time.sleep(0.001)
-        answer = plain(asker, values)
+        answer = plain(*inputs)
         inside.pop()
         return answer
 
-    monkeypatch.setattr(cluster_worker, "answer_of", watched)
+    monkeypatch.setattr(cluster_worker, "solve_contained", watched)
     other = pickle.loads(pickle.dumps(held))
     asked = [(held, variants(20)), (held, variants(20)[::-1]), (other, variants(20))]
     found: dict[int, object] = {}
@@ -151,10 +151,10 @@ def test_a_worker_stops_in_time_and_says_what_it_cannot(held: CachedRecipe, monk
     wrong = CachedRecipe(held.recipe._replace(text="heun: 1\nbodies: {}\n"))
     assert solve_batch(wrong, variants(1), 1.0).failure.startswith("SpecError: ")
 
-    def fails(asker, values):  # type: ignore[no-untyped-def]
+    def fails(*inputs):  # type: ignore[no-untyped-def]
         raise RecursionError("too deep")
 
-    monkeypatch.setattr(cluster_worker, "answer_of", fails)
+    monkeypatch.setattr(cluster_worker, "solve_contained", fails)
     assert solve_batch(held, variants(1), 1.0).failure == "RecursionError: too deep"
 
 

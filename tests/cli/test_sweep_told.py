@@ -12,15 +12,16 @@ import math
 import tracemalloc
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pyarrow.parquet as pq
 import pytest
 
+from heuncli.analyses.sweep_store.columns import explain_missing, find_missing_words
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
 from heuncli.analyses.variants.axes import parse_axis_values
 from heuncli.analyses.variants.draws import make_draws
-from heuncli.analyses.variants.measures import MeasureLabel, MeasureValue, VariantResult
+from heuncli.analyses.variants.measures import MeasureLabel, MeasureValue, MissingWord, VariantResult
 from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.commands.sweep.output import as_parquet, writer
@@ -258,6 +259,16 @@ def test_words_stand_for_what_is_not_known() -> None:
     text = "".join(writer.iter_pieces(head_of(plan, "N"), rows, SweepOutput("csv")))
     reasons = [row["reason"] for row in csv.DictReader(io.StringIO(text))]
     assert reasons[0].startswith("m0 [N]: open") and "horizon" in reasons[1] and "singular" in reasons[2]
+
+
+def test_the_word_of_a_missing_measure_is_read_again_from_the_reason() -> None:
+    """Of any measure of several, and whatever the sentences say."""
+    words = [*get_args(MissingWord)]
+    measures = [f"m{k} [N]" for k in range(len(words))]
+    values = tuple(MeasureValue(None if word else 1.0, word=word) for word in words)
+    reason = explain_missing(SweptRow(0, {}, VariantResult(values)), measures)
+    assert find_missing_words(reason, measures) == {m: word for m, word in zip(measures, words, strict=True) if word}
+    assert find_missing_words("joint C cannot be closed", measures) == {}
 
 
 def test_a_parameter_that_is_called_as_a_column_is_told_apart() -> None:

@@ -14,10 +14,10 @@ from heuncli.analyses.tune.results import (
     TuneTask,
 )
 from heuncli.analyses.tune.study import Tuning
-from heuncli.analyses.tune.trials import TIME_LIMIT_CODE, Trials
+from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.evaluation import Values
-from heuncli.analyses.variants.measures import MeasureValue, VariantResult
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, MeasureValue, VariantResult
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.results.results import Array
 

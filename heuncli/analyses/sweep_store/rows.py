@@ -7,8 +7,6 @@ from heuncli.analyses.variants.measures import MeasureLabel, VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
 
-WORKER_DIED = "worker-died"  # the code of a variant that ends the processes that solve it
-
 
 class SweepHead(NamedTuple):
     """The description of a sweep: the spec with its digest, what is varied, what is measured."""

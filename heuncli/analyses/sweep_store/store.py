@@ -38,14 +38,14 @@ from heuncli.analyses.sweep_store.store_file import (
     write_head,
 )
 from heuncli.analyses.variants.evaluation import Values
-from heuncli.analyses.variants.measures import MeasureValue, VariantResult
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, MeasureValue, VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.files import find_target
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 
-RETRY_CODES = frozenset({"time-limit", "out-of-memory", "too-much-memory", "worker-died", "bug"})  # not final
+RETRY_CODES = frozenset({TIME_LIMIT_CODE, "out-of-memory", "too-much-memory", WORKER_DIED, "bug"})  # not final
 LOCK_TIMEOUT = 120.0  # seconds to wait for another sweep that writes
 
 

@@ -15,13 +15,12 @@ import numpy as np
 
 from heuncli.analyses.tune.results import Trial, TuneTask, make_values
 from heuncli.analyses.variants.evaluation import Values
-from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult
 from heuncli.results.results import Array
 from heuncli.scene.file_format.quantity import NumberWithUnit
 
 SolveVariants = Callable[[Sequence[Values]], Iterable[VariantResult]]
 ReportProgress = Callable[[int, int, str], None]
-TIME_LIMIT_CODE = "time-limit"  # the code of a variant that was not solved for lack of time
 PlaceKey = tuple[NumberWithUnit, ...]  # the values at a place: places that round to the same ones are one variant
 SNAP_DISTANCE = 1e-9  # of the width of a variable's interval: closer to a bound means at it
 UNSOLVED_PENALTY = 1.0  # scales above the worst solved value: the value of unsolved variants for the optimiser

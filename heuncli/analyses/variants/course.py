@@ -324,11 +324,11 @@ class MeasureCourse:
         return found
 
 
-def make_sample(x: float, found: NoisyValue, value: float, singular: bool = False) -> Sample:
+def make_sample(x: float, measure: NoisyValue, value: float, singular: bool = False) -> Sample:
     """Make the sample at a place from the measure there; value: what its gap is taken from."""
-    if found.value is None:
-        return Sample(x, None, why=found.why)
-    return Sample(x, found.value - value, found.error, singular=singular)
+    if measure.value is None:
+        return Sample(x, None, why=measure.why)
+    return Sample(x, measure.value - value, measure.error, singular=singular)
 
 
 def withhold(sample: Sample) -> Sample:

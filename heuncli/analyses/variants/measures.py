@@ -12,6 +12,8 @@ from heuncli.base.tolerances import EPS
 from heuncli.study.quantities.digits import OPEN, UNKNOWN
 
 MissingWord = Literal["", "open", "unknown", "beyond", "absent"]
+TIME_LIMIT_CODE = "time-limit"  # the code of a variant that was not solved for lack of time
+WORKER_DIED = "worker-died"  # the code of a variant that ends the processes that solve it
 ROUNDING = 8.0 * EPS  # of a measure: rounding of sums of a run's last step, where the run states no larger error
 
 

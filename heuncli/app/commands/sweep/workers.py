@@ -14,14 +14,11 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import islice
 
-from heuncli.analyses.sweep_store.rows import WORKER_DIED
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
-from heuncli.analyses.variants.measures import VariantResult, make_failed_result
-from heuncli.analyses.variants.parameters import format_value
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.measures import VariantResult
 from heuncli.analyses.variants.plans import Plan
-from heuncli.app.cli import jobs, timeout
-from heuncli.app.cli.entry import run_contained
-from heuncli.base.errors import HeunError
+from heuncli.app.cli import jobs
+from heuncli.app.cli.variant_workers import make_death_result, solve_contained
 from heuncli.base.named_tuples import NamedTuple
 
 BATCH_SECONDS = 0.2  # seconds of a batch: long compared with the transfer, short enough to lose
@@ -62,25 +59,11 @@ def solve_variants(
 def solve_batch(evaluator: VariantEvaluator, plan: Plan, numbers: Sequence[int]) -> BatchResults:
     """Solve some variants; a failure of one does not stop the others."""
     start = time.monotonic()
-    results = tuple(answer_of(evaluator, plan.find_values(number)) for number in numbers)
+    results = tuple(
+        solve_contained(evaluator, plan.find_values(number), "sweep", evaluator.recipe.options.time_limit)
+        for number in numbers
+    )
     return BatchResults(results, time.monotonic() - start)
-
-
-def answer_of(evaluator: VariantEvaluator, values: Values) -> VariantResult:
-    """Solve a variant; time limits, lack of memory and bugs of heun become its result."""
-    limit = evaluator.recipe.options.time_limit
-    words = [evaluator.recipe.path, *(f"{name}={format_value(value)}" for name, value in values.items())]
-    try:
-        return run_contained(lambda: timeout.run_with_limit(lambda: evaluator.answer(values), limit), ("sweep", *words))
-    except HeunError as error:
-        return make_failed_result(error)
-
-
-def make_death_result(death: jobs.ProcessDeath) -> VariantResult:
-    """Make the result of a variant that ended two processes, or one at the hard end of its time limit."""
-    if death.is_time_up:
-        return VariantResult(code="time-limit", reason="the time limit was reached, but the work did not stop")
-    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
 
 
 class Batches:

@@ -6,19 +6,17 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.trials import TIME_LIMIT_CODE
 from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
-from heuncli.analyses.variants.measures import VariantResult, make_failed_result
-from heuncli.analyses.variants.parameters import format_value
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
 from heuncli.app.cli import jobs, timeout
-from heuncli.app.cli.entry import UsageError, run_contained
+from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.variant_workers import make_death_result, solve_contained
 from heuncli.base.errors import HeunError, Problem
 from heuncli.study.queries.measure import NotOneNumber
 
 NO_NUMBER = "bad-option"  # the code of a measure that is not one number
 MIN_REMAINING = 1e-9  # s; less than this left means that the limit is reached
 MIN_SECONDS = 0.02  # s; for shorter variants several processes do not pay
-WORKER_DIED = "worker-died"
 
 
 class TrialSolver:
@@ -51,7 +49,7 @@ class TrialSolver:
         work: Callable[[Values], VariantResult] = partial(
             solve_in_worker if job_count > 1 else solve_variant, self.evaluator
         )
-        for result in jobs.run_in_order(work, variants, job_count, make_death_result):
+        for result in jobs.run_in_order(work, variants, job_count, lambda _, death: make_death_result(death)):
             if result.code == NO_NUMBER:
                 raise UsageError(Problem(result.code, result.reason, hint="for example 'max foundation.force'"))
             yield result
@@ -70,17 +68,4 @@ def solve_variant(evaluator: VariantEvaluator, values: Values) -> VariantResult:
 
 def solve_in_worker(evaluator: VariantEvaluator, values: Values) -> VariantResult:
     """Solve a variant in a process of its own, which has no time limit but the one set here."""
-    work = partial(timeout.run_with_limit, lambda: evaluator.answer(values), timeout.remaining_time())
-    try:
-        return run_contained(
-            work, ("tune", evaluator.recipe.path, *(f"{name}={format_value(value)}" for name, value in values.items()))
-        )
-    except HeunError as error:
-        return make_failed_result(error)
-
-
-def make_death_result(values: Values, death: jobs.ProcessDeath) -> VariantResult:
-    """Make the result of a variant whose process died."""
-    if death.is_time_up:
-        return VariantResult(code=TIME_LIMIT_CODE)
-    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
+    return solve_contained(evaluator, values, "tune", timeout.remaining_time())

@@ -22,10 +22,9 @@ from contextlib import suppress
 from itertools import chain
 from typing import Any
 
-from heuncli.analyses.sweep_store.rows import WORKER_DIED
 from heuncli.analyses.variants.evaluation import Recipe
 from heuncli.analyses.variants.files import add_files, add_named_files
-from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.measures import WORKER_DIED, VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.sweep.cluster.batches import WORKERS, BatchQueue, VariantBatch

@@ -18,7 +18,7 @@ from typing import Any
 import heuncli
 from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
 from heuncli.analyses.variants.measures import VariantResult
-from heuncli.app.commands.sweep.workers import answer_of
+from heuncli.app.cli.variant_workers import solve_contained
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.form import KERNEL
 from heuncli.scene.file_format.named_files import FileNotPreloaded
@@ -108,7 +108,7 @@ class CachedRecipe:
             try:
                 evaluator = self._evaluator = self._evaluator or VariantEvaluator(self.recipe)
                 for _, values in variants:
-                    results.append(answer_of(evaluator, values))
+                    results.append(solve_contained(evaluator, values, "sweep", self.recipe.options.time_limit))
                     if time.monotonic() - start > seconds:
                         break
             except FileNotPreloaded as missing:

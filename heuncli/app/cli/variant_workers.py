@@ -1,0 +1,29 @@
+"""Solve one variant in a process of its own: what ends it early becomes its result. Impure: the clock."""
+
+from __future__ import annotations
+
+from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, VariantResult, make_failed_result
+from heuncli.analyses.variants.parameters import format_value
+from heuncli.app.cli import jobs, timeout
+from heuncli.app.cli.entry import run_contained
+from heuncli.base.errors import HeunError
+
+
+def solve_contained(evaluator: VariantEvaluator, values: Values, command: str, limit: float | None) -> VariantResult:
+    """Solve a variant; a time limit [s], lack of memory and bugs of heun become its result.
+
+    command: named in the report of a bug
+    """
+    words = [evaluator.recipe.path, *(f"{name}={format_value(value)}" for name, value in values.items())]
+    try:
+        return run_contained(lambda: timeout.run_with_limit(lambda: evaluator.answer(values), limit), (command, *words))
+    except HeunError as error:
+        return make_failed_result(error)
+
+
+def make_death_result(death: jobs.ProcessDeath) -> VariantResult:
+    """Make the result of a variant that ended two processes, or one at the hard end of its time limit."""
+    if death.is_time_up:
+        return VariantResult(code=TIME_LIMIT_CODE, reason="the time limit was reached, but the work did not stop")
+    return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
