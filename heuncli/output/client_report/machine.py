@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.output.client_report.parts import Drawing, Facts, Listing, Part, Sentence
 from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.documents.document import Drawing, Facts, Listing, Part, Sentence
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.scenes import make_scene_figure
 from heuncli.output.tables.model_text import LIST_TITLES, collect_facts

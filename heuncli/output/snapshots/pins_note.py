@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.output.tables.text_table import TextTable
+from heuncli.output.documents.document import OutputTable
 from heuncli.study.quantities.digits import OPEN_NOTE
 from heuncli.study.queries.study import Study
 
@@ -18,7 +18,7 @@ HEADING = "JOINTS"  # as tables of joints begin
 PARALLEL = 1e-6  # largest sine between the axes
 
 
-def add_pins_note(tables: Sequence[TextTable], study: Study) -> list[TextTable]:
+def add_pins_note(tables: Sequence[OutputTable], study: Study) -> list[OutputTable]:
     """Add the hint to the tables of joints with open reactions, if parallel pins are the reason."""
     places = [n for n, each in enumerate(tables) if each.heading.startswith(HEADING) and OPEN_NOTE in each.notes]
     if not places or not has_open_parallel_pins(study):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.tables.text_table import TextColumn, TextTable, append_unit, format_head
+from heuncli.output.documents.document import OutputColumn, OutputTable, append_unit, format_head
 from heuncli.results.results import Array
 from heuncli.study.load_cycles.collective import REFERENCE, Collective
 from heuncli.study.quantities.digits import Style, choose_style, format_error, write_numbers, write_times
@@ -24,7 +24,7 @@ NO_CYCLES = "no cycles: the variation is within the error"
 IMPACT_NOTE = "impulses: the loads before and after each jump count; the impulses themselves (N·s) are not included"
 
 
-def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> list[TextTable]:
+def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> list[OutputTable]:
     """Make all tables of a collective; has_impacts: whether there were impacts during the run."""
     tables = [make_ranges_table(collective, units, has_impacts=has_impacts)]
     if collective.total_cycles:
@@ -33,17 +33,17 @@ def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> l
     return tables
 
 
-def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool) -> TextTable:
+def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool) -> OutputTable:
     """Make the table of cycles by class of range, with their shares of the damage."""
     unit, size = units.find(collective.history.unit)
     limits = format_limits(collective, collective.matrix.ranges * size, size)
     larger_counts = collective.counts[::-1].cumsum()[::-1]
     columns = [
-        TextColumn(format_head("range above", unit)),
-        TextColumn(format_head("up to", unit)),
-        TextColumn("cycles"),
+        OutputColumn(format_head("range above", unit)),
+        OutputColumn(format_head("up to", unit)),
+        OutputColumn("cycles"),
     ]
-    columns += [TextColumn("cumulative"), *(TextColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
+    columns += [OutputColumn("cumulative"), *(OutputColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
     rows = tuple(
         (
             limits[k],
@@ -57,7 +57,7 @@ def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool
     heading = (
         f"LOAD SPECTRUM {collective.history.path}  rainflow cycles (ASTM E1049-85) by range, {format_times(collective)}"
     )
-    return TextTable(
+    return OutputTable(
         heading,
         tuple(columns),
         rows if collective.total_cycles else (),
@@ -100,10 +100,10 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         yield IMPACT_NOTE
 
 
-def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
+def make_equivalents_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of damage-equivalent ranges and their errors."""
     unit, size = units.find(collective.history.unit)
-    columns = tuple(map(TextColumn, ("slope m", "cycles", format_head("range", unit), format_head("error", unit))))
+    columns = tuple(map(OutputColumn, ("slope m", "cycles", format_head("range", unit), format_head("error", unit))))
     rows = tuple(
         (
             f"{equivalent.slope:g}",
@@ -116,10 +116,10 @@ def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
     heading = (
         f"EQUIVALENT RANGE {collective.history.path}  of constant cycles with the same damage: (Σ n R^m / N)^(1/m)"
     )
-    return TextTable(heading, columns, rows)
+    return OutputTable(heading, columns, rows)
 
 
-def make_crossings_table(collective: Collective, units: Units) -> TextTable:
+def make_crossings_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of how often each level is crossed."""
     unit, size = units.find(collective.history.unit)
     crossings = collective.crossings
@@ -132,18 +132,18 @@ def make_crossings_table(collective: Collective, units: Units) -> TextTable:
         strict=True,
     )
     columns = (
-        TextColumn(format_head("level", unit)),
-        TextColumn("crossings"),
-        TextColumn("upwards"),
-        TextColumn("downwards"),
+        OutputColumn(format_head("level", unit)),
+        OutputColumn("crossings"),
+        OutputColumn("upwards"),
+        OutputColumn("downwards"),
     )
     heading = (
         f"LEVEL CROSSINGS {collective.history.path}  (ASTM E1049, 5.1) counted upward at levels ≥ 0, downward below 0"
     )
-    return TextTable(heading, columns, tuple(rows))
+    return OutputTable(heading, columns, tuple(rows))
 
 
-def make_matrix_table(collective: Collective, units: Units) -> TextTable:
+def make_matrix_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of cycles by range and mean, without empty classes."""
     unit, size = units.find(collective.history.unit)
     limits, means = (
@@ -151,8 +151,8 @@ def make_matrix_table(collective: Collective, units: Units) -> TextTable:
     )
     shown = np.flatnonzero(collective.matrix.counts.any(axis=0)).tolist()
     columns = (
-        TextColumn(format_head("range", unit), "left"),
-        *(TextColumn(f"{means[j]} ... {means[j + 1]}") for j in shown),
+        OutputColumn(format_head("range", unit), "text"),
+        *(OutputColumn(f"{means[j]} ... {means[j + 1]}") for j in shown),
     )
     rows = tuple(
         (
@@ -162,7 +162,7 @@ def make_matrix_table(collective: Collective, units: Units) -> TextTable:
         for i in np.flatnonzero(collective.matrix.counts.any(axis=1)).tolist()
     )
     heading = f"RANGE-MEAN MATRIX {collective.history.path}  cycles by range (rows) and mean (columns)"
-    return TextTable(heading, columns, rows)
+    return OutputTable(heading, columns, rows)
 
 
 def format_limits(collective: Collective, values: Array, size: float) -> list[str]:

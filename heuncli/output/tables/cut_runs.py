@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_head
 from heuncli.results.results import Array, CutPosition, Extremes, Indices, Results
 from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES, find_row
 from heuncli.study.quantities.digits import (
@@ -135,7 +135,7 @@ def make_extremes_tables(
     places: Sequence[tuple[CutPosition, CutPosition]],
     certain: StatedErrors,
     cuts: Extremes | None = None,
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make two tables: extremes of each quantity over the whole length and time, with their places; extremes at each
     cut.
 
@@ -188,9 +188,9 @@ def merge_extremes(
 
 def _make_envelope(
     run: CutRun, bounds: Mapping[str, Array], shown_cuts: Indices, styles: Mapping[str, Style], notes: Sequence[str]
-) -> TextTable:
+) -> OutputTable:
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
-    columns, texts, left_out = list[TextColumn](), list[list[str]](), False
+    columns, texts, left_out = list[OutputColumn](), list[list[str]](), False
     for i, quantity in enumerate(run.quantities):
         both = [write_numbers(bounds[word][i].tolist(), styles[quantity.unit]) for word in quantity.bounds]
         if {text for column in both for text in column} == {"0"}:
@@ -199,11 +199,11 @@ def _make_envelope(
         words = quantity.bounds if len(both) > 1 and both[0] != both[1] else ("",)  # a constant value has one column
         texts += both[: len(words)]
         columns += [
-            TextColumn(format_head(f"{quantity.label} {word}".rstrip(), quantity.unit), vector=quantity.label)
+            OutputColumn(format_head(f"{quantity.label} {word}".rstrip(), quantity.unit), vector=quantity.label)
             for word in words
         ]
     if not columns:
-        return TextTable("", notes=(*notes, "all values 0"))
+        return OutputTable("", notes=(*notes, "all values 0"))
     shown = {text for column in texts for text in column}
     all_notes = [*notes, *[ZERO_NOTE] * left_out]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
@@ -213,10 +213,10 @@ def _make_envelope(
 def _make_cuts_table(
     run: CutRun,
     shown_cuts: Indices,
-    columns: Sequence[TextColumn],
+    columns: Sequence[OutputColumn],
     texts: Sequence[Sequence[str]],
     notes: Sequence[str],
-) -> TextTable:
+) -> OutputTable:
     """Make a table with a row for each cut that begins with its position and side."""
     positions = _format_positions(run)
     sides = any(side is not None for side in run.side)
@@ -224,8 +224,8 @@ def _make_cuts_table(
         (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
         for j, cut in enumerate(shown_cuts)
     )
-    heads = [TextColumn(f"s [{run.length[0]}]"), *([TextColumn("side", "left")] if sides else [])]
-    return TextTable("", (*heads, *columns), rows, tuple(notes))
+    heads = [OutputColumn(f"s [{run.length[0]}]"), *([OutputColumn("side", "text")] if sides else [])]
+    return OutputTable("", (*heads, *columns), rows, tuple(notes))
 
 
 def make_extremes_table(
@@ -234,7 +234,7 @@ def make_extremes_table(
     extremes: Extremes,
     places: Sequence[tuple[CutPosition, CutPosition]],
     certain: StatedErrors,
-) -> TextTable:
+) -> OutputTable:
     """Make the table of the lowest and highest value of each quantity over the whole length and time, with place and
     instant.
     """
@@ -259,18 +259,18 @@ def make_extremes_table(
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     position_head = f"at s [{run.length[0]}]"
     heads = ("min", position_head, "t [s]", "max", position_head, "t [s]")
-    columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
+    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *(OutputColumn(head) for head in heads))
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
-        return TextTable(run.heading, notes=("all values 0",))
+        return OutputTable(run.heading, notes=("all values 0",))
     notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
-    return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(quantities))))
+    return OutputTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(quantities))))
 
 
 def make_instants_tables(
     run: CutRun, times: Array, horizon: float | None, certain: StatedErrors, *, every_cut: bool = False
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the table with the diagram at each instant."""
     styles = _choose_styles(run, certain)
     shown_cuts = np.arange(len(run.s)) if every_cut else choose_cuts(run)
@@ -280,8 +280,8 @@ def make_instants_tables(
         )
         return [_drop_zero_columns(run, diagram._replace(heading=run.heading))]
     clock = write_times(times.tolist(), float(np.ptp(times)))
-    rows: list[tuple[str, ...] | str] = []
-    table = TextTable("")
+    rows: list[Sequence[Cell] | str] = []
+    table = OutputTable("")
     notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
         certain_beyond = certain if horizon is not None and t >= horizon else None
@@ -294,8 +294,8 @@ def make_instants_tables(
             certain_beyond,
         )
         rows += [f"t = {clock[i]} s", *table.rows]
-        notes += table.notes
-    return [_drop_zero_columns(run, TextTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
+        notes = (*notes, *table.notes)
+    return [_drop_zero_columns(run, OutputTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
 
 
 def choose_cuts(run: CutRun) -> Indices:
@@ -317,7 +317,7 @@ def _make_diagram(
     styles: dict[str, Style],
     notes: Sequence[str],
     certain_beyond: StatedErrors | None = None,
-) -> TextTable:
+) -> OutputTable:
     """Make the diagram at one instant, a row for each cut.
 
     values: (n, n_cuts)
@@ -335,12 +335,12 @@ def _make_diagram(
     shown = {text for column in texts for text in column}
     all_notes = [note for note in notes if note]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    columns = [TextColumn(format_head(quantity.label, quantity.unit), vector="loads") for quantity in run.loads]
-    columns += [TextColumn(format_head(quantity.label, quantity.unit)) for quantity in run.stresses]
+    columns = [OutputColumn(format_head(quantity.label, quantity.unit), vector="loads") for quantity in run.loads]
+    columns += [OutputColumn(format_head(quantity.label, quantity.unit)) for quantity in run.stresses]
     return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
 
 
-def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
+def _drop_zero_columns(run: CutRun, table: OutputTable) -> OutputTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     lead = len(table.columns) - len(run.quantities)
@@ -348,7 +348,7 @@ def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
     if len(shown_columns) in (lead, len(table.columns)):
         return table
     rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return TextTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
+    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
 
 
 def _choose_styles(run: CutRun, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.tables import cut_runs
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants, drop_components, make_extremes_tables
@@ -20,7 +21,6 @@ from heuncli.output.tables.instants_tables import make_instants_tables
 from heuncli.output.tables.run_searches import NO_EXTREMES, RunExtremes, append_stresses
 from heuncli.output.tables.table_blocks import NumberRow, TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
-from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Mask, Results
 from heuncli.results.results_schema import REPORT_OF, REPORTS, find_quantity
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
@@ -98,13 +98,13 @@ class Page(NamedTuple):
         n_loads = len(cut_runs.LOADS) * len(cut_runs.collect_runs(self.results, self.labels))
         return np.array(rows + [False] * n_loads, dtype=bool)
 
-    def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[TextTable]:
+    def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[OutputTable]:
         """Make the tables of extremes.
 
         search_result: the extremes of each group of columns
         shares: source of loads by cause, if they are requested
         """
-        tables: list[TextTable] = []
+        tables: list[OutputTable] = []
         start = 0
         times, all_last_values = self.results.time, self._find_last_values()
         for block in self._find_searched_blocks(self.results):
@@ -121,14 +121,14 @@ class Page(NamedTuple):
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
         return [*tables, *share_tables, *self._make_last_tables()]
 
-    def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[TextTable]:
+    def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
         n = len(search_result.low) - len(search_result.places)
         instants = np.unique(np.concatenate([search_result.low_at[:n], search_result.high_at[:n]]))
         numbers = self._collect_shares(shares.compute_shares(instants)) if n else {}
-        span, tables, start = float(np.ptp(self.results.time)), list[TextTable](), 0
+        span, tables, start = float(np.ptp(self.results.time)), list[OutputTable](), 0
         for block in self._find_searched_blocks(self.results):
             count = sum(len(group.rows) for group in block.groups)
             block_extremes = self._take_roots(block, search_result.select(slice(start, start + count)))
@@ -145,7 +145,7 @@ class Page(NamedTuple):
 
     def _make_run_share_tables(
         self, run: cut_runs.CutRun, search_result: Extremes, k: int, shares: ShareSource
-    ) -> list[TextTable]:
+    ) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes along a run of cuts."""
         from heuncli.output.tables import cause_tables
 
@@ -168,7 +168,7 @@ class Page(NamedTuple):
         every_cut: bool = False,
         search_result: Extremes | None = None,
         shares: ShareSource | None = None,
-    ) -> list[TextTable]:
+    ) -> list[OutputTable]:
         """Make the tables at the instants of `results`, which is the same run solved at any instants.
 
         search_result: extremes along the runs of cuts, if there is one instant only
@@ -178,7 +178,7 @@ class Page(NamedTuple):
         certain = add_axis_errors(
             self.certain._replace(singular_times=unknown), results, self.magnitudes, self.labels.units
         )
-        tables: list[TextTable] = []
+        tables: list[OutputTable] = []
         for block in self._make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
         for k, run in enumerate(cut_runs.collect_runs(results, self.labels)):
@@ -194,12 +194,12 @@ class Page(NamedTuple):
 
     def _make_instants_share_tables(
         self, results: Results, certain: StatedErrors, search_result: Extremes | None, shares: ShareSource
-    ) -> list[TextTable]:
+    ) -> list[OutputTable]:
         """Make the tables of what each cause contributes at the given instants."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
         horizon = self.results.horizon
-        numbers, tables = self._collect_shares(results), list[TextTable]()
+        numbers, tables = self._collect_shares(results), list[OutputTable]()
         for block in self._make_blocks(results):
             tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
         for k, run in enumerate(cut_runs.collect_runs(results, self.labels)):
@@ -238,18 +238,18 @@ class Page(NamedTuple):
         blocks = [block for plan in plans if (block := build_block(plan, results, self.labels, series)) is not None]
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
-    def _make_last_tables(self, show_all: bool = False) -> list[TextTable]:
+    def _make_last_tables(self, show_all: bool = False) -> list[OutputTable]:
         sums = make_sums_table(self.results, self.certain, self.last_instant, self.labels.units.find("N"))
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
-    def _make_event_tables(self, show_all: bool) -> list[TextTable]:
+    def _make_event_tables(self, show_all: bool) -> list[OutputTable]:
         if not self.results.events:
             return []
         from heuncli.output.tables.event_table import make_events_table  # if there are conditions
 
         return [make_events_table(self.results, all_instants=show_all)]
 
-    def _make_impulse_tables(self, show_all: bool) -> list[TextTable]:
+    def _make_impulse_tables(self, show_all: bool) -> list[OutputTable]:
         if not self.results.impulses:
             return []
         from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables  # if there are impacts

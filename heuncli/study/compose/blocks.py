@@ -7,7 +7,7 @@ The types that a joint's reaction passes through: the kernel's solutions (`Recov
 `JointBlock` here, with shares by cause, turned into the requested axes, and marked where they are indeterminate. JSON
 is written of that block (output/tables/export.py). For CSV and tables it becomes a `Series`
 (study/quantities/series.py), for tables a `NumberRow` per component (output/tables/table_blocks.py), whose text is a
-cell of a `TextTable` (output/tables/text_table.py).
+cell of an `OutputTable` (output/documents/document.py).
 """
 
 from __future__ import annotations

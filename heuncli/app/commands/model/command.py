@@ -12,7 +12,7 @@ from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.model.request import ModelRequest
 from heuncli.base.errors import Problem
-from heuncli.output.tables.export import dump_json
+from heuncli.output.documents.as_json import dump_json
 from heuncli.output.tables.model_text import format_model
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import describe

@@ -13,11 +13,11 @@ from heuncli.app.cli.units import TABLES
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_json import FORMAT, dump_json
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.snapshots.collectives import count_collectives, make_option_problem
 from heuncli.output.snapshots.measure import require_known_paths
 from heuncli.output.tables.collective_tables import CLOSED, iter_csv_lines, make_tables, to_json_block
-from heuncli.output.tables.export import FORMAT, dump_json
-from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.load_cycles.collective import BINS, Counting
@@ -119,7 +119,7 @@ def require_paths(task: CollectiveTask, spec: Spec) -> None:
     require_known_paths([MeasureRequest("abs", path) for path in task.paths], spec, OPTION)
 
 
-def render_collectives(task: CollectiveTask, study: Study, form: str, units: Units) -> str | list[TextTable]:
+def render_collectives(task: CollectiveTask, study: Study, form: str, units: Units) -> str | list[OutputTable]:
     """Count the collectives of a study; returns them as text, or as tables. Raises UsageError."""
     try:
         collect_results([partial(find_values, study.results, path) for path in task.paths])

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from heuncli.base.wrapping import wrap_text
-from heuncli.output.tables.text_table import GAP, INDENT, TextTable, align_cells
+from heuncli.output.documents.as_text import GAP, INDENT, align_cells
+from heuncli.output.documents.document import Cell, OutputTable, format_cell
 
 CONTINUED = "continued"
 MIN_TEXT_WIDTH = 24  # minimum width of a last column of text that is wrapped
 
 
-def split_to_width(table: TextTable, width: int) -> list[TextTable]:
+def split_to_width(table: OutputTable, width: int) -> list[OutputTable]:
     """Split the table into parts no wider than `width`, if possible; each part repeats the leading columns of words."""
     if not table.columns:
         return [table]
@@ -20,12 +21,12 @@ def split_to_width(table: TextTable, width: int) -> list[TextTable]:
     excess = indent + sum(widths) - len(GAP) - width
     if excess <= 0:
         return [table]
-    if len(widths) > 1 and table.columns[-1].align == "left" and widths[-1] - len(GAP) - excess >= MIN_TEXT_WIDTH:
+    if len(widths) > 1 and not table.columns[-1].is_number and widths[-1] - len(GAP) - excess >= MIN_TEXT_WIDTH:
         return [table._replace(rows=tuple(wrap_last_column(table, widths[-1] - len(GAP) - excess)))]
     if table.columns[-1].is_optional:
         rest = tuple(row if isinstance(row, str) else row[:-1] for row in table.rows)
         return split_to_width(table._replace(columns=table.columns[:-1], rows=rest), width)
-    lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if column.align == "left"), default=0)
+    lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if not column.is_number), default=0)
     repeated = [i for i in range(lead) if not table.columns[i].is_shown_once]
     widths_left = [width - indent + len(GAP) - sum(widths[i] for i in columns) for columns in (range(lead), repeated)]
     parts = distribute_columns(widths, group_vector_columns(table, lead, widths, widths_left[1]), widths_left)
@@ -35,23 +36,23 @@ def split_to_width(table: TextTable, width: int) -> list[TextTable]:
         rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
         notes = table.notes if number == len(parts) - 1 else ()
         tables.append(
-            TextTable(make_part_heading(table, number), tuple(table.columns[i] for i in shown_columns), rows, notes)
+            OutputTable(make_part_heading(table, number), tuple(table.columns[i] for i in shown_columns), rows, notes)
         )
     return tables
 
 
-def wrap_last_column(table: TextTable, text_width: int) -> Iterator[tuple[str, ...] | str]:
+def wrap_last_column(table: OutputTable, text_width: int) -> Iterator[tuple[Cell, ...] | str]:
     """Wrap the text of the last column to a width, in rows of its own."""
     for row in table.rows:
         if isinstance(row, str):
             yield row
             continue
-        first, *rest = wrap_text(row[-1], text_width, 0)
+        first, *rest = wrap_text(format_cell(row[-1]), text_width, 0)
         yield (*row[:-1], first)
         yield from ((*[""] * (len(row) - 1), line) for line in rest)
 
 
-def make_part_heading(table: TextTable, part: int) -> str:
+def make_part_heading(table: OutputTable, part: int) -> str:
     """Return the heading of a part: the whole heading for the first, only its title for the others."""
     if not part or not table.heading:
         return "" if part else table.heading
@@ -62,7 +63,7 @@ def make_part_heading(table: TextTable, part: int) -> str:
     return f"{impact_title}{table_heading.partition('  ')[0]}  {CONTINUED}"
 
 
-def group_vector_columns(table: TextTable, lead: int, widths: Sequence[int], max_width: int) -> list[list[int]]:
+def group_vector_columns(table: OutputTable, lead: int, widths: Sequence[int], max_width: int) -> list[list[int]]:
     """Group the columns after the leading ones: those of one vector stay together as long as they fit."""
     column_groups: list[list[int]] = []
     for column in range(lead, len(widths)):
