@@ -43,7 +43,7 @@ def make_terminal_style(style: TextStyle = PLAIN) -> TextStyle:
     fitted = style._replace(width=terminal.find_width(), draw=_draw_on_terminal)
     if not terminal.supports_styles():
         return fitted
-    return fitted._replace(heading_code=terminal.BOLD, title_code=terminal.CYAN, end_code=terminal.END)
+    return fitted._replace(codes=(terminal.BOLD, terminal.CYAN, terminal.END))
 
 
 def _draw_on_terminal(figure: Figure) -> str:

@@ -12,8 +12,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_text import INDENT
 from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.text_table import INDENT
 from heuncli.output.tables.cut_runs import CutRun, RunQuantity, format_place
 from heuncli.output.tables.table_blocks import NumberRow, RowGroup, TableBlock, make_rows
 from heuncli.output.tables.table_plans import MASS_EFFECT

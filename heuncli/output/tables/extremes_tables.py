@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_text import INDENT
 from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.text_table import INDENT
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, format_numbers
 from heuncli.results.results import Array, Extremes
 from heuncli.study.quantities.digits import (

@@ -109,7 +109,7 @@ def _make_measure_columns(
 def pad_words(cells: Sequence[str]) -> list[str]:
     """Pad a column of words, head first, to equal width, so that they look left-aligned although the column is not.
 
-    A left-aligned column would be repeated in every part of a table that is too wide (`table_width`).
+    A left-aligned column would be repeated in every part of a table that is too wide (`text_table`).
     """
     width = max(map(len, cells))
     return [cell.ljust(width) for cell in cells]

@@ -1,15 +1,86 @@
-"""Split tables that are too wide for a page into parts; each begins with the columns that name its rows."""
+"""Lay out a table as aligned text, and split one that is too wide for a page into parts; each part begins with the
+columns that name its rows.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
-from heuncli.output.documents.as_text import GAP, INDENT, align_cells
-from heuncli.output.documents.document import Cell, OutputTable, format_cell
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
 
+GAP = "  "
+INDENT = "  "
 CONTINUED = "continued"
 MIN_TEXT_WIDTH = 24  # minimum width of a last column of text that is wrapped
+PLAIN_CODES = ("", "", "")  # of a terminal: before a heading, before a title, after both
+
+
+def format_plain(table: OutputTable, width: int | None = None, codes: tuple[str, str, str] = PLAIN_CODES) -> str:
+    """Format the table as aligned text that ends with a newline. Headings, titles and notes are wrapped to the width,
+    if any.
+
+    codes: of a terminal: before a heading, before a title, after both
+    """
+    if table.is_empty:
+        return ""
+    heading_code, title_code, end_code = codes
+    indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
+    lines = _mark(wrap_text(escape(table.heading), width), heading_code, end_code) if table.heading else []
+    if table.columns:
+        cells = align_cells(table)
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        texts = iter(_format_row(row, widths, table.columns, indent) for row in cells)
+        lines += [head for head in [next(texts)] if head]
+        for row in table.rows:
+            if isinstance(row, str):
+                lines += _mark(wrap_text(escape(row), width), title_code, end_code)
+            else:
+                lines.append(next(texts))
+    notes = [line for note in table.notes for line in wrap_text(indent + escape(note), width)]
+    return "\n".join([*lines, *notes, ""])
+
+
+def _mark(lines: Sequence[str], code: str, end_code: str) -> list[str]:
+    """Put escape codes of a terminal around lines."""
+    return [f"{code}{line}{end_code}" if code else line for line in lines]
+
+
+def align_cells(table: OutputTable) -> list[tuple[str, ...]]:
+    """Return head and rows of cells without title rows; numbers are padded to a common decimal point."""
+    rows = [row for row in table.rows if not isinstance(row, str)]
+    columns = []
+    for index, column in enumerate(table.columns):
+        cells = [escape(format_cell(row[index])) for row in rows]
+        columns.append([column.title, *(_pad_to_point(cells) if column.is_number else cells)])
+    return list(zip(*columns, strict=True))
+
+
+def _pad_to_point(cells: Sequence[str]) -> list[str]:
+    """Pad cells with blanks behind, so that their decimal points are aligned when they are right-justified."""
+    tails = [len(cell) - _find_decimal_point(cell) for cell in cells]
+    longest = max(tails, default=0)
+    return [
+        cell + " " * (longest - tail) if _is_number(cell) else cell for cell, tail in zip(cells, tails, strict=True)
+    ]
+
+
+def _find_decimal_point(text: str) -> int:
+    """Return the index of the decimal point, or where it would be; for a text its length."""
+    return (text.partition("e")[0] + ".").index(".") if _is_number(text) else len(text)
+
+
+def _is_number(cell: str) -> bool:
+    return cell.lstrip("-")[:1].isdecimal()
+
+
+def _format_row(cells: Sequence[str], widths: Sequence[int], columns: Sequence[OutputColumn], indent: str) -> str:
+    padded = [
+        cell.rjust(width) if column.is_number else cell.ljust(width)
+        for cell, width, column in zip(cells, widths, columns, strict=True)
+    ]
+    return (indent + GAP.join(padded)).rstrip()
 
 
 def split_to_width(table: OutputTable, width: int) -> list[OutputTable]:
