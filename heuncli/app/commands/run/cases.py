@@ -12,17 +12,19 @@ from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.units import TABLES, note_si_format
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
-from heuncli.base.text_safety import escape
 from heuncli.output.documents.as_json import dump_json
-from heuncli.output.documents.document import OutputColumn, OutputDocument, OutputTable
+from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
 
-HEADS = ("of", "unit", "min", "at [s]", "case", "max", "at [s]", "case")
-DIGITS = 6
+COLUMNS = (
+    OutputColumn("of", "path"), OutputColumn("unit", "text"),
+    OutputColumn("min"), OutputColumn("at", "instant", "s"), OutputColumn("case", "text"),
+    OutputColumn("max"), OutputColumn("at", "instant", "s"), OutputColumn("case", "text"),
+)  # fmt: skip
 ALL_ALIKE = "all equal"  # if cases differ by no more than their errors
 NO_IMPULSES = "without impulses, which are in the tables of each case"
 
@@ -94,10 +96,9 @@ def _make_bound_block(extreme: Bound | None) -> dict[str, Any] | None:
 def _make_table(rows: Sequence[NumberEnvelope], units: Units, notes: Sequence[str]) -> OutputTable:
     """Make the table of the envelope; rows that are 0 in all cases are left out."""
     rows_shown = [row for row in rows if row.unclear or not all(map(_is_zero, (row.least, row.greatest)))]
-    columns = tuple(OutputColumn(head, "text" if head in ("of", "unit", "case") else "number") for head in HEADS)
     unclear = [f"{row.path}: {row.unclear_text}" for row in rows_shown if row.unclear]
     body = tuple(_make_row(row, units) for row in rows_shown if row.least or row.greatest)
-    return OutputTable("ENVELOPE  of all load cases", columns, body, notes=(*notes, *map(escape, unclear)))
+    return OutputTable("ENVELOPE  of all load cases", COLUMNS, body, (*notes, *unclear))
 
 
 def _is_zero(extreme: Bound | None) -> bool:
@@ -116,17 +117,16 @@ def _format_governing(extreme: Bound) -> str:
     )
 
 
-def _make_row(row: NumberEnvelope, units: Units) -> tuple[str, ...]:
+def _make_row(row: NumberEnvelope, units: Units) -> tuple[Cell, ...]:
     unit, size = units.find(row.unit)
-    ends: list[str] = []
+    ends: list[Cell] = []
     for extreme in (row.least, row.greatest):
         if extreme is None:
-            ends += ["", "", ""]
+            ends += [None, None, ""]
             continue
-        instant = "" if extreme.time is None or extreme.is_rounding else f"{extreme.time:.6g}"
-        text = "0" if extreme.is_rounding else f"{extreme.value * size:.{DIGITS}g}"
-        ends += [text, instant, escape(_format_governing(extreme))]
-    return (escape(row.path), unit, *ends)
+        instant = None if extreme.is_rounding else extreme.time
+        ends += [0 if extreme.is_rounding else float(extreme.value * size), instant, _format_governing(extreme)]
+    return (row.path, unit, *ends)
 
 
 def _make_notes(runs: Mapping[str, RunSnapshot]) -> list[str]:

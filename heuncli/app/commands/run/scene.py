@@ -60,11 +60,11 @@ def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
         if task.measures:
             return study, [_render_measures(task, study)]
         if task.collective is not None:
-            from heuncli.app.commands.run.collective import render_collectives
+            from heuncli.app.commands.run.collective import make_collectives_document
 
-            return study, [
-                _render_collectives(task, study, render_collectives(task.collective, study, task.form, task.units))
-            ]
+            document = make_collectives_document(task.collective, study, task.units)
+            facts = make_heading(study.results, request.verbose)
+            return study, [*render_document(document._replace(facts=facts), task.form, request.output)]
         is_explicit = (request.only is not None or spec.report is not None) and "foundation" in selection.reports
         labels = replace(make_labels(spec), units=task.units)
         if task.form not in TABLES:
@@ -119,11 +119,6 @@ def _report(
     times = parse_instants(request.at, study) if request.at is not None else None
     tables = make_tables(study, labels, TablesQuery(selection, times, request.all, details))
     return _render_document(request, form, study, tables)
-
-
-def _render_collectives(task: RunTask, study: Study, content: str | list[OutputTable]) -> str:
-    """Render collectives as text."""
-    return content if isinstance(content, str) else _render_document(task.request, task.form, study, content)
 
 
 def _render_document(request: RunRequest, form: str, study: Study, tables: list[OutputTable]) -> str:
