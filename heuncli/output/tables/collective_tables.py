@@ -44,7 +44,7 @@ def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool
         OutputColumn("cycles"),
     ]
     columns += [OutputColumn("cumulative"), *(OutputColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
-    rows = tuple(
+    rows: list[tuple[Cell, ...]] = [
         (
             limits[k],
             limits[k + 1],
@@ -53,15 +53,15 @@ def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool
             *(NumberCell(float(share), write=format_share) for share in collective.shares[:, k]),
         )
         for k in range(len(collective.counts))
-    )
+    ]
     heading = (
         f"LOAD SPECTRUM {collective.history.path}  rainflow cycles (ASTM E1049-85) by range, {format_times(collective)}"
     )
     return OutputTable(
         heading,
-        tuple(columns),
+        columns,
         rows if collective.total_cycles else (),
-        tuple(iter_notes(collective, units, has_impacts=has_impacts)),
+        list(iter_notes(collective, units, has_impacts=has_impacts)),
     )
 
 

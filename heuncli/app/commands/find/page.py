@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from heuncli.analyses.find.results import (
@@ -246,18 +246,13 @@ def to_block(page: FindPage) -> dict[str, Any]:
             {**_make_place_block(page, each.sample), "from": each.low, "to": each.high, "side": each.side}
             for each in findings.touches
         ],
-        "jumps": [
-            {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
-            for each in findings.jumps
-        ],
-        "brackets": [
-            {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
-            for each in findings.brackets
-        ],
-        "not_excluded": [
-            {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
-            for each in findings.not_excluded
-        ],
+        **{
+            key: [
+                {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
+                for each in pairs
+            ]
+            for key, pairs in _list_pairs(findings).items()
+        },
         "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in findings.met_stretches],
         "unsolved": [
             {
@@ -278,6 +273,13 @@ def to_block(page: FindPage) -> dict[str, Any]:
         "refined": findings.is_refined,
         "course": [_make_place_block(page, each) for each in findings.samples],
     }
+
+
+def _list_pairs(
+    findings: IntervalFindings,
+) -> Mapping[str, Sequence[MeasureJump | UnresolvedBracket | PossibleMeeting]]:
+    """Return the findings between two neighbouring samples, by their keys in JSON."""
+    return {"jumps": findings.jumps, "brackets": findings.brackets, "not_excluded": findings.not_excluded}
 
 
 def _iter_extremes(findings: IntervalFindings) -> Iterator[tuple[str, Sample]]:
@@ -318,8 +320,8 @@ def iter_records(page: FindPage) -> Iterator[tuple[Cell, ...]]:
         yield _make_record(page, "crossing", crossing.sample, crossing.error, DIRECTIONS[crossing.direction])
     for touch in findings.touches:
         yield _make_record(page, "touch", touch.sample, touch.high - touch.low, "")
-    stretches = (("jump", findings.jumps), ("bracket", findings.brackets), ("not excluded", findings.not_excluded))
-    for kind, pairs in stretches:
+    for key, pairs in _list_pairs(findings).items():
+        kind = key.removesuffix("s").replace("_", " ")
         for each in pairs:
             yield _make_record(page, kind, each.left, 0.0, "before")
             yield _make_record(page, kind, each.right, 0.0, "after")
