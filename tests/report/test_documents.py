@@ -74,11 +74,16 @@ def test_its_own_data_replace_those_of_the_tables() -> None:
 
 
 def test_chapters_are_numbered_and_linked() -> None:
-    chapters = [Chapter("one", "First", [Facts([("a", "b")])]), Chapter("two", "Second", [Listing("All", ["x", "y"])])]
+    inner = Chapter("inner", "Inner", [Sentence("deep")])
+    chapters = [
+        Chapter("one", "First", [Facts([("a", "b")]), inner]), Chapter("two", "Second", [Listing("All", ["x", "y"])]),
+    ]  # fmt: skip
     document = OutputDocument("Report", parts=chapters, level=1)
     assert "## 2 Second\n\n**All**\n\n- x\n- y\n" in render_markdown(document)
+    assert "### 1.1 Inner\n\ndeep\n" in render_markdown(document)
+    assert '<section id="inner"><h3>1.1&ensp;Inner</h3>' in render_html(document)
     assert '<li><a href="#two">Second</a></li>' in render_html(document)
-    assert "First\n\na  b\n\nSecond\n\nAll\n  - x\n  - y\n" in render_text(document)
+    assert "First\n\na  b\n\nInner\n\ndeep\n\nSecond\n\nAll\n  - x\n  - y\n" in render_text(document)
 
 
 def test_a_terminal_has_codes_around_headings_and_titles_alone() -> None:

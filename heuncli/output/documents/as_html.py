@@ -52,7 +52,7 @@ def render_html(document: OutputDocument) -> str:
         "header",
         make_element("h1", escape_text(document.title or "")) + _render_parts(lead) + _render_contents(chapters),
     )
-    body += "\n" + "\n".join(_render_chapter(number, chapter) for number, chapter in enumerate(chapters, 1))
+    body += "\n" + _render_parts(chapters)
     page = make_element("head", "\n".join(head_elements)) + "\n" + make_element("body", make_element("main", body))
     return "<!DOCTYPE html>\n" + make_element("html", page, lang="en") + "\n"
 
@@ -81,13 +81,23 @@ def _render_contents(chapters: Sequence[Chapter]) -> str:
     return make_element("nav", make_element("ol", "".join(links)), aria_label="Contents")
 
 
-def _render_chapter(number: int, chapter: Chapter) -> str:
-    title = make_element("h2", f"{number}&ensp;{escape_text(chapter.title)}")
-    return make_element("section", title + "\n" + _render_parts(chapter.parts), id=chapter.name)
+def _render_chapter(number: str, chapter: Chapter) -> str:
+    """Render a chapter; a chapter within one has a smaller title."""
+    title = make_element(f"h{2 + number.count('.')}", f"{number}&ensp;{escape_text(chapter.title)}")
+    return make_element("section", title + "\n" + _render_parts(chapter.parts, f"{number}."), id=chapter.name)
 
 
-def _render_parts(parts: Iterable[Part]) -> str:
-    return "\n".join(RENDERERS[type(part)](part) for part in parts if has_content(part))
+def _render_parts(parts: Iterable[Part], prefix: str = "") -> str:
+    """Render the parts; prefix: the number of the chapter that they belong to, before those of its own chapters."""
+    texts = []
+    number = 0
+    for part in filter(has_content, parts):
+        if isinstance(part, Chapter):
+            number += 1
+            texts.append(_render_chapter(f"{prefix}{number}", part))
+        else:
+            texts.append(RENDERERS[type(part)](part))
+    return "\n".join(texts)
 
 
 def _render_sentence(part: Sentence) -> str:

@@ -4,7 +4,7 @@ markup.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from heuncli.base.text_safety import escape
@@ -35,21 +35,19 @@ def render_markdown(document: OutputDocument) -> str:
     """Render the document as Markdown text that ends with a newline."""
     title = [f"{'#' * document.level} {escape_line(document.title)}"] if document.title is not None else []
     facts = [_render_facts(Facts([("heun", VERSION), *document.facts]))] if document.facts else []
-    parts = list(document.parts)
-    chapters = [part for part in parts if isinstance(part, Chapter)]
-    numbers = {chapter.name: number for number, chapter in enumerate(chapters, 1)}
-    blocks = [*title, *facts, *(text for part in parts for text in _iter_blocks(part, numbers))]
-    return "\n\n".join(blocks) + "\n"
+    return "\n\n".join([*title, *facts, *_iter_blocks(document.parts)]) + "\n"
 
 
-def _iter_blocks(part: Part, numbers: dict[str, int]) -> Iterator[str]:
-    """Yield the blocks of a part; a chapter has those of its own parts."""
-    if isinstance(part, Chapter):
-        yield f"## {numbers.get(part.name, '')} {escape_markdown(part.title)}"
-        for each in part.parts:
-            yield from _iter_blocks(each, numbers)
-    elif has_content(part):
-        yield RENDERERS[type(part)](part)
+def _iter_blocks(parts: Iterable[Part], prefix: str = "") -> Iterator[str]:
+    """Yield the blocks of the parts. Chapters are numbered; prefix: the number of the chapter that they belong to."""
+    number = 0
+    for part in parts:
+        if isinstance(part, Chapter):
+            number += 1
+            yield f"{'#' * (2 + prefix.count('.'))} {prefix}{number} {escape_markdown(part.title)}"
+            yield from _iter_blocks(part.parts, f"{prefix}{number}.")
+        elif has_content(part):
+            yield RENDERERS[type(part)](part)
 
 
 def _render_sentence(part: Sentence) -> str:
