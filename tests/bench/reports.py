@@ -8,9 +8,9 @@ from typing import Any
 
 from heuncli.app.commands.report.cases import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
-from heuncli.output.client_report.as_html import render_html
-from heuncli.output.client_report.as_markdown import render_markdown
 from heuncli.output.client_report.contents import make_report
+from heuncli.output.documents.as_html import render_html
+from heuncli.output.documents.as_markdown import render_markdown
 
 SPECS = Path(__file__).parents[2] / "specs"
 NAMES = ("engine", "axle_loads", "crane_load")

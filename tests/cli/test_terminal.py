@@ -7,16 +7,22 @@ import sys
 
 import pytest
 
-from heuncli.app.cli.terminal import MIN_WIDTH, render_tables
-from heuncli.output.tables.text_table import TextColumn, TextTable
+from heuncli.app.cli.documents import make_terminal_style
+from heuncli.app.cli.terminal import MIN_WIDTH
+from heuncli.output.documents.as_text import render_text
+from heuncli.output.documents.document import OutputColumn, OutputDocument, OutputTable
 from tests.shared.command import Heun
 from tests.shared.shell import ENVIRONMENT
 
-WIDE = TextTable(
-    "JOINTS",
-    (TextColumn("joint", "left"), *(TextColumn(f"F{i} [N]") for i in range(12))),
-    tuple((name, *(f"{i}.5" for i in range(12))) for name in ("pivot", "elbow")),
-    ("a note",),
+WIDE = OutputDocument(
+    parts=[
+        OutputTable(
+            "JOINTS",
+            (OutputColumn("joint", "text"), *(OutputColumn(f"F{i} [N]") for i in range(12))),
+            tuple((name, *(f"{i}.5" for i in range(12))) for name in ("pivot", "elbow")),
+            ("a note",),
+        )
+    ]
 )
 
 
@@ -24,9 +30,9 @@ def test_no_color_is_honoured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "60")
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("NO_COLOR", raising=False)
-    assert "\x1b[1mJOINTS" in render_tables([WIDE])[0]
+    assert "\x1b[1mJOINTS" in render_text(WIDE, make_terminal_style())
     monkeypatch.setenv("NO_COLOR", "1")
-    plainly = render_tables([WIDE])[0]
+    plainly = render_text(WIDE, make_terminal_style())
     assert "\x1b[3" not in plainly
     assert "pivot" in plainly
 
@@ -36,18 +42,21 @@ def test_no_escape_code_where_none_is_wanted(setting: dict[str, str], monkeypatc
     monkeypatch.setenv("TERM", "xterm")
     for name, value in setting.items():
         monkeypatch.setenv(name, value)
-    assert "\x1b" not in render_tables([WIDE])[0]
+    assert "\x1b" not in render_text(WIDE, make_terminal_style())
 
 
 # Not in this process, whose own tests are told in lines of that width.
 OF_ANY_WIDTH = """\
 import os
-from heuncli.app.cli.terminal import find_width, render_tables
-from heuncli.output.tables.text_table import TextColumn, TextTable
-wide = TextTable("JOINTS", (TextColumn("joint", "left"), TextColumn("F [N]")), (("pivot", "1.5"),), ())
+from heuncli.app.cli.documents import make_terminal_style
+from heuncli.app.cli.terminal import find_width
+from heuncli.output.documents.as_text import render_text
+from heuncli.output.documents.document import OutputColumn, OutputDocument, OutputTable
+columns = (OutputColumn("joint", "text"), OutputColumn("F [N]"))
+wide = OutputDocument(parts=[OutputTable("JOINTS", columns, (("pivot", "1.5"),))])
 for columns in ("0", "1", "-5", "x", "9" * 30):
     os.environ["COLUMNS"] = columns
-    print("pivot" in "".join(render_tables([wide])), find_width())
+    print("pivot" in render_text(wide, make_terminal_style()), find_width())
 """
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.output.tables.text_table import DEFAULT_WIDTH
+from heuncli.output.documents.as_text import DEFAULT_WIDTH
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 

@@ -232,7 +232,8 @@ DOCUMENT = """(() => {
   const boxes = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node; (node = walker.nextNode());) {
     const home = node.parentElement;
-    if (!node.data.trim() || home.closest("script, style, desc, title, code, details:not([open]) > :not(summary)")) continue;
+    const hidden = "script, style, desc, title, code, details:not([open]) > :not(summary)";
+    if (!node.data.trim() || home.closest(hidden)) continue;
     const range = document.createRange();
     range.selectNodeContents(node);
     let [low, high] = [-Infinity, Infinity];  // what is scrolled out of a part of the page is not seen

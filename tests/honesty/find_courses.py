@@ -28,7 +28,8 @@ from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.course import Sample
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.app.cli.entry import enter
-from heuncli.app.commands.find.page import FindPage, to_json
+from heuncli.app.commands.find.page import FindPage, to_block
+from heuncli.output.documents.as_json import dump_json
 from heuncli.study.quantities.table_units import Units
 
 Rng = np.random.Generator
@@ -367,7 +368,7 @@ def found_directly(course: KnownCourse, relation: Any) -> Any:
     found = find_meetings(ask, course.low, course.high, relation, scan_count=7, max_evaluations=300, value=course.value)
     condition = Comparison("f", relation, course.value, "N")
     interval = DesignVariable("x", course.low, course.high, "")
-    return json.loads(to_json(FindPage("", condition, interval, found, 7, 300, Units({}))))
+    return json.loads(dump_json(to_block(FindPage("", condition, interval, found, 7, 300, Units({})))))
 
 
 def judged(seed: int, kind: str = "all", *, direct: bool = False) -> tuple[KnownCourse, str, Verdict]:

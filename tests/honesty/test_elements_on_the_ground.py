@@ -28,7 +28,8 @@ space: planar
 gravity: [0, -{G}]
 ground: {{points: {{anchor: [{x - far!r}, {y + r!r}], head: [{x!r}, {y!r}], rail: [{x + r!r}, {y - low!r}]}}}}
 bodies: {{hook: {{mass: {m!r}, center: [0, 0], inertia: 1, points: {{eye: [0, 0]}}}}}}
-joints: {{guide: {{type: slide, from: ground.rail, to: hook.eye, axis: [0, 1], initial: {{travel: 0, speed: {-speed!r}}}}}}}
+joints:
+  guide: {{type: slide, from: ground.rail, to: hook.eye, axis: [0, 1], initial: {{travel: 0, speed: {-speed!r}}}}}
 couplings:
   rope: {{type: rope, through: [ground.anchor, {{sheave: ground.head, radius: {r!r}, side: over}}, hook.eye],
          stiffness: {k!r}, length: {length!r}}}

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from heuncli.output.tables.heading import format_heading
+from tests.shared.heading import format_heading
 from tests.shared.scenes import study
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.output.tables.heading import format_heading
 from heuncli.results.results import Results
+from tests.shared.heading import format_heading
 from tests.shared.scenes import solved
 
 G = 9.81

@@ -20,7 +20,9 @@ heun: 1
 space: planar
 ground: {{points: {{anchor: [-1, {radius!r}], wheel: [0, 0]}}}}
 bodies:
-  bob: {{mass: 1, center: [0, 0], inertia: 0.01, points: {{o: [0, 0]}}, position: [{radius!r}, {-strand!r}], velocity: [{-speed!r}, 0]}}
+  bob:
+    {{mass: 1, center: [0, 0], inertia: 0.01, points: {{o: [0, 0]}}, position: [{radius!r}, {-strand!r}],
+     velocity: [{-speed!r}, 0]}}
 couplings:
   rope: {{type: rope, through: [ground.anchor, {{sheave: ground.wheel, radius: {radius!r}, side: over}}, bob.o]{more}}}
 analysis: {{duration: {0.75 * strand**2 / (radius * speed)!r}, samples: 5}}

@@ -8,11 +8,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from heuncli.app.cli.text_figures import render_panels
 from heuncli.base.errors import HeunError
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
 from heuncli.base.tolerances import LOST
+from heuncli.output.documents.as_text import draw_figure
+from heuncli.output.documents.document import make_panels
 from heuncli.output.drawing import matplotlib_file
 from heuncli.output.drawing.figure import Figure, Panel, Spot, Strokes, Trace
 from heuncli.output.drawing.layout import lay_out
@@ -117,7 +118,7 @@ def test_charts_of_failures_alone_and_without_an_error_of_the_reference_can_be_d
 
 def test_below_the_table_letters_stand_where_time_and_error_say() -> None:
     made = make_work_precision_figure(chart(run("A", 1e-3, 1e-4), run("A", 1e-2, 1e-8), run("B", 1e-1, 1e-4), FAILS))
-    lines = render_panels(made, "file").splitlines()
+    lines = draw_figure(make_panels(made)[0].figure).splitlines()
     assert lines[0] == "a A   b B   c Euler" and max(map(len, lines)) <= 100
     row = {line.split("│")[0].strip(): line.partition("│")[2] for line in lines if "│" in line}
     assert row["0.0001"].index("a") < row["1e-8"].index("a") < row["0.0001"].index("b")

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.snapshots import searches
 from heuncli.output.tables.cut_runs import collect_runs, find_sample_extremes, merge_extremes
 from heuncli.output.tables.page import Page, make_page
-from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
@@ -49,7 +49,7 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
     return study, *searches.search_page(page, study, SECTIONS)
 
 
-def cells(table: TextTable) -> list[tuple[str, ...]]:
+def cells(table: OutputTable) -> list[tuple[str, ...]]:
     return [row for row in table.rows if not isinstance(row, str)]
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from heuncli.app.cli.entry import enter
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.tables.export import to_csv
 from heuncli.output.tables.page import Page, make_page
-from heuncli.output.tables.text_table import TextTable
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
@@ -29,11 +29,11 @@ def study_of(name: str) -> tuple[Study, Page]:
     return made, make_page(made.results, make_labels(spec), made.magnitudes)
 
 
-def by_cause(tables: list[TextTable]) -> list[TextTable]:
+def by_cause(tables: list[OutputTable]) -> list[OutputTable]:
     return [table for table in tables if "BY CAUSE" in table.heading]
 
 
-def rows_of(table: TextTable) -> list[dict[str, str]]:
+def rows_of(table: OutputTable) -> list[dict[str, str]]:
     """The cells of every line by the heads of their columns."""
     heads = ["label", "unit", *(column.head for column in table.columns[2:])]
     return [dict(zip(heads, row, strict=True)) for row in table.rows if not isinstance(row, str)]

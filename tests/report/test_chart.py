@@ -18,9 +18,11 @@ from heuncli.analyses.work_precision.results import (
 )  # fmt: skip
 from heuncli.app.commands.chart import page as report
 from heuncli.base.records import replace
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, format_plain
+from heuncli.output.documents.as_csv import render_csv
+from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.as_text import DEFAULT_WIDTH, render_text
+from heuncli.output.documents.document import OutputDocument
+from heuncli.output.documents.text_table import format_plain
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 
 
@@ -67,7 +69,7 @@ def test_what_the_reference_does_not_tell_apart_is_a_bound() -> None:
 
 
 def table(made: ChartResults) -> str:
-    return "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(report.make_table(made), DEFAULT_WIDTH))
+    return render_text(OutputDocument(parts=[report.make_table(made)]))
 
 
 def test_the_table_marks_the_front_bounds_and_failures_within_a_page() -> None:
@@ -96,7 +98,9 @@ def test_json_keeps_to_the_contract() -> None:
 
 
 def test_csv_has_a_line_a_run() -> None:
-    rows = list(csv.DictReader(io.StringIO(report.to_csv(chart(FAILS, run("DOP853", 1e-3, 1.5e-6))))))
+    rows = list(
+        csv.DictReader(io.StringIO(render_csv(report.make_document(chart(FAILS, run("DOP853", 1e-3, 1.5e-6))))))
+    )
     assert [row["method"] for row in rows] == ["Euler", "DOP853"]
     assert rows[0]["step"] == "0.01" and rows[0]["error_motion"] == "" and rows[0]["at"] == "0.25"
     assert float(rows[1]["error_reactions"]) == 3e-6 and rows[1]["front"] == "true" and rows[1]["step"] == ""

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import records
-from heuncli.output.tables.heading import format_heading
+from heuncli.output.documents.text_table import format_plain
 from heuncli.output.tables.page import make_page
-from heuncli.output.tables.text_table import format_plain
 from heuncli.results.results import Magnitudes, Results
 from heuncli.study.quantities.labels import JointInfo, Labels
 from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict
+from tests.shared.heading import format_heading
 
 ONE = np.array([0.5])
 

@@ -5,21 +5,21 @@ from __future__ import annotations
 import pytest
 
 from heuncli.base.wrapping import wrap_text
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_plain
+from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.text_table import format_plain, split_to_width
 
-WIDE = TextTable(
+WIDE = OutputTable(
     "JOINTS",
-    (TextColumn("joint", "left"), *(TextColumn(f"F{i} [N]") for i in range(12))),
+    (OutputColumn("joint", "text"), *(OutputColumn(f"F{i} [N]") for i in range(12))),
     tuple((name, *(f"{i}.5" for i in range(12))) for name in ("pivot", "elbow")),
     ("a note",),
 )
 
 
-VECTORS = TextTable(
+VECTORS = OutputTable(
     "MASS EFFECT  what it is",
-    (TextColumn("", "left"), TextColumn("", "left", is_shown_once=True),
-     *(TextColumn(name, vector=name[0]) for name in ("Fx", "Fy", "Fz", "Mx", "My"))),
+    (OutputColumn("", "text"), OutputColumn("", "text", is_shown_once=True),
+     *(OutputColumn(name, vector=name[0]) for name in ("Fx", "Fy", "Fz", "Mx", "My"))),
     (("total", "a long note on it", "11111", "22222", "33333", "44444", "55555"),),
 )  # fmt: skip
 
@@ -49,8 +49,8 @@ def test_a_vector_is_not_parted_and_a_note_not_repeated() -> None:
 
 
 def test_a_vector_wider_than_a_page_is_parted_all_the_same() -> None:
-    table = TextTable(
-        "", (TextColumn("", "left"), *(TextColumn("F" * 9, vector="F") for _ in range(3))), (("a", "1", "2", "3"),)
+    table = OutputTable(
+        "", (OutputColumn("", "text"), *(OutputColumn("F" * 9, vector="F") for _ in range(3))), (("a", "1", "2", "3"),)
     )
     assert [len(part.columns) for part in split_to_width(table, 25)] == [3, 2]
 
@@ -82,7 +82,7 @@ def test_a_line_ends_with_a_clause_and_not_within_brackets() -> None:
 
 def test_a_last_column_of_text_goes_on_in_lines_of_its_own() -> None:
     row = ("1", "a.angle 1, b.angle -1, guide.travel -0.5")
-    table = TextTable("MODES", (TextColumn("mode"), TextColumn("shape", "left")), (row,))
+    table = OutputTable("MODES", (OutputColumn("mode"), OutputColumn("shape", "text")), (row,))
     (part,) = split_to_width(table, 40)
     assert format_plain(part, 40).splitlines() == [
         "MODES", "mode  shape", "   1  a.angle 1, b.angle -1,", "      guide.travel -0.5",

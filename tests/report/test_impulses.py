@@ -14,11 +14,11 @@ import pytest
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.run.scene import _check_strict
 from heuncli.base.errors import SpecError
+from heuncli.output.documents.as_markdown import render_table
+from heuncli.output.documents.text_table import format_plain
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.export import to_csv, to_json
-from heuncli.output.tables.heading import format_heading
 from heuncli.output.tables.page import make_page
-from heuncli.output.tables.text_table import format_markdown, format_plain
 from heuncli.results.results import Block, Results
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Expect
@@ -26,6 +26,7 @@ from heuncli.scene.file_format.rules import not_yet
 from heuncli.study.quantities.labels import StopInfo
 from heuncli.study.queries.expectations import compare
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum
+from tests.shared.heading import format_heading
 
 T = np.linspace(0.0, 2.0, 5)
 OF = MAGNITUDES._replace(by_unit={**MAGNITUDES.by_unit, "N·s": 10.0, "N·m·s": 10.0})
@@ -149,7 +150,7 @@ def test_what_is_open_in_a_blow_reads_open_and_fails_strict() -> None:
 
 def test_tables_are_written_as_markdown() -> None:
     page = make_page(struck(blow()), labels(), OF)
-    written = "\n".join(format_markdown(table) for table in page.make_tables_at_instants(page.results))
+    written = "\n".join(render_table(table) for table in page.make_tables_at_instants(page.results))
     assert "### IMPULSE at t = 0.5 s (blow)\n" in written
     assert "| **JOINTS  reaction impulse" in written
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from heuncli.output.tables.model_text import WIDTH, format_model
+from collections.abc import Mapping
+from typing import Any
+
+from heuncli.app.commands.model.command import make_document
+from heuncli.output.documents.as_text import DEFAULT_WIDTH, render_text
 
 MODEL = {
     "space": "spatial",
@@ -24,6 +28,10 @@ MODEL = {
 }
 
 
+def format_model(title: str, model: Mapping[str, Any]) -> str:
+    return render_text(make_document(title, model))
+
+
 def test_a_note_tells_the_counts_and_the_sentences() -> None:
     text = format_model("Two bars", MODEL)
     assert text.startswith("Two bars\n\n")
@@ -41,7 +49,7 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
     ):
         assert part in text
     assert "Notes" not in text
-    assert max(map(len, text.splitlines())) <= WIDTH
+    assert max(map(len, text.splitlines())) <= DEFAULT_WIDTH
 
 
 def test_what_couplings_close_is_told_beside_the_loops_of_joints() -> None:

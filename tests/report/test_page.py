@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.output.documents.text_table import format_plain
 from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
-from heuncli.output.tables.heading import format_heading
 from heuncli.output.tables.page import Page, make_page
-from heuncli.output.tables.text_table import format_plain
 from heuncli.results.results import Array, Extremes, Results
 from heuncli.study.search import extremes as peaks
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict, vectors
+from tests.shared.heading import format_heading
 
 T = np.linspace(0.0, 2.0, 21)
 

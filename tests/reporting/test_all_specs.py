@@ -9,10 +9,10 @@ import pytest
 
 from heuncli.app.commands.report.cases import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
-from heuncli.output.client_report.as_html import render_html
-from heuncli.output.client_report.as_markdown import render_markdown
 from heuncli.output.client_report.contents import make_report
 from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.documents.as_html import render_html
+from heuncli.output.documents.as_markdown import render_markdown
 from tests.shared.page_reader import OURS, PageReader
 
 FOLDER = Path(__file__).parents[2] / "specs"

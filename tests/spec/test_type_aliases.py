@@ -234,7 +234,8 @@ def test_a_misspelt_key_is_told_beside_the_missing_type(block: str, key: str) ->
     ("entry", "key", "hint"),
     [("{joint: pivot, stifness: 3}", "stifness", "did you mean stiffness?"),
      ("{joint: pivot, k: 3}", "k", "it is called stiffness here"),
-     ("{stiffness: 3, bogus: 1, joint: pivot}", "bogus", "known keys here: type, joint, stiffness, angle, damping, torque")],
+     ("{stiffness: 3, bogus: 1, joint: pivot}", "bogus",
+      "known keys here: type, joint, stiffness, angle, damping, torque")],
 )  # fmt: skip
 def test_the_type_is_told_by_what_a_misspelt_key_means(entry: str, key: str, hint: str) -> None:
     first, second = problems(SPEC.replace("forces:\n", f"forces:\n  f: {entry}\n"))

@@ -21,13 +21,6 @@ def require_width(width: int | None) -> None:
         raise UsageError(Problem("bad-option", message, hint=f"for example --width {WIDTH}"))
 
 
-def render_panels(figure: Figure, output: str | None = None) -> str:
-    """Render the panels of a figure below a table: without its sentences, and in letters, not in colours."""
-    if not figure.panels:
-        return ""
-    return render_text(figure._replace(title="", words=(), notes=()), None, output, allows_colours=False)
-
-
 def render_text(figure: Figure, width: int | None, output: str | None = None, *, allows_colours: bool = True) -> str:
     """Render the figure as text, for the terminal or for a file."""
     from heuncli.output.drawing.canvas import make_terminal_style

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from heuncli.base.errors import Problem, UsageError
-from heuncli.output.tables.text_table import format_head
+from heuncli.output.documents.document import format_head
 
 if TYPE_CHECKING:
     import pandas as pd

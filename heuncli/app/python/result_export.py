@@ -10,14 +10,13 @@ from typing import Any
 
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.records import replace
-from heuncli.output.client_report.as_html import escape_text, make_element, render_table
-from heuncli.output.client_report.parts import to_report_table
+from heuncli.output.documents.as_html import escape_text, make_element, render_table
+from heuncli.output.documents.as_text import render_text
+from heuncli.output.documents.document import OutputDocument, OutputTable
 from heuncli.output.snapshots.display_units import read_display_units
 from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.snapshots.tables import TablesQuery, make_tables
-from heuncli.output.tables.heading import format_heading, make_heading
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_plain
+from heuncli.output.tables.heading import make_heading
 from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.model.selection import Selection
@@ -49,13 +48,12 @@ def format_text(study: Study, instants: Array | None, units: str | None, selecti
             selection.split(",") if isinstance(selection, str) else selection, "only", "study.measure"
         )
     tables = _make_tables(study, instants, read_display_units("units", units), parsed)
-    lines = [format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)]
-    return format_heading(study.results) + "".join("\n" + text for text in lines)
+    return render_text(OutputDocument(study.results.title, make_heading(study.results), tables))
 
 
 def _make_tables(
     study: Study, instants: Array | None, units: Units, requested: ReportChoice | None = None
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the tables of the reports that are shown by default, or of those requested, as far as they were solved
     for.
     """
@@ -89,10 +87,12 @@ def _narrow_study(study: Study, what: Selection) -> Study:
 
 def render_html(study: Study, instants: Array | None) -> str:
     """Render heading and tables as an HTML fragment without scripts; all text from the spec is escaped."""
-    _, *lines = make_heading(study.results)  # the first is version and title
     body = [make_element("style", STYLE), make_element("h3", escape_text(study.results.title))]
-    body += [make_element("p", escape_text(f"{label}: {text}" if label else text)) for label, text in lines]
-    body += [render_table(to_report_table(table)) for table in _make_tables(study, instants, Units())]
+    body += [
+        make_element("p", escape_text(f"{label}: {text}" if label else text))
+        for label, text in make_heading(study.results)
+    ]
+    body += [render_table(table) for table in _make_tables(study, instants, Units())]
     return make_element("div", "\n".join(body), class_="heun-run")
 
 

@@ -15,8 +15,8 @@ from heuncli.app.python.locked_run import LockedRun, UnknownPath, find_distinct_
 from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
+from heuncli.output.documents.document import format_head
 from heuncli.output.snapshots.measure_units import SUMS, find_sum_unit
-from heuncli.output.tables.text_table import format_head
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
 from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity

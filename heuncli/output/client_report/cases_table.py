@@ -20,11 +20,10 @@ from heuncli.output.client_report.extremes import (
     iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, LoadNumber
-from heuncli.output.client_report.parts import ReportCell, ReportTable, join_names
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import OutputColumn, OutputTable, TextCell, join_names
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.tables.extremes_tables import MARK, MAX_FULL_GROUPS, NOT_SEARCHED, PARTLY_OPEN_NOTE
-from heuncli.output.tables.text_table import TextColumn
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, format_error
 
 MAX_CASES = 12  # with a row each; if there are more, only those that govern
@@ -41,14 +40,14 @@ FEW_CASES_NOTE = "only the governing ones of {} load cases are shown; all: heun 
 
 def make_cases_table(
     data: ReportData, caption: str, groups: Sequence[LoadGroup], notes: Sequence[str] = (), *, has_places: bool = False
-) -> ReportTable:
+) -> OutputTable:
     """Make the table of some groups of numbers.
 
     has_places: whether the extremes are along runs of cuts, so that their places are shown
     """
     governing_bounds = find_governing(data)
     shown_cases = _choose_cases(data, groups, governing_bounds)
-    rows: list[Sequence[ReportCell] | str] = []
+    rows: list[Sequence[TextCell] | str] = []
     zero_groups: list[str] = []
     for group in groups:
         group_rows = list(_iter_group_rows(data, group, shown_cases, governing_bounds, has_places=has_places))
@@ -67,7 +66,7 @@ def make_cases_table(
         else []
     )
     table_notes += [f"all values 0: {join_names(zero_groups)}"] if zero_groups else []
-    return ReportTable(caption, _make_columns(data, has_places=has_places) if rows else [], rows, table_notes)
+    return OutputTable(caption, _make_columns(data, has_places=has_places) if rows else [], rows, table_notes)
 
 
 def _choose_cases(data: ReportData, groups: Sequence[LoadGroup], governing_bounds: GoverningBounds) -> set[str]:
@@ -97,15 +96,15 @@ def _find_hidden_cases(data: ReportData, groups: Sequence[LoadGroup], shown_case
     return [name for name in dict.fromkeys(uncertain_cases) if name not in shown_cases]
 
 
-def _make_columns(data: ReportData, *, has_places: bool) -> list[TextColumn]:
+def _make_columns(data: ReportData, *, has_places: bool) -> list[OutputColumn]:
     """Make the columns; those of instants and of cases only if there are several."""
-    heads = [TextColumn("", "left"), TextColumn("unit", "left")]
-    heads += [TextColumn("case", "left")] if data.has_cases else []
+    heads = [OutputColumn("", "text"), OutputColumn("unit", "text")]
+    heads += [OutputColumn("case", "text")] if data.has_cases else []
     unit = data.units.find("m")[0]
     position_heads = [f"at s [{unit}]"] * has_places + ["at t [s]"] * has_instants(data)
     for word in ("min", "max") if has_instants(data) or has_places else ("value",):
-        heads += [TextColumn(word), *(TextColumn(head) for head in position_heads)]
-    return [*heads, TextColumn("±")]
+        heads += [OutputColumn(word), *(OutputColumn(head) for head in position_heads)]
+    return [*heads, OutputColumn("±")]
 
 
 def has_instants(data: ReportData) -> bool:
@@ -155,7 +154,7 @@ def _iter_formatted(data: ReportData, group: LoadGroup) -> Iterator[FormattedNum
 
 def _iter_group_rows(
     data: ReportData, group: LoadGroup, shown_cases: set[str], governing_bounds: GoverningBounds, *, has_places: bool
-) -> Iterator[Sequence[ReportCell]]:
+) -> Iterator[Sequence[TextCell]]:
     """Yield the rows of a group. Numbers that are zero at all times get none; those always indeterminate share one
     row.
     """
@@ -174,12 +173,12 @@ def _iter_group_rows(
         yield _make_open_row(_make_columns(data, has_places=has_places), open_labels)
 
 
-def _make_open_row(columns: Sequence[TextColumn], labels: Sequence[str]) -> list[ReportCell]:
+def _make_open_row(columns: Sequence[OutputColumn], labels: Sequence[str]) -> list[TextCell]:
     """Make the row of the numbers that are always indeterminate: the word `open` takes the place of the number."""
-    heads = [column.head for column in columns]
+    heads = [column.title for column in columns]
     first = next(heads.index(word) for word in ("min", "value") if word in heads)
     texts = {0: ", ".join(labels), first: OPEN}
-    return [ReportCell(texts.get(i, "")) for i in range(len(columns))]
+    return [TextCell(texts.get(i, "")) for i in range(len(columns))]
 
 
 def _iter_case_rows(
@@ -189,7 +188,7 @@ def _iter_case_rows(
     governing_bounds: GoverningBounds,
     *,
     has_places: bool,
-) -> Iterator[Sequence[ReportCell]]:
+) -> Iterator[Sequence[TextCell]]:
     """Yield one row per case; the first has the name of the number and its unit."""
     low, high = governing_bounds.find_least(number.row.path), governing_bounds.find_greatest(number.row.path)
     is_known = not number.distinct_texts & {OPEN, UNKNOWN} and not any(
@@ -206,7 +205,7 @@ def _iter_case_rows(
         error = "" if texts == (OPEN, OPEN) else format_error(ends.error * number.size)
         cells = _iter_cells(data, run, ends, _mark_uncertain(run, number, ends, texts), bold, has_places=has_places)
         label = leading[0] + PARTLY_OPEN_MARK * ends.is_partly_open
-        yield (ReportCell(label), ReportCell(leading[1]), *map(ReportCell, case), *cells, ReportCell(error))
+        yield (TextCell(label), TextCell(leading[1]), *map(TextCell, case), *cells, TextCell(error))
         leading = ["", ""]
 
 
@@ -241,21 +240,21 @@ def _iter_cells(
     bold: tuple[bool, bool],
     *,
     has_places: bool,
-) -> Iterator[ReportCell]:
+) -> Iterator[TextCell]:
     """Yield the cells of the minimum and the maximum, each with its place and its instant."""
     is_constant = texts[0] == texts[1]
     if not (has_places or has_instants(data)):
-        yield ReportCell(texts[0], any(bold))
+        yield TextCell(texts[0], any(bold))
         return
     for k, end in enumerate((ends.low, ends.high)):
-        yield ReportCell(texts[k], bold[k])
+        yield TextCell(texts[k], bold[k])
         if has_places:
-            yield ReportCell("" if is_constant else format_place_in_unit(end.place, data.units, with_unit=False))
+            yield TextCell("" if is_constant else format_place_in_unit(end.place, data.units, with_unit=False))
         if has_instants(data):
-            yield ReportCell("" if is_constant or texts[k] in (OPEN, UNKNOWN) else format_instant(end.time, run))
+            yield TextCell("" if is_constant or texts[k] in (OPEN, UNKNOWN) else format_instant(end.time, run))
 
 
-def _iter_notes(data: ReportData, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator[str]:
+def _iter_notes(data: ReportData, rows: Sequence[Sequence[TextCell] | str]) -> Iterator[str]:
     """Yield the notes that explain the signs in a table."""
     cells = [cell for row in rows if not isinstance(row, str) for cell in row]
     texts = {cell.text for cell in cells}

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from heuncli.output.client_report.parts import Part, ReportCell, ReportTable, Sentence
 from heuncli.output.client_report.report_data import AS_IT_STANDS, ReportData
+from heuncli.output.documents.document import OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.text_table import TextColumn
 from heuncli.study.queries.measure_uncertainty import find_unit
 
 NO_CHECKS, NO_REPORTED_CHECKS = (
@@ -23,17 +22,17 @@ def make_check_parts(data: ReportData) -> list[Part]:
         return [Sentence(NO_REPORTED_CHECKS if data.unchecked_scenes else NO_CHECKS)]
     with_cases = any(outcome.case for outcome in data.outcomes)
     heads = [head for head in HEADS if with_cases or head != "case"]
-    columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
+    columns = [OutputColumn(head, "number" if head in NUMBERS else "text") for head in heads]
     rows = [_make_row(data, outcome, with_cases=with_cases) for outcome in data.outcomes]
     failed = [f"{outcome.name}: {outcome.failure}" for outcome in data.outcomes if outcome.failure is not None]
     changed = ", with the command-line options given" if data.options else ""
-    return [ReportTable(f"CHECKS  as in heun check{changed}; SI units", columns, rows, failed)]
+    return [OutputTable(f"CHECKS  as in heun check{changed}; SI units", columns, rows, failed)]
 
 
-def _make_row(data: ReportData, outcome: Outcome, *, with_cases: bool) -> list[ReportCell]:
+def _make_row(data: ReportData, outcome: Outcome, *, with_cases: bool) -> list[TextCell]:
     """Make the cells of one check; a failed verdict is bold."""
-    verdict = ReportCell(HOLDS if outcome.has_passed else FAILS, not outcome.has_passed)
-    case = [ReportCell(outcome.case or AS_IT_STANDS)] if with_cases else []
+    verdict = TextCell(HOLDS if outcome.has_passed else FAILS, not outcome.has_passed)
+    case = [TextCell(outcome.case or AS_IT_STANDS)] if with_cases else []
     texts = (
         outcome.subject,
         find_unit(outcome.subject, data.spec),
@@ -42,4 +41,4 @@ def _make_row(data: ReportData, outcome: Outcome, *, with_cases: bool) -> list[R
         outcome.found_text,
         outcome.tolerance_text,
     )
-    return [ReportCell(str(outcome.line)), *case, *map(ReportCell, texts), verdict]
+    return [TextCell(str(outcome.line)), *case, *map(TextCell, texts), verdict]

@@ -10,10 +10,10 @@ from heuncli.output.client_report.first_page import make_first_page
 from heuncli.output.client_report.histories import make_history_parts
 from heuncli.output.client_report.load_table import make_load_parts
 from heuncli.output.client_report.machine import make_drawing_parts, make_model_parts
-from heuncli.output.client_report.parts import Chapter, ClientReport, Part, Sentence, Verbatim, has_content
 from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.client_report.sections import make_section_parts
 from heuncli.output.client_report.trust import make_open_parts, make_trust_parts
+from heuncli.output.documents.document import Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
 
 MAX_SPEC_LINES = 2000  # of a spec that is printed
 CHAPTERS: Sequence[tuple[str, str, Callable[[ReportData], list[Part]]]] = (
@@ -30,11 +30,11 @@ CHAPTERS: Sequence[tuple[str, str, Callable[[ReportData], list[Part]]]] = (
 )
 
 
-def make_report(data: ReportData) -> ClientReport:
+def make_report(data: ReportData) -> OutputDocument:
     """Make the report without the chapters that have no content. Raises the errors of the solver."""
     chapters = [Chapter(name, title, list(filter(has_content, parts(data)))) for name, title, parts in CHAPTERS]
-    lead = list(filter(has_content, make_first_page(data)))
-    return ClientReport(data.spec.title or "untitled", lead, [chapter for chapter in chapters if chapter.parts])
+    parts = [*make_first_page(data), *(chapter for chapter in chapters if chapter.parts)]
+    return OutputDocument(data.spec.title or "untitled", parts=parts, level=1)
 
 
 def make_spec_parts(data: ReportData) -> list[Part]:
@@ -42,7 +42,7 @@ def make_spec_parts(data: ReportData) -> list[Part]:
     lines = data.text.removeprefix("\ufeff").splitlines()
     parts: list[Part] = [
         Sentence(f"{data.spec.path}, SHA-256 {data.spec.sha256}"),
-        Verbatim("\n".join(lines[:MAX_SPEC_LINES])),
+        Verbatim("\n".join(lines[:MAX_SPEC_LINES]), is_numbered=True),
     ]
     if len(lines) > MAX_SPEC_LINES:
         parts.append(Sentence(f"... and {len(lines) - MAX_SPEC_LINES} more lines, not printed", "unsure"))

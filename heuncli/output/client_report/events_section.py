@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from heuncli.output.client_report.parts import Part, Sentence, to_report_table
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import Part, Sentence
 from heuncli.output.tables.event_table import make_events_table
 from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables
 
@@ -26,4 +26,4 @@ def _make_run_parts(run: ReportedRun) -> list[Part]:
         tables += make_impulse_tables(
             ImpactReport(page.results, page.labels, page.certain, page.magnitudes, page.impact_extremes, page.details)
         )
-    return [to_report_table(table) for table in tables]
+    return list(tables)

@@ -8,10 +8,10 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import append_unit
 from heuncli.output.snapshots.columns import format_place
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
-from heuncli.output.tables.text_table import append_unit
 from heuncli.results.results import Array, CutPosition
 from heuncli.study.quantities.digits import OPEN, UNKNOWN, Style, choose_style, format_error, write_times
 from heuncli.study.quantities.table_units import Units

@@ -10,8 +10,8 @@ import numpy as np
 from heuncli.base.method_rows import find_method
 from heuncli.output.client_report.extremes import GreatestOfCases, find_greatest_of_cases, find_uncertain_cases
 from heuncli.output.client_report.load_groups import iter_joining_forces
-from heuncli.output.client_report.parts import Facts, Mood, Part, Sentence, join_names
 from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.documents.document import Facts, Mood, Part, Sentence, join_names
 from heuncli.output.tables.extremes_tables import MARK
 from heuncli.output.tables.impulse_tables import find_largest_impulses
 from heuncli.output.tables.plurals import format_count

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from heuncli.output.client_report.extremes import find_governing
-from heuncli.output.client_report.parts import Drawing, Part
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import Drawing, Part
 from heuncli.output.drawing.figure import Figure, share_x_axis
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.histories import make_history

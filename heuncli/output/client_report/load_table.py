@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from heuncli.output.client_report.cases_table import make_cases_table
 from heuncli.output.client_report.load_groups import TOTAL, drop_components, iter_groups
-from heuncli.output.client_report.parts import Part, Sentence
 from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.documents.document import Part, Sentence
 from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
 from heuncli.output.tables.table_blocks import describe_chosen_components
 from heuncli.output.tables.table_plans import FOUNDATION, JOINTS, STOPS, TablePlan

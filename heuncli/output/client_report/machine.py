@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.output.client_report.parts import Drawing, Facts, Listing, Part, Sentence
 from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.documents.document import Drawing, Part, Sentence
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.scenes import make_scene_figure
-from heuncli.output.tables.model_text import LIST_TITLES, collect_facts
+from heuncli.output.tables.model_text import make_description_parts
 from heuncli.study.workflow import describe
 
 ASSUMPTIONS = (
@@ -35,8 +35,4 @@ def make_model_parts(data: ReportData) -> list[Part]:
     description = describe(study.spec, reduce=data.reduce)
     # as it was solved
     model: Mapping[str, Any] = study.results.model | {key: description[key] for key in DESCRIBED_KEYS}
-    parts: list[Part] = [Sentence(ASSUMPTIONS), Facts([fact for fact in collect_facts(model) if fact[1]])]
-    for key, title in LIST_TITLES:
-        if model.get(key):
-            parts.append(Listing(title, [str(sentence) for sentence in model[key]]))
-    return parts
+    return [Sentence(ASSUMPTIONS), *make_description_parts(model)]

@@ -18,12 +18,11 @@ from heuncli.output.client_report.extremes import (
     iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
-from heuncli.output.client_report.parts import Drawing, Part, ReportCell, ReportTable, Sentence, join_names
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, join_names
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.output.tables.table_plans import SECTIONS
-from heuncli.output.tables.text_table import TextColumn
 from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES
 from heuncli.study.quantities.channels import FAMILIES
 from heuncli.study.quantities.digits import format_error
@@ -158,9 +157,9 @@ def _iter_stress_table(data: ReportData, names: list[str]) -> Iterator[Part]:
     all_known = all(entry_of_section.is_known for entry_of_section in entries)
     largest = max(map(_rank_entry, entries))
     pa, m = data.units.find("Pa")[0], data.units.find("m")[0]
-    heads = [TextColumn("section", "left"), *([TextColumn("case", "left")] if data.has_cases else [])]
-    heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if has_instants(data) else [])]
-    heads += [TextColumn(head) for head in (f"mises [{pa}]", f"± [{pa}]", f"strength [{pa}]", "utilisation")]
+    heads = [OutputColumn("section", "text"), *([OutputColumn("case", "text")] if data.has_cases else [])]
+    heads += [OutputColumn(f"at s [{m}]"), *([OutputColumn("at t [s]")] if has_instants(data) else [])]
+    heads += [OutputColumn(head) for head in (f"mises [{pa}]", f"± [{pa}]", f"strength [{pa}]", "utilisation")]
     rows = [
         _make_cells(data, entry_of_section, entries, is_largest=all_known and _rank_entry(entry_of_section) == largest)
         for entry_of_section in entries
@@ -175,12 +174,12 @@ def _iter_stress_table(data: ReportData, names: list[str]) -> Iterator[Part]:
         for entry_of_section in entries
         if not entry_of_section.is_known
     ]
-    yield ReportTable("STRESS  largest in each section", heads, rows, notes)
+    yield OutputTable("STRESS  largest in each section", heads, rows, notes)
 
 
 def _make_cells(
     data: ReportData, entry: SectionUtilisation, entries: list[SectionUtilisation], *, is_largest: bool
-) -> list[ReportCell]:
+) -> list[TextCell]:
     """Make the row of a section."""
     size = data.units.find("Pa")[1]
     stress_style = choose_family_style([each.mises for each in entries], data, size)
@@ -191,14 +190,14 @@ def _make_cells(
     is_constant = extreme.place is None and is_steady(entry.mises, stress_style, size)
     strength = entry.run.study.spec.sections[entry.name].strength
     return [
-        ReportCell(entry.name),
-        *([ReportCell(entry.run.case_label)] if data.has_cases else []),
-        ReportCell(format_place_in_unit(extreme.place, data.units, with_unit=False)),
-        *([ReportCell("" if is_constant else format_instant(extreme.time, entry.run))] if has_instants(data) else []),
-        ReportCell(format_extreme(entry.mises.high.value, stress_style, size)),
-        ReportCell(format_error(entry.mises.error * size) if isinstance(entry.mises.high.value, float) else ""),
-        ReportCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
-        ReportCell(
+        TextCell(entry.name),
+        *([TextCell(entry.run.case_label)] if data.has_cases else []),
+        TextCell(format_place_in_unit(extreme.place, data.units, with_unit=False)),
+        *([TextCell("" if is_constant else format_instant(extreme.time, entry.run))] if has_instants(data) else []),
+        TextCell(format_extreme(entry.mises.high.value, stress_style, size)),
+        TextCell(format_error(entry.mises.error * size) if isinstance(entry.mises.high.value, float) else ""),
+        TextCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
+        TextCell(
             "" if entry.utilisation is None else format_extreme(entry.utilisation.high.value, utilisation_style, 1.0),
             is_largest and entry.utilisation is not None,
         ),

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.output.client_report.parts import Facts, Listing, Part, ReportCell, ReportTable, Sentence
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import Facts, Listing, OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.heading import make_heading
-from heuncli.output.tables.text_table import TextColumn
 from heuncli.results.results_schema import XYZ, error_kind_of_path
 from heuncli.study.quantities.digits import format_error
 
@@ -34,7 +33,7 @@ ONE_INSTANT_NOTE = (
 KIND_LABELS = {"reactions": "joints", "drives": "drives", "foundation": "foundation", "sections": "sections"}
 MOTION = ("positions of points", "m")
 LOADS = ("N", "N·m")
-CASE_COLUMN = TextColumn("case", "left")
+CASE_COLUMN = OutputColumn("case", "text")
 NOTHING_OPEN = "No indeterminate loads: rigid-body mechanics determines every reported load."
 
 
@@ -44,7 +43,7 @@ def make_trust_parts(data: ReportData) -> list[Part]:
     for run in data.runs:
         if data.has_cases:
             parts.append(Sentence(f"Case {run.case_label}:"))
-        parts.append(Facts([line for line in make_heading(run.results) if line[0] not in ("heun", "model", "warning")]))
+        parts.append(Facts([line for line in make_heading(run.results) if line[0] not in ("model", "warning")]))
     return [*parts, _make_error_table(data)]
 
 
@@ -55,7 +54,7 @@ def _explain_errors(run: ReportedRun) -> str:
     return INTEGRATED_NOTE if run.study.history.followed_duration is None else DRIVEN_NOTE
 
 
-def _make_error_table(data: ReportData) -> ReportTable:
+def _make_error_table(data: ReportData) -> OutputTable:
     """Make the table of the stated errors by kind, each the largest of all cases."""
     errors: dict[tuple[str, str], tuple[float, str]] = {}
     for run in data.runs:
@@ -67,14 +66,14 @@ def _make_error_table(data: ReportData) -> ReportTable:
         unit_text, size = data.units.find(unit)
         rows.append(
             [
-                ReportCell(kind),
-                ReportCell(unit_text),
-                ReportCell(format_error(error * size)),
-                *([ReportCell(case)] if data.has_cases else []),
+                TextCell(kind),
+                TextCell(unit_text),
+                TextCell(format_error(error * size)),
+                *([TextCell(case)] if data.has_cases else []),
             ]
         )
-    heads = [TextColumn("quantity", "left"), TextColumn("unit", "left"), TextColumn("±")]
-    return ReportTable(
+    heads = [OutputColumn("quantity", "text"), OutputColumn("unit", "text"), OutputColumn("±")]
+    return OutputTable(
         "STATED ERRORS  for each kind of quantity", [*heads, *([CASE_COLUMN] if data.has_cases else [])], rows
     )
 

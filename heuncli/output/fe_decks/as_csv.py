@@ -4,13 +4,13 @@ read it.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
-from io import StringIO
 
 import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
+from heuncli.output.documents.as_csv import format_line
+from heuncli.output.documents.document import Cell
 from heuncli.output.fe_decks.naming import DeckNames
 from heuncli.results.results import Array
 
@@ -19,12 +19,12 @@ HEADER = ("case", "time", "kind", "name", "by", "point", "quantity", "unit", "x"
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """Yield the lines."""
-    yield _format_line(HEADER)
+    yield format_line(HEADER)
     for row in iter_rows(cases):
-        yield _format_line(row)
+        yield format_line(row)
 
 
-def iter_rows(cases: LoadCases) -> Iterator[tuple[object, ...]]:
+def iter_rows(cases: LoadCases) -> Iterator[tuple[Cell, ...]]:
     """Yield one row for each vector: first the body, then the cases."""
     _, length, mass, _ = cases.units
     body = cases.body
@@ -37,7 +37,7 @@ def iter_rows(cases: LoadCases) -> Iterator[tuple[object, ...]]:
         yield from _iter_case_rows(cases, case)
 
 
-def _iter_case_rows(cases: LoadCases, case: LoadCase) -> Iterator[tuple[object, ...]]:
+def _iter_case_rows(cases: LoadCases, case: LoadCase) -> Iterator[tuple[Cell, ...]]:
     force, length, _, time = cases.units
     pulse = f"*{time}" if case.is_impulse else ""
     case_columns = (case.name, repr(case.time))
@@ -59,8 +59,8 @@ def _iter_case_rows(cases: LoadCases, case: LoadCase) -> Iterator[tuple[object, 
 
 
 def _iter_action_rows(
-    first_columns: Sequence[object], action: PointAction, units: tuple[str, str]
-) -> Iterator[tuple[object, ...]]:
+    first_columns: Sequence[Cell], action: PointAction, units: tuple[str, str]
+) -> Iterator[tuple[Cell, ...]]:
     force, length = units
     yield (*first_columns, "position", length, *_format_vector(action.at))
     yield (*first_columns, "force", force, *_format_vector(action.force))
@@ -71,9 +71,3 @@ def _iter_action_rows(
 
 def _format_vector(vector: Array) -> list[str]:
     return [repr(x) for x in (np.asarray(vector) + 0.0).tolist()]
-
-
-def _format_line(row: Sequence[object]) -> str:
-    text = StringIO()
-    csv.writer(text, lineterminator="\n").writerow(row)
-    return text.getvalue()

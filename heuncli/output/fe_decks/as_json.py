@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
+from heuncli.output.documents.as_json import dump_json
 from heuncli.output.fe_decks.naming import DeckNames
-from heuncli.output.tables.export import dump_json
 
 
 def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from heuncli.output.documents.document import append_unit
 from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.golden_file import Value
-from heuncli.output.tables.text_table import append_unit
 
 
 def format_value(value: Value | str | None, unit: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.output.tables.text_table import TextTable
+from heuncli.output.documents.document import OutputTable
 from heuncli.results.results import Array
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.quantities.digits import OPEN_NOTE
@@ -20,7 +20,7 @@ PINS_NOTE = (
 HEADING = "JOINTS"  # as tables of joints begin
 
 
-def add_pins_note(tables: Sequence[TextTable], study: Study) -> list[TextTable]:
+def add_pins_note(tables: Sequence[OutputTable], study: Study) -> list[OutputTable]:
     """Add the hint to the tables of joints with open reactions, if parallel pins are the reason."""
     places = [n for n, each in enumerate(tables) if each.heading.startswith(HEADING) and OPEN_NOTE in each.notes]
     if not places or not has_open_parallel_pins(study):

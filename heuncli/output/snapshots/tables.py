@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.snapshots import searches
 from heuncli.output.snapshots.pins_note import add_pins_note
 from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, DoubtfulInstants
 from heuncli.output.tables.page import make_page
-from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction, make_partial_note
@@ -36,7 +36,7 @@ class TablesQuery(NamedTuple):
     details: bool = False
 
 
-def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[TextTable]:
+def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[OutputTable]:
     """Make the tables before they are split to a width; never an empty list."""
     reports = query.selection.reports
     page = make_page(study.results, labels, study.magnitudes, details=query.details)
@@ -58,12 +58,12 @@ def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[TextTa
     else:
         tables = page.make_tables_of_extremes(extremes, shares)
         if not extremes.is_searched:
-            tables.insert(0, TextTable("", notes=(NOT_SEARCHED,)))
+            tables.insert(0, OutputTable("", notes=(NOT_SEARCHED,)))
         if page.has_runs and page.doubtful.instants:
-            tables.append(TextTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + RUN_EXTREMES_SUFFIX,)))
+            tables.append(OutputTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + RUN_EXTREMES_SUFFIX,)))
         if AXIS in query.selection.entries:
-            tables.append(TextTable("", notes=(AXIS_NOTE,)))
+            tables.append(OutputTable("", notes=(AXIS_NOTE,)))
     tables = add_pins_note(tables, study)
     if not tables:
-        tables = [TextTable("", notes=(f"nothing to show for {', '.join(sorted(reports))}: the model has none",))]
+        tables = [OutputTable("", notes=(f"nothing to show for {', '.join(sorted(reports))}: the model has none",))]
     return tables

@@ -12,9 +12,10 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.text_table import INDENT
 from heuncli.output.tables.cut_runs import CutRun, format_place
 from heuncli.output.tables.table_blocks import TableBlock
-from heuncli.output.tables.text_table import INDENT, TextColumn, TextTable
 from heuncli.results.results import Array, CutPosition, Extremes, Results
 from heuncli.results.results_schema import BY_CAUSE, SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.quantities.channels import Channel
@@ -133,7 +134,7 @@ def make_instants_tables(
     times: Array,
     horizon: float | None,
     certain: StatedErrors,
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the table of all numbers of a block that have shares, at every instant. Empty list if there are none."""
     clock = [""] if len(times) == 1 else [f"{x} s" for x in write_times(times.tolist(), float(np.ptp(times)))]
     groups: list[tuple[str, list[ShareLine]]] = []
@@ -166,7 +167,7 @@ def make_extremes_tables(
     extremes: Extremes,
     certain: StatedErrors,
     span: float,
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the table of the minimum and maximum of every number of a block, with the shares at their instants.
 
     numbers: at `instants`, which include those of the extremes
@@ -208,7 +209,7 @@ def make_heading(block: TableBlock) -> str:
     return block.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
 
 
-def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) -> TextTable:
+def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) -> OutputTable:
     """Make the table of grouped rows with a column for each cause; rows and columns that are zero throughout are left
     out.
     """
@@ -240,18 +241,21 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
         shown_lines += [line for line, _ in shown_here]
         number_cells += [cells_of_line for _, cells_of_line in shown_here]
     if not number_cells:
-        return TextTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("all values 0",))
+        return OutputTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("all values 0",))
     empty = [i for i in range(len(heads) - 2) if all(cells_of_line[i] in ("0", "") for cells_of_line in number_cells)]
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.position for line in all_lines) else 2
     cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
     titles = [distinguish(cause, TOTAL_COLUMNS) for cause in shown_causes] + heads[len(shown_causes) :]
-    columns = [*(TextColumn(head, "left") for head in ("", "", "at")[:lead]), *(TextColumn(titles[i]) for i in shown)]
+    columns = [
+        *(OutputColumn(head, "text") for head in ("", "", "at")[:lead]),
+        *(OutputColumn(titles[i]) for i in shown),
+    ]
     where = " except where open" if special_words else ""
     notes = [f"all values 0{where}: {', '.join(heads[i] for i in empty)}"] if empty else []
     notes += make_notes(shown_lines, {heads[i] for i in shown}, special_words.union(*number_cells))
     notes += [ZERO_NOTE] if left_out else []
-    return TextTable(heading, tuple(columns), tuple(cells), tuple(notes))
+    return OutputTable(heading, tuple(columns), tuple(cells), tuple(notes))
 
 
 def find_indeterminate_labels(lines: Sequence[ShareLine]) -> list[str]:
@@ -336,7 +340,7 @@ def make_notes(lines: Sequence[ShareLine], heads: set[str], words: set[str]) -> 
 
 def make_run_extremes_tables(
     run: CutRun, results: Results, extremes: Extremes, certain: StatedErrors
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the table of the minimum and maximum of each section force along a run of cuts, with their shares.
 
     results: with the run cut at the places of the minimum and maximum of every section force, in this order
@@ -357,7 +361,7 @@ def make_run_extremes_tables(
 
 def make_run_instants_tables(
     run: CutRun, results: Results, horizon: float | None, certain: StatedErrors
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the table of the minimum and maximum of each section force among the cuts at every instant, with their
     shares.
     """
@@ -390,7 +394,7 @@ def make_run_line(
     return ShareLine(label, where, load, shares, float(section[load.quantity][index]))
 
 
-def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: StatedErrors) -> list[TextTable]:
+def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: StatedErrors) -> list[OutputTable]:
     """Make the table of a run of cuts. Empty list if no row has shares."""
     heading = run.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
     return [make_share_table(heading, [("", lines)], certain)] if any(line.shares for line in lines) else []

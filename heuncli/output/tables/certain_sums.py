@@ -8,8 +8,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.tables.table_blocks import format_component
-from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, DeterminateSum, Results
 from heuncli.results.results_schema import AXIAL_FORCES, SECTION_FORCES, XYZ
 from heuncli.study.quantities.digits import StatedErrors, format_unclaimed, largest_magnitude, write_numbers
@@ -21,7 +21,7 @@ FORCES = frozenset({"force", *AXIAL_FORCES, *SECTION_FORCES})
 
 def make_sums_table(
     results: Results, certain: StatedErrors, last_instant: Results | None = None, unit: str = "N"
-) -> TextTable | None:
+) -> OutputTable | None:
     """Make the table of sums that are determinate although their terms are not; None if there are none.
 
     last_instant: results at the last instant, if the run ends beyond its horizon
@@ -40,7 +40,7 @@ def make_sums_table(
         *([hidden_note] if hidden_note else []),
     ]
     axes = ", world axes" if "axes" in results.model else ""  # other axes are given elsewhere
-    return TextTable(f"DETERMINATE SUMS  of indeterminate reactions{axes}", notes=tuple(notes))
+    return OutputTable(f"DETERMINATE SUMS  of indeterminate reactions{axes}", notes=tuple(notes))
 
 
 def _format_sum(

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.tables.text_table import TextColumn, TextTable, append_unit, format_head
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, append_unit
 from heuncli.results.results import Array
 from heuncli.study.load_cycles.collective import REFERENCE, Collective
 from heuncli.study.quantities.digits import Style, choose_style, format_error, write_numbers, write_times
-from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
 
 CLOSED = "closed"  # a history repeated endlessly
-CSV_COLUMNS = ("path", "quantity", "unit", "slope", "above", "up_to", "mean_above", "mean_up_to", "value")
+CSV_COLUMNS = make_columns("path quantity unit slope above up_to mean_above mean_up_to value")
 NO_SIGN = (
     "a magnitude has no sign: a reversing load counts twice, at half the range; components (.x, .y, .z) keep their sign"
 )
@@ -24,7 +24,7 @@ NO_CYCLES = "no cycles: the variation is within the error"
 IMPACT_NOTE = "impulses: the loads before and after each jump count; the impulses themselves (N·s) are not included"
 
 
-def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> list[TextTable]:
+def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> list[OutputTable]:
     """Make all tables of a collective; has_impacts: whether there were impacts during the run."""
     tables = [make_ranges_table(collective, units, has_impacts=has_impacts)]
     if collective.total_cycles:
@@ -33,35 +33,35 @@ def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> l
     return tables
 
 
-def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool) -> TextTable:
+def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool) -> OutputTable:
     """Make the table of cycles by class of range, with their shares of the damage."""
     unit, size = units.find(collective.history.unit)
     limits = format_limits(collective, collective.matrix.ranges * size, size)
     larger_counts = collective.counts[::-1].cumsum()[::-1]
     columns = [
-        TextColumn(format_head("range above", unit)),
-        TextColumn(format_head("up to", unit)),
-        TextColumn("cycles"),
+        OutputColumn("range above", unit=unit),
+        OutputColumn("up to", unit=unit),
+        OutputColumn("cycles"),
     ]
-    columns += [TextColumn("cumulative"), *(TextColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
-    rows = tuple(
+    columns += [OutputColumn("cumulative"), *(OutputColumn(f"damage, m = {s:g}") for s in collective.counting.slopes)]
+    rows: list[tuple[Cell, ...]] = [
         (
             limits[k],
             limits[k + 1],
-            format_count(collective.counts[k]),
-            format_count(larger_counts[k]),
-            *map(format_share, collective.shares[:, k]),
+            make_count_cell(collective.counts[k]),
+            make_count_cell(larger_counts[k]),
+            *(NumberCell(float(share), write=format_share) for share in collective.shares[:, k]),
         )
         for k in range(len(collective.counts))
-    )
+    ]
     heading = (
         f"LOAD SPECTRUM {collective.history.path}  rainflow cycles (ASTM E1049-85) by range, {format_times(collective)}"
     )
-    return TextTable(
+    return OutputTable(
         heading,
-        tuple(columns),
+        columns,
         rows if collective.total_cycles else (),
-        tuple(iter_notes(collective, units, has_impacts=has_impacts)),
+        list(iter_notes(collective, units, has_impacts=has_impacts)),
     )
 
 
@@ -100,50 +100,53 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
         yield IMPACT_NOTE
 
 
-def make_equivalents_table(collective: Collective, units: Units) -> TextTable:
+def make_equivalents_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of damage-equivalent ranges and their errors."""
     unit, size = units.find(collective.history.unit)
-    columns = tuple(map(TextColumn, ("slope m", "cycles", format_head("range", unit), format_head("error", unit))))
-    rows = tuple(
+    columns = (
+        OutputColumn("slope m"), OutputColumn("cycles"), OutputColumn("range", unit=unit),
+        OutputColumn("error", unit=unit),
+    )  # fmt: skip
+    rows = [
         (
-            f"{equivalent.slope:g}",
-            format_count(equivalent.cycles),
-            format_with_error(equivalent.range * size, equivalent.error * size),
-            format_error(equivalent.error * size),
+            float(equivalent.slope),
+            make_count_cell(equivalent.cycles),
+            NumberCell(equivalent.range * size, equivalent.error * size),
+            NumberCell(equivalent.error * size, write=format_error),
         )
         for equivalent in collective.equivalents
-    )
+    ]
     heading = (
         f"EQUIVALENT RANGE {collective.history.path}  of constant cycles with the same damage: (Σ n R^m / N)^(1/m)"
     )
-    return TextTable(heading, columns, rows)
+    return OutputTable(heading, columns, rows)
 
 
-def make_crossings_table(collective: Collective, units: Units) -> TextTable:
+def make_crossings_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of how often each level is crossed."""
     unit, size = units.find(collective.history.unit)
     crossings = collective.crossings
     rows = zip(
         format_limits(collective, crossings.levels * size, size),
         *(
-            map(format_count, counts)
+            map(make_count_cell, counts)
             for counts in (crossings.count_by_reference(REFERENCE), crossings.upward, crossings.downward)
         ),
         strict=True,
     )
     columns = (
-        TextColumn(format_head("level", unit)),
-        TextColumn("crossings"),
-        TextColumn("upwards"),
-        TextColumn("downwards"),
+        OutputColumn("level", unit=unit),
+        OutputColumn("crossings"),
+        OutputColumn("upwards"),
+        OutputColumn("downwards"),
     )
     heading = (
         f"LEVEL CROSSINGS {collective.history.path}  (ASTM E1049, 5.1) counted upward at levels ≥ 0, downward below 0"
     )
-    return TextTable(heading, columns, tuple(rows))
+    return OutputTable(heading, columns, tuple(rows))
 
 
-def make_matrix_table(collective: Collective, units: Units) -> TextTable:
+def make_matrix_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of cycles by range and mean, without empty classes."""
     unit, size = units.find(collective.history.unit)
     limits, means = (
@@ -151,18 +154,18 @@ def make_matrix_table(collective: Collective, units: Units) -> TextTable:
     )
     shown = np.flatnonzero(collective.matrix.counts.any(axis=0)).tolist()
     columns = (
-        TextColumn(format_head("range", unit), "left"),
-        *(TextColumn(f"{means[j]} ... {means[j + 1]}") for j in shown),
+        OutputColumn("range", "text", unit),
+        *(OutputColumn(f"{means[j]} ... {means[j + 1]}") for j in shown),
     )
     rows = tuple(
         (
             f"{limits[i]} ... {limits[i + 1]}",
-            *(format_count(n) if n else "" for n in collective.matrix.counts[i, shown].tolist()),
+            *(make_count_cell(n) if n else None for n in collective.matrix.counts[i, shown].tolist()),
         )
         for i in np.flatnonzero(collective.matrix.counts.any(axis=1)).tolist()
     )
     heading = f"RANGE-MEAN MATRIX {collective.history.path}  cycles by range (rows) and mean (columns)"
-    return TextTable(heading, columns, rows)
+    return OutputTable(heading, columns, rows)
 
 
 def format_limits(collective: Collective, values: Array, size: float) -> list[str]:
@@ -183,6 +186,11 @@ def format_values(values: Array, error: float) -> list[str]:
 def format_count(n: float) -> str:
     """Format a count of cycles, which may end with a half."""
     return f"{n:.12g}"
+
+
+def make_count_cell(n: float) -> NumberCell:
+    """Make the cell of a count of cycles."""
+    return NumberCell(float(n), write=format_count)
 
 
 def format_cycles(n: float) -> str:
@@ -233,37 +241,38 @@ def to_json_block(collective: Collective) -> dict[str, Any]:
     }
 
 
-def iter_csv_lines(collectives: Sequence[Collective]) -> Iterator[str]:
-    """Yield collectives as CSV in long form, a line for each number, SI units. Fields that do not apply are empty."""
-    yield ",".join(CSV_COLUMNS) + "\n"
+def make_records(collectives: Sequence[Collective]) -> OutputTable:
+    """Make the rows of the CSV in long form, one for each number, SI units. Fields that do not apply are empty."""
+    rows: list[tuple[Cell, ...]] = []
     for collective in collectives:
         path, unit = collective.history.path, collective.history.unit
-        for quantity, has_unit, columns, value in iter_csv_rows(collective):
-            yield ",".join([path, quantity, unit if has_unit else "1", *columns, repr(value + 0.0)]) + "\n"
+        for quantity, has_unit, limits, value in iter_records(collective):
+            rows.append((path, quantity, unit if has_unit else "1", *limits, value + 0.0))
+    return OutputTable("", CSV_COLUMNS, rows)
 
 
-def iter_csv_rows(collective: Collective) -> Iterator[tuple[str, bool, Sequence[str], float]]:
-    """Yield quantity, whether it has the unit of the path, slope and limits as text, and the number."""
+def iter_records(collective: Collective) -> Iterator[tuple[str, bool, Sequence[float | None], float]]:
+    """Yield quantity, whether it has the unit of the path, slope and limits, and the number."""
     limits, means = collective.matrix.ranges.tolist(), collective.matrix.means.tolist()
-    nowhere = ("",) * 5
+    nowhere = (None,) * 5
     yield "lowest", True, nowhere, float(collective.history.values.min())
     yield "highest", True, nowhere, float(collective.history.values.max())
     yield "error", True, nowhere, collective.history.error
     yield "cycles", False, nowhere, collective.total_cycles
     yield "cycles_below_error", False, nowhere, collective.below_error.cycles
     for equivalent in collective.equivalents:
-        slope = (repr(equivalent.slope), "", "", "", "")
+        slope = (equivalent.slope, None, None, None, None)
         yield "equivalent_range", True, slope, equivalent.range
         yield "equivalent_range_error", True, slope, equivalent.error
         yield "equivalent_cycles", False, slope, equivalent.cycles
     for k, n in enumerate(collective.counts.tolist()):
-        yield "range_cycles", False, ("", repr(limits[k]), repr(limits[k + 1]), "", ""), n
+        yield "range_cycles", False, (None, limits[k], limits[k + 1], None, None), n
     for s, shares_of_slope in zip(collective.counting.slopes, collective.shares.tolist(), strict=True):
         for k, share in enumerate(shares_of_slope):
-            yield "range_damage", False, (repr(s), repr(limits[k]), repr(limits[k + 1]), "", ""), share
+            yield "range_damage", False, (s, limits[k], limits[k + 1], None, None), share
     for i, j in np.argwhere(collective.matrix.counts).tolist():
         ends = (limits[i], limits[i + 1], means[j], means[j + 1])
-        yield "range_mean_cycles", False, ("", *map(repr, ends)), float(collective.matrix.counts[i, j])
+        yield "range_mean_cycles", False, (None, *ends), float(collective.matrix.counts[i, j])
     crossings = collective.crossings
     for name, counts in (
         ("counted", crossings.count_by_reference(REFERENCE)),
@@ -271,4 +280,4 @@ def iter_csv_rows(collective: Collective) -> Iterator[tuple[str, bool, Sequence[
         ("down", crossings.downward),
     ):
         for level, n in zip(crossings.levels.tolist(), counts.tolist(), strict=True):
-            yield f"crossings_{name}", False, ("", repr(level), "", "", ""), n
+            yield f"crossings_{name}", False, (None, level, None, None, None), n

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_head
 from heuncli.results.results import Array, CutPosition, Extremes, Indices, Results
 from heuncli.results.results_schema import RESULTANTS, STRESSES
 from heuncli.study.quantities.channels import NO_UNITS, Channel, make_section_channels
@@ -96,7 +96,7 @@ def split_into_cuts(channels: Iterable[Channel], cuts: Indices) -> list[Channel]
 
 def make_extremes_tables(
     run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors, cuts: Extremes | None = None
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make two tables: extremes of each quantity over the whole length and time, with their places; extremes at each
     cut.
 
@@ -156,9 +156,9 @@ def merge_extremes(run: CutRun, shown_cuts: Indices, head: Extremes, cuts: Extre
 def _make_envelope(
     run: CutRun, bounds: Mapping[str, Array], shown_cuts: Indices, styles: Mapping[str, Style], notes: Sequence[str],
     certain: StatedErrors,
-) -> TextTable:  # fmt: skip
+) -> OutputTable:  # fmt: skip
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
-    columns, texts, left_out = list[TextColumn](), list[list[str]](), False
+    columns, texts, left_out = list[OutputColumn](), list[list[str]](), False
     for i, channel in enumerate(run.channels):
         unit, size = certain.units.find(channel.unit)
         words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
@@ -169,10 +169,10 @@ def _make_envelope(
         words = words if len(both) > 1 and both[0] != both[1] else ("",)  # a constant value has one column
         texts += both[: len(words)]
         columns += [
-            TextColumn(format_head(f"{channel.label} {word}".rstrip(), unit), vector=channel.label) for word in words
+            OutputColumn(format_head(f"{channel.label} {word}".rstrip(), unit), vector=channel.label) for word in words
         ]
     if not columns:
-        return TextTable("", notes=(*notes, "all values 0"))
+        return OutputTable("", notes=(*notes, "all values 0"))
     shown = {text for column in texts for text in column}
     all_notes = [*notes, *[ZERO_NOTE] * left_out]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
@@ -182,10 +182,10 @@ def _make_envelope(
 def _make_cuts_table(
     run: CutRun,
     shown_cuts: Indices,
-    columns: Sequence[TextColumn],
+    columns: Sequence[OutputColumn],
     texts: Sequence[Sequence[str]],
     notes: Sequence[str],
-) -> TextTable:
+) -> OutputTable:
     """Make a table with a row for each cut that begins with its position and side."""
     positions = _format_positions(run)
     sides = any(side is not None for side in run.side)
@@ -193,11 +193,11 @@ def _make_cuts_table(
         (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
         for j, cut in enumerate(shown_cuts)
     )
-    heads = [TextColumn(f"s [{run.length[0]}]"), *([TextColumn("side", "left")] if sides else [])]
-    return TextTable("", (*heads, *columns), rows, tuple(notes))
+    heads = [OutputColumn(f"s [{run.length[0]}]"), *([OutputColumn("side", "text")] if sides else [])]
+    return OutputTable("", (*heads, *columns), rows, tuple(notes))
 
 
-def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors) -> TextTable:
+def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors) -> OutputTable:
     """Make the table of the lowest and highest value of each quantity over the whole length and time, with place and
     instant.
     """
@@ -224,18 +224,18 @@ def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: 
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     position_head = f"at s [{run.length[0]}]"
     heads = ("min", position_head, "t [s]", "max", position_head, "t [s]")
-    columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
+    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *(OutputColumn(head) for head in heads))
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
-        return TextTable(run.heading, notes=("all values 0",))
+        return OutputTable(run.heading, notes=("all values 0",))
     notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
-    return TextTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
+    return OutputTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
 
 
 def make_instants_tables(
     run: CutRun, times: Array, horizon: float | None, certain: StatedErrors, *, every_cut: bool = False
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the table with the diagram at each instant."""
     styles = _choose_styles(run, certain)
     shown_cuts = np.arange(len(run.s)) if every_cut else choose_cuts(run)
@@ -245,8 +245,8 @@ def make_instants_tables(
         )
         return [_drop_zero_columns(run, diagram._replace(heading=run.heading))]
     clock = write_times(times.tolist(), float(np.ptp(times)))
-    rows: list[tuple[str, ...] | str] = []
-    table = TextTable("")
+    rows: list[Sequence[Cell] | str] = []
+    table = OutputTable("")
     notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
         table = _make_diagram(
@@ -259,8 +259,8 @@ def make_instants_tables(
             is_beyond=horizon is not None and t >= horizon,
         )
         rows += [f"t = {clock[i]} s", *table.rows]
-        notes += table.notes
-    return [_drop_zero_columns(run, TextTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
+        notes = (*notes, *table.notes)
+    return [_drop_zero_columns(run, OutputTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
 
 
 def choose_cuts(run: CutRun) -> Indices:
@@ -285,7 +285,7 @@ def _make_diagram(
     certain: StatedErrors,
     *,
     is_beyond: bool = False,
-) -> TextTable:
+) -> OutputTable:
     """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
     texts = []
     for channel in run.channels:
@@ -301,11 +301,11 @@ def _make_diagram(
     all_notes = [note for note in notes if note]
     all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     heads = [format_head(channel.label, certain.units.find(channel.unit)[0]) for channel in run.channels]
-    columns = [TextColumn(head, vector="loads" if i < len(run.loads) else "") for i, head in enumerate(heads)]
+    columns = [OutputColumn(head, vector="loads" if i < len(run.loads) else "") for i, head in enumerate(heads)]
     return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
 
 
-def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
+def _drop_zero_columns(run: CutRun, table: OutputTable) -> OutputTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     lead = len(table.columns) - len(run.channels)
@@ -313,7 +313,7 @@ def _drop_zero_columns(run: CutRun, table: TextTable) -> TextTable:
     if len(shown_columns) in (lead, len(table.columns)):
         return table
     rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return TextTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
+    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
 
 
 def _choose_styles(run: CutRun, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:

@@ -5,23 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.output.tables.text_table import TextColumn, TextTable
+from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.results.results import Block, Results
 from heuncli.results.results_schema import EVENTS, find_row
 from heuncli.study.quantities.digits import UNKNOWN, choose_style, trim_zeros
 
 HEADING = "EVENTS  times at which conditions change, and their new values"
 COLUMNS = (
-    TextColumn("event", "left"),
-    TextColumn("condition", "left"),
-    TextColumn("t [s]"),
-    TextColumn("becomes", "left"),
+    OutputColumn("event", "text"),
+    OutputColumn("condition", "text"),
+    OutputColumn("t [s]"),
+    OutputColumn("becomes", "text"),
 )
 ONLY_JUST = "marginal: the margin is as small as the error, so a slightly different run may not show it"
 MAX_INSTANTS = 20  # instants of an event in a table, unless all are requested
 
 
-def make_events_table(results: Results, *, all_instants: bool = False) -> TextTable:
+def make_events_table(results: Results, *, all_instants: bool = False) -> OutputTable:
     """Make the table of events; all_instants: show every instant of each event."""
     rows: list[tuple[str, ...]] = []
     only_just = False
@@ -34,7 +34,7 @@ def make_events_table(results: Results, *, all_instants: bool = False) -> TextTa
         rows += [(name, event["condition"], *shown[0]), *(("", "", *line) for line in shown[1:])]
         if len(event_lines) > len(shown):
             rows.append(("", f"{len(event_lines) - len(shown)} more with --all", "", ""))
-    return TextTable(HEADING, COLUMNS, tuple(rows), (ONLY_JUST,) if only_just else ())
+    return OutputTable(HEADING, COLUMNS, tuple(rows), (ONLY_JUST,) if only_just else ())
 
 
 def iter_event_lines(event: Block) -> Iterator[tuple[str, str]]:

@@ -7,8 +7,7 @@ less than 1 µs for each number.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from itertools import islice
 from typing import Any
@@ -17,17 +16,15 @@ import numpy as np
 
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.text_safety import escape
+from heuncli.output.documents.as_json import AT_ONCE, FORMAT, iter_json
 from heuncli.results.cut_rows import cut_indices
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, IMPULSES, find_row
-from heuncli.results.stored_arrays import AnyArray, StoredArray, iter_chunks
+from heuncli.results.stored_arrays import StoredArray
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import Labels
 
-FORMAT = 1
 MOST_NUMBERS = 200_000_000  # about 4 GB of text
-AT_ONCE = 50_000  # numbers formatted together: some megabytes as Python objects
 READ = 500_000  # numbers of a channel read together, as stored columns are not contiguous
 REQUIRED_KEYS = frozenset({"title", "spec", "version", "model", "status", "time"})
 CERTAIN_SUM = find_row("certain_sums.NUMBER.value")
@@ -138,68 +135,6 @@ def collect_blocks(results: Results) -> dict[str, Any]:
     """Return the blocks that are not empty by their JSON keys, in the order of manual/results.md, "Paths"."""
     blocks = {f.name: getattr(results, f.name) for f in fields(results)}
     return {name: block for name, block in blocks.items() if name in REQUIRED_KEYS or len(block)}
-
-
-def dump_json(value: Any) -> str:
-    """Format small plain data as JSON, laid out like the results."""
-    return "".join(iter_json(value))
-
-
-def iter_json(value: Any) -> Iterator[str]:
-    """Yield plain data and arrays as JSON in pieces."""
-    yield from _iter_nested(value, "")
-    yield "\n"
-
-
-def _iter_nested(value: Any, indent: str) -> Iterator[str]:
-    """Yield a value as JSON: mappings with a line for each key, lists of mappings likewise, everything else on one
-    line.
-    """
-    if isinstance(value, dict) and value:
-        yield from _iter_members(((f"{_format_json(key)}: ", member) for key, member in value.items()), "{}", indent)
-    elif isinstance(value, (list, tuple)) and any(isinstance(member, dict) for member in value):
-        yield from _iter_members((("", member) for member in value), "[]", indent)
-    elif isinstance(value, StoredArray) or (isinstance(value, np.ndarray) and value.size > AT_ONCE):
-        yield from _iter_array(value)
-    else:
-        yield _format_json(value)
-
-
-def _iter_members(members: Iterable[tuple[str, Any]], brackets: str, indent: str) -> Iterator[str]:
-    inner = indent + " "
-    yield brackets[0]
-    for number, (label, member) in enumerate(members):
-        yield f"{',' if number else ''}\n{inner}{label}"
-        yield from _iter_nested(member, inner)
-    yield f"\n{indent}{brackets[1]}"
-
-
-def _iter_array(values: AnyArray) -> Iterator[str]:
-    """Yield a long array as JSON, some of its rows at a time."""
-    yield "["
-    for number, part in enumerate(iter_chunks(values, AT_ONCE)):
-        yield ", " * (number > 0) + _format_json(part)[1:-1]
-    yield "]"
-
-
-def _format_json(value: Any) -> str:
-    if isinstance(value, np.ndarray):
-        value = _to_lists(value)
-    elif isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not np.isfinite(value):
-        value = None
-    return escape(json.dumps(value, ensure_ascii=False, allow_nan=False, default=_to_lists))
-
-
-def _to_lists(values: Any) -> Any:
-    """Convert an array to nested lists, with None for numbers that are not finite and without a minus before zero."""
-    finite = np.isfinite(values)
-    return (
-        (values + 0.0).tolist()
-        if finite.all()
-        else np.where(finite, (values + 0.0).astype(object), np.array(None)).tolist()
-    )
 
 
 def _iter_csv_text(row: CsvChannel, ends: Sequence[str]) -> Iterator[str]:

@@ -9,8 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.text_table import INDENT
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, format_numbers
-from heuncli.output.tables.text_table import INDENT, TextColumn, TextTable
 from heuncli.results.results import Array, Extremes
 from heuncli.study.quantities.digits import (
     OPEN,
@@ -84,7 +85,7 @@ def drop_components(block: TableBlock) -> TableBlock:
 def make_extremes_tables(
     block: TableBlock, times: Array, extremes: Extremes, certain: StatedErrors, last_values: Mapping[str, float],
     doubtful: DoubtfulInstants = NO_DOUBT,
-) -> list[TextTable]:  # fmt: skip
+) -> list[OutputTable]:  # fmt: skip
     """Make the tables of first, last, lowest and highest values with their instants; one row a group if there are many.
 
     extremes: of the block's rows, in their order
@@ -107,7 +108,7 @@ def make_extremes_tables(
 
 def _make_full_table(
     block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, doubtful: DoubtfulInstants
-) -> TextTable:
+) -> OutputTable:
     """Make the table with a row for each number, under a title for each group."""
     rows: list[tuple[str, ...] | str] = []
     notes: set[str] = set()
@@ -117,11 +118,11 @@ def _make_full_table(
         rows += [part.group.title, *lines] if part.group.name else lines
         notes |= notes_of_group
     heads = ("first", "last", "min", "at [s]", "max", "at [s]")
-    columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
+    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *(OutputColumn(head) for head in heads))
     if all(isinstance(row, str) for row in rows):
-        columns = (TextColumn("", "left"),)  # only titles and open components: there are no numbers
+        columns = (OutputColumn("", "text"),)  # only titles and open components: there are no numbers
     shown_notes = [note for note in (*NOTES, doubtful.note) if note in notes]
-    return TextTable(block.heading, columns, tuple(rows), (*block.notes, *shown_notes))
+    return OutputTable(block.heading, columns, tuple(rows), (*block.notes, *shown_notes))
 
 
 def _make_rows(
@@ -181,7 +182,7 @@ def _format_extremes(part: GroupExtremes, certain: StatedErrors) -> list[list[st
 def _make_short_table(
     block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, heading: str,
     doubtful: DoubtfulInstants,
-) -> TextTable:  # fmt: skip
+) -> OutputTable:  # fmt: skip
     """Make the table with a row for each group: of each number the value farthest from zero, and when. No vector
     components.
     """
@@ -209,9 +210,9 @@ def _make_short_table(
         }
         heads |= dict.fromkeys(head for head, (text, _) in cells_of_group.items() if text != "0")
         cells.append(cells_of_group)
-    columns = [TextColumn(block.what, "left")]
+    columns = [OutputColumn(block.what, "text")]
     for head in heads:
-        columns += [TextColumn(head), TextColumn("at [s]")]
+        columns += [OutputColumn(head), OutputColumn("at [s]")]
     rows = tuple(
         (part.group.name, *(text for head in heads for text in cells_of_group.get(head, ("", ""))))
         for part, cells_of_group in zip(parts, cells, strict=True)
@@ -221,4 +222,4 @@ def _make_short_table(
     shown = {text for row in rows for text in row}
     notes += tuple(note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
     notes += (doubtful.note,) if any(text.endswith(MARK) for text in shown) else ()
-    return TextTable(heading, tuple(columns), rows, notes)
+    return OutputTable(heading, tuple(columns), rows, notes)

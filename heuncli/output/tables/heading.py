@@ -8,9 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.output.tables.markdown_text import escape_line
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import format_labelled_lines
 from heuncli.results.results import ErrorEstimate, Results
 from heuncli.study.quantities.digits import LOADS, format_error
 
@@ -23,9 +21,11 @@ PRESCRIBED = "motion fully prescribed: solved at each instant, nothing integrate
 
 
 def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[str, str]]:
-    """Return the label and text of each line; show_reductions: also list the simplifications, as `heun model` does."""
+    """Return the label and text of each line below the title.
+
+    show_reductions: also list the simplifications, as `heun model` does
+    """
     lines = [
-        ("heun", f"{results.version}  {results.title}"),
         ("model", _describe_model(results)),
         *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
         *(("unknown", sentence) for sentence in results.model.get("cannot_tell", ())),
@@ -53,18 +53,6 @@ def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[
         ("warning", warning) for warning in results.warnings if not status_message or status_message not in warning
     ]
     return [line for line in lines if line[1]]
-
-
-def format_heading(results: Results, show_reductions: bool = False) -> str:
-    """Format the heading as aligned text."""
-    return format_labelled_lines(make_heading(results, show_reductions))
-
-
-def format_heading_markdown(results: Results, show_reductions: bool = False) -> str:
-    """Format the heading as Markdown."""
-    lines = make_heading(results, show_reductions)
-    body = "".join(f"- {escape_line(label + ': ' * bool(label) + text)}\n" for label, text in lines[1:])
-    return f"## {escape_line(results.title)}\n\n- heun: {results.version}\n{body}\n"
 
 
 def _label_sentences(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:

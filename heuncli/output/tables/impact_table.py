@@ -7,9 +7,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
+from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.instants_tables import format_group
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock
-from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.channels import Channel
@@ -22,7 +22,7 @@ EMPTY_CELLS = ("", "0")
 
 def make_impact_table(
     heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: StatedErrors
-) -> TextTable:
+) -> OutputTable:
     """Combine the blocks of one impact in a single table, without rows and columns that are zero.
 
     times: the instant of the impact, (1,)
@@ -39,19 +39,19 @@ def make_impact_table(
         cells = {text for line in nonzero for text in line}
         notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in cells]
     if not rows:
-        return TextTable(heading, notes=("all values 0",))
-    table = _drop_empty_columns(TextTable(heading, _make_columns(), tuple(rows)))
-    numbers = {column.head for column in table.columns} & set(NUMBER_HEADS)
+        return OutputTable(heading, notes=("all values 0",))
+    table = _drop_empty_columns(OutputTable(heading, _make_columns(), tuple(rows)))
+    numbers = {column.title for column in table.columns} & set(NUMBER_HEADS)
     notes += [ZERO_NOTE] if not complete or len(numbers) < len(NUMBER_HEADS) else []
     return table._replace(notes=tuple(dict.fromkeys(notes)))
 
 
-def _make_columns() -> tuple[TextColumn, ...]:
-    leading = [TextColumn("", "left")] * LEADING_COLUMNS
+def _make_columns() -> tuple[OutputColumn, ...]:
+    leading = [OutputColumn("", "text")] * LEADING_COLUMNS
     return (
         *leading,
-        *(TextColumn(head, vector="numbers") for head in NUMBER_HEADS),
-        TextColumn("", "left", is_optional=True),
+        *(OutputColumn(head, vector="numbers") for head in NUMBER_HEADS),
+        OutputColumn("", "text", is_optional=True),
     )
 
 
@@ -88,9 +88,9 @@ def _blank_repeated_names(lines: Sequence[tuple[str, ...]]) -> Iterator[tuple[st
         before = line[0]
 
 
-def _drop_empty_columns(table: TextTable) -> TextTable:
+def _drop_empty_columns(table: OutputTable) -> OutputTable:
     """Drop the columns that are empty or zero in every row."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     shown_columns = [i for i in range(len(table.columns)) if any(row[i] not in EMPTY_CELLS for row in cells)]
     rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return TextTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, table.notes)
+    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, table.notes)

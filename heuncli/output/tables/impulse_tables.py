@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables import cut_runs
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.impact_table import make_impact_table
 from heuncli.output.tables.instants_tables import make_instants_tables
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import IMPULSES
-from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results.results_schema import IMPULSE_BLOCKS, IMPULSE_UNITS, SHARES, find_quantity
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
@@ -55,7 +55,7 @@ class ImpactReport(NamedTuple):
     details: bool = True
 
 
-def make_impulse_tables(report: ImpactReport, *, show_all: bool = False) -> list[TextTable]:
+def make_impulse_tables(report: ImpactReport, *, show_all: bool = False) -> list[OutputTable]:
     """Make the list of all impacts, if there are several, and the tables of each, or of the largest."""
     impulses = report.results.impulses
     if not impulses:
@@ -92,7 +92,7 @@ def _choose_largest(sizes: Array) -> Indices:
     return np.sort(largest_first[:MAX_SHOWN])
 
 
-def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices, show_all: bool) -> TextTable:
+def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices, show_all: bool) -> OutputTable:
     """Make the list with a row for each impact: its time, names, largest impulses, and effect on the kinetic energy."""
     impulses, certain = report.results.impulses, report.certain
     times = np.array([float(impulse["time"]) for impulse in impulses])
@@ -118,15 +118,15 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
         rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
     heads = [f"largest [{unit}]" for unit, _ in impulse_units]
     heads += [f"{word} [{energy_unit}]" for word in ("energy before", "after", "change")]
-    columns = (TextColumn(""), TextColumn("t [s]"), TextColumn("cause", "left"), *map(TextColumn, heads))
+    columns = (OutputColumn(""), OutputColumn("t [s]"), OutputColumn("cause", "text"), *map(OutputColumn, heads))
     numbers = ", ".join(map(str, shown_numbers.tolist()))
     note = f"details below: {numbers} (the largest); all: --all or --format csv"
     hidden_note = f"{len(impulses) - len(listed)} further, the last at t = {clock[-1]} s"
     notes = (hidden_note,) * (len(listed) < len(impulses)) + (note,) * (len(shown_numbers) < len(impulses))
-    return TextTable(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
+    return OutputTable(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
 
 
-def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False) -> list[TextTable]:
+def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False) -> list[OutputTable]:
     """Make the tables of one impact: all loaded objects, central axis, runs of cuts, shares by cause, determinate
     sums.
     """
@@ -138,7 +138,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
     certain = add_axis_errors(report.certain, view, report.magnitudes, UNIT)
     channels = list(iter_impulse_channels(impulse, labels))
     by_cause = any(channel.cause for channel in channels)
-    blocks, tables, share_tables = list[TableBlock](), list[TextTable](), list[TextTable]()
+    blocks, tables, share_tables = list[TableBlock](), list[OutputTable](), list[OutputTable]()
     for plan in IMPULSES:
         block = build_block(plan, view, labels, channels) if report.details or not plan.is_detail else None
         if block is None:
@@ -165,7 +165,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
 
 def make_share_tables(
     block: TableBlock, view: Results, channels: Sequence[Channel], certain: StatedErrors, horizon: float | None
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the tables of what each cause contributes to the impulses of a block."""
     from heuncli.output.tables import cause_tables  # few runs need it
 
@@ -175,7 +175,7 @@ def make_share_tables(
 
 def make_run_share_tables(
     run: cut_runs.CutRun, view: Results, certain: StatedErrors, horizon: float | None
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the tables of what each cause contributes to the impulses along a run of cuts; none if shares are not
     requested.
     """

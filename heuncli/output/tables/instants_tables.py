@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli.output.documents.document import OutputColumn, OutputTable, format_head
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, format_numbers
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_head
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import (
     OPEN,
@@ -24,12 +24,12 @@ Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each ins
 
 def make_instants_tables(
     block: TableBlock, times: Array, horizon: float | None, certain: StatedErrors
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the tables of a block with a row for each instant, group by group; for one instant a row for each group."""
     word, note = block.missing
     if word != OPEN and all(np.isnan(row.values).all() for group in block.groups for row in group.rows):
-        return [TextTable(block.heading, notes=(note,))]
-    tables: list[TextTable] = []
+        return [OutputTable(block.heading, notes=(note,))]
+    tables: list[OutputTable] = []
     notes = list(block.notes)
     layout = _layout_single_instant if len(times) == 1 else _layout_instants
     for groups in _split_by_units(block.groups):
@@ -39,19 +39,19 @@ def make_instants_tables(
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")
         vectors = {row.label: row.vector for group in groups for row in group.rows}
-        columns = [TextColumn(format_head(label, units[label]), vector=vectors[label]) for label in labels]
+        columns = [OutputColumn(format_head(label, units[label]), vector=vectors[label]) for label in labels]
         lead, rows = layout(block, groups, labels, cells, times)
-        tables += [TextTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
+        tables += [OutputTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
     shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
-        return [TextTable(block.heading, notes=("all values 0",))]
+        return [OutputTable(block.heading, notes=("all values 0",))]
     return [*tables[:-1], tables[-1]._replace(notes=tuple(dict.fromkeys(notes)))]
 
 
 def _layout_single_instant(
     block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
-) -> tuple[list[TextColumn], list[tuple[str, ...] | str]]:
+) -> tuple[list[OutputColumn], list[tuple[str, ...] | str]]:
     """Return the leading columns, and a row for each group."""
     has_names = any(group.name for group in groups)
     has_notes = any(group.note for group in groups)
@@ -59,14 +59,14 @@ def _layout_single_instant(
     for group in groups:
         leading_cells = [group.name] * has_names + [group.note] * has_notes
         rows.append((*leading_cells, *(cells[group.name].get(label, [""])[0] for label in labels)))
-    return [TextColumn(block.what, "left")] * has_names + [
-        TextColumn("", "left", is_shown_once=has_names)
+    return [OutputColumn(block.what, "text")] * has_names + [
+        OutputColumn("", "text", is_shown_once=has_names)
     ] * has_notes, rows
 
 
 def _layout_instants(
     block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
-) -> tuple[list[TextColumn], list[tuple[str, ...] | str]]:
+) -> tuple[list[OutputColumn], list[tuple[str, ...] | str]]:
     """Return the leading columns, and a row for each instant of each group."""
     clock = write_times(times.tolist(), float(np.ptp(times)))
     empty = [""] * len(times)
@@ -75,7 +75,7 @@ def _layout_instants(
         rows += [group.title] if group.name else []
         columns = [cells[group.name].get(label, empty) for label in labels]
         rows += list(zip(clock, *columns, strict=True))
-    return [TextColumn("t [s]")], rows
+    return [OutputColumn("t [s]")], rows
 
 
 def _order_labels(groups: Sequence[RowGroup]) -> list[str]:

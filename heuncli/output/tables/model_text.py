@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from heuncli.base.text_safety import escape
+from heuncli.output.documents.document import Facts, Listing, Part
 from heuncli.output.tables.plurals import format_count
 
-WIDTH = 110
 MAX_NAMES = 12
 PLANE = {"found": "detected", "declared": "declared"}  # how a model came to be planar -> its text
 # Key of the model -> title of its list of sentences.
@@ -26,19 +24,11 @@ LIST_TITLES = (
 )
 
 
-def format_model(title: str, model: Mapping[str, Any]) -> str:
-    """Format the model block as text."""
-    lines = [escape(title) or "untitled", ""]
-    counts = [(key, text) for key, text in collect_facts(model) if text]
-    width = max(len(key) for key, _ in counts)
-    lines += [f"  {key.ljust(width)}  {text}" for key, text in counts]
-    for key, heading in LIST_TITLES:
-        sentences: Sequence[str] = model.get(key) or ()
-        if sentences:
-            lines += ["", heading]
-            for sentence in sentences:
-                lines += textwrap.wrap(escape(str(sentence)), WIDTH, initial_indent="  - ", subsequent_indent="    ")
-    return "\n".join(lines) + "\n"
+def make_description_parts(model: Mapping[str, Any], label_indent: str = "") -> list[Part]:
+    """Make the facts of the model block, and its lists of sentences."""
+    facts = Facts([(label_indent + label, text) for label, text in collect_facts(model) if text])
+    lists = [Listing(title, list(map(str, model[key]))) for key, title in LIST_TITLES if model.get(key)]
+    return [facts, *lists]
 
 
 def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -14,13 +14,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.tables import cut_runs
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants, drop_components, make_extremes_tables
 from heuncli.output.tables.instants_tables import make_instants_tables
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
-from heuncli.output.tables.text_table import TextTable
 from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Results
 from heuncli.results.results_schema import REPORT_OF, REPORTS, find_quantity
 from heuncli.study.quantities.channels import ChannelSelection, iter_channels
@@ -76,13 +76,13 @@ class Page(NamedTuple):
         selection = ChannelSelection.from_numbers(self.labels, numbers, has_runs=self.has_runs)
         return ChannelSearch(selection.collect, self.certain.find_error)
 
-    def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[TextTable]:
+    def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[OutputTable]:
         """Make the tables of extremes.
 
         search_result: the extremes of the channels
         shares: source of loads by cause, if they are requested
         """
-        tables: list[TextTable] = []
+        tables: list[OutputTable] = []
         times, last_values = self.results.time, self._find_last_values()
         for block in self._make_blocks(self.results, only_searched=True):
             part = search_result.find(block.paths)
@@ -93,7 +93,7 @@ class Page(NamedTuple):
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
         return [*tables, *share_tables, *self._make_last_tables()]
 
-    def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[TextTable]:
+    def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
@@ -101,7 +101,7 @@ class Page(NamedTuple):
         found = search_result.find([path for block in blocks for path in block.paths])
         instants = np.unique(np.concatenate([found.low_at, found.high_at]))
         numbers = self._collect_shares(shares.compute_shares(instants)) if len(instants) else {}
-        span, tables = float(np.ptp(self.results.time)), list[TextTable]()
+        span, tables = float(np.ptp(self.results.time)), list[OutputTable]()
         for block in blocks:
             tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.certain, span)
         for run in cut_runs.collect_runs(self.results, self.labels):
@@ -115,7 +115,7 @@ class Page(NamedTuple):
 
     def _make_run_share_tables(
         self, run: cut_runs.CutRun, search_result: Extremes, shares: ShareSource
-    ) -> list[TextTable]:
+    ) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes along a run of cuts."""
         from heuncli.output.tables import cause_tables
 
@@ -131,7 +131,7 @@ class Page(NamedTuple):
         every_cut: bool = False,
         search_result: Extremes | None = None,
         shares: ShareSource | None = None,
-    ) -> list[TextTable]:
+    ) -> list[OutputTable]:
         """Make the tables at the instants of `results`, which is the same run solved at any instants.
 
         search_result: extremes along the runs of cuts, if there is one instant only
@@ -139,7 +139,7 @@ class Page(NamedTuple):
         horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))
         certain = add_axis_errors(self.certain._replace(singular_times=unknown), results, self.magnitudes)
-        tables: list[TextTable] = []
+        tables: list[OutputTable] = []
         for block in self._make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
         for run in cut_runs.collect_runs(results, self.labels):
@@ -153,12 +153,12 @@ class Page(NamedTuple):
 
     def _make_instants_share_tables(
         self, results: Results, certain: StatedErrors, search_result: Extremes | None, shares: ShareSource
-    ) -> list[TextTable]:
+    ) -> list[OutputTable]:
         """Make the tables of what each cause contributes at the given instants."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
         horizon = self.results.horizon
-        numbers, tables = self._collect_shares(results), list[TextTable]()
+        numbers, tables = self._collect_shares(results), list[OutputTable]()
         for block in self._make_blocks(results):
             tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
         for run in cut_runs.collect_runs(results, self.labels):
@@ -183,18 +183,18 @@ class Page(NamedTuple):
         blocks = [block for plan in plans if (block := build_block(plan, results, self.labels, channels)) is not None]
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
-    def _make_last_tables(self, show_all: bool = False) -> list[TextTable]:
+    def _make_last_tables(self, show_all: bool = False) -> list[OutputTable]:
         sums = make_sums_table(self.results, self.certain, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
-    def _make_event_tables(self, show_all: bool) -> list[TextTable]:
+    def _make_event_tables(self, show_all: bool) -> list[OutputTable]:
         if not self.results.events:
             return []
         from heuncli.output.tables.event_table import make_events_table  # if there are conditions
 
         return [make_events_table(self.results, all_instants=show_all)]
 
-    def _make_impulse_tables(self, show_all: bool) -> list[TextTable]:
+    def _make_impulse_tables(self, show_all: bool) -> list[OutputTable]:
         if not self.results.impulses:
             return []
         from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables  # if there are impacts

@@ -7,8 +7,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from heuncli.output.documents.document import format_head
 from heuncli.output.tables.collective_schema import make_collectives_schema
-from heuncli.output.tables.text_table import format_head
 from heuncli.results.results_schema import IMPULSES, NAMES, TREE, Node, Quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"

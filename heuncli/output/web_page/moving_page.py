@@ -50,7 +50,7 @@ def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES
         "title": escape(original.title),
         "about": [
             [label, escape(text)]
-            for label, text in (*make_heading(original)[1:], ("spec", _format_spec_digest(original)))
+            for label, text in (*make_heading(original), ("spec", _format_spec_digest(original)))
             if text
         ],
         "version": original.version,

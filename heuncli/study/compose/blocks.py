@@ -6,7 +6,7 @@ The types that a joint's reaction passes through: the kernel's solutions (`Recov
 (loads/kinetostatics/reactions.py), split where redundancy requires it (loads/redundancy/resolve.py), and become a
 `JointBlock` here, with shares by cause, turned into the requested axes, and marked where they are indeterminate. JSON
 is written of that block (output/tables/export.py). For all else it becomes a `Channel` (study/quantities/channels.py),
-whose numbers are channels as well, and their texts the cells of a `TextTable` (output/tables/text_table.py).
+whose numbers are channels as well, and their texts the cells of an `OutputTable` (output/documents/document.py).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Numbers for a reader: four significant digits of the largest of a family, a unit by size, an error only where it shows.
+"""Numbers for a reader: four significant digits of a family's largest, a unit by size, an error only where it shows.
 
 Tables of `heun run` show as many digits as are certain (study/quantities/digits.py). Summaries, reports, pictures and
 pages show what a reader compares: 24.39 kN.

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from heuncli.analyses.balancing.study import balance
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.figure_files import require_save_form
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
-from heuncli.app.cli.output import emit, save
+from heuncli.app.cli.output import save
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.balance import page as report
 from heuncli.app.commands.balance.options import parse_options
+from heuncli.app.commands.balance.page import make_document
 from heuncli.app.commands.balance.request import BalanceRequest
 from heuncli.output.drawing.drawing_files import encode_drawing
-from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.table_units import Units
 
@@ -36,15 +36,6 @@ def main(request: BalanceRequest) -> int:
             encode_drawing(lay_out(make_orders_figure([BalancedScene("", results)], Units())), figure_form),
             request.save,
         )
-    if form == "json":
-        text = dump_json(report.to_block(results))
-    elif form == "csv":
-        text = report.to_csv(results)
-    else:
-        from heuncli.app.cli.text_figures import render_panels
-        from heuncli.output.figures.orders import make_order_sizes_figure
-
-        text = report.render_page(results) + render_panels(make_order_sizes_figure(results), request.output)
-    emit(text, request.output)
+    emit_document(make_document(results), form, request.output)
     print_warnings(spec, None, request.quiet)
     return 0

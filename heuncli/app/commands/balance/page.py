@@ -1,4 +1,4 @@
-"""Render a balance as tables, as JSON, and as CSV in long form."""
+"""Make the document of a balance."""
 
 from __future__ import annotations
 
@@ -14,18 +14,20 @@ from heuncli.analyses.balancing.summary import select_largest
 from heuncli.app.commands.balance.remedies_page import make_remedy_tables
 from heuncli.base.records import replace
 from heuncli.base.tolerances import WRITTEN
-from heuncli.output.tables.export import FORMAT
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    TextColumn,
-    TextTable,
-    format_head,
-    format_labelled_lines,
-    format_plain,
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.document import (
+    Cell,
+    NumberCell,
+    OutputColumn,
+    OutputDocument,
+    OutputTable,
+    Part,
+    make_number_cells,
+    make_panels,
 )
 from heuncli.results.results import Array, Block
-from heuncli.study.quantities.digits import choose_style, trim_zeros
+from heuncli.study.quantities.digits import choose_style
 from heuncli.version import VERSION
 
 LETTERS = ("x", "y", "z")
@@ -38,14 +40,24 @@ RESIDUAL = "OVER THE CYCLE  rms and peak value, numerical error of both, positio
 JOINTS = "joints."
 REMARK_SHARE = 0.5  # share of the bodies' own effect below which a balanced order gets a remark
 SIGNS = "the negative of mass_effect in heun run (Σ m ẍ)"
-CSV_COLUMNS = "kind,order,quantity,component,unit,value"
+CSV_COLUMNS = make_columns("kind order quantity component unit value")
 
 
-def format_heading(results: BalanceResults) -> list[tuple[str, str]]:
+def make_document(results: BalanceResults) -> OutputDocument:
+    """Make the document: the orders, the remedies that were asked for, and the orders as bars."""
+    return OutputDocument(
+        results.title,
+        list_facts(results),
+        iter_parts(results),
+        lambda: to_block(results),
+        lambda: OutputTable("", CSV_COLUMNS, list(iter_records(results))),
+    )
+
+
+def list_facts(results: BalanceResults) -> list[tuple[str, str]]:
     """Return label and text of the lines above the tables."""
     many = "" if results.is_resolved else "; it varies too fast to be resolved to all digits: see the errors"
     return [
-        ("heun", f"{VERSION}  {results.title}"),
         ("balance", f"{format_cycle(results)}{many}"),
         ("signs", f"inertia force and moment ON the foundation: {SIGNS}"),
         *((name, results.summaries[name]) for name in ("force", "moment")),
@@ -53,15 +65,16 @@ def format_heading(results: BalanceResults) -> list[tuple[str, str]]:
     ]
 
 
-def render_page(results: BalanceResults) -> str:
-    """Render the page as text."""
-    parts = [format_labelled_lines(format_heading(results))]
-    for table in (*make_tables(results), *make_remedy_tables(results)):
-        parts += [format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH)]
-    return "\n".join(parts)
+def iter_parts(results: BalanceResults) -> Iterator[Part]:
+    """Yield the tables, and the panel of the sizes of the orders."""
+    from heuncli.output.figures.orders import make_order_sizes_figure  # where it is drawn
+
+    yield from make_tables(results)
+    yield from make_remedy_tables(results)
+    yield from make_panels(make_order_sizes_figure(results))
 
 
-def make_tables(results: BalanceResults) -> Iterator[TextTable]:
+def make_tables(results: BalanceResults) -> Iterator[OutputTable]:
     """Yield the tables of the page."""
     yield make_order_table(results, "force", FORCE)
     yield make_order_table(results, "moment", MOMENT.format(format_reference_point(results)))
@@ -72,44 +85,48 @@ def make_tables(results: BalanceResults) -> Iterator[TextTable]:
     yield make_residual_table(results)
 
 
-def make_order_table(results: BalanceResults, quantity: str, heading: str) -> TextTable:
+def make_order_table(results: BalanceResults, quantity: str, heading: str) -> OutputTable:
     """Make the table of the shown orders of a quantity; components that are zero in all of them are left out."""
     rows = [row for row in results.orders[quantity] if row.order in results.shown_orders]
     if not rows:
-        return TextTable(heading, notes=("no orders",))
+        return OutputTable(heading, notes=("no orders",))
     unit = get_unit(results, quantity)
-    columns, cells = [TextColumn("order")], [[f"{row.order:g}" for row in rows]]
+    columns: list[OutputColumn] = [OutputColumn("order")]
+    cells: list[Sequence[Cell]] = [[f"{row.order:g}" for row in rows]]
     scale = max(max(row.size, *(float(part.max()) for part, _ in (row.parts or {}).values()), 0.0) for row in rows)
     error = max(row.error for row in rows)
     relative_error = max(WRITTEN, error / scale) if scale > 0.0 else WRITTEN
     for k in list_components(rows):
         letter = "" if quantity in ("torque", "load") else f"{quantity[0].upper()}{LETTERS[k]}"
         columns += [
-            TextColumn(format_head(letter or quantity, unit), vector=letter),
-            TextColumn("phase°", vector=letter),
+            OutputColumn(letter or quantity, unit=unit, vector=letter),
+            OutputColumn("phase°", vector=letter),
         ]
-        sizes = format_numbers([float(row.amplitude[k]) for row in rows], scale, relative_error)
+        sizes = make_cells([float(row.amplitude[k]) for row in rows], scale, relative_error)
         cells += [
             sizes,
-            [format_degrees(row.phase[k]) if text != "0" else "" for row, text in zip(rows, sizes, strict=True)],
+            [
+                NumberCell(row.phase[k], write=format_degrees) if size.text != "0" else None
+                for row, size in zip(rows, sizes, strict=True)
+            ],
         ]
         if quantity == "moment":
             for part in ("orbital", "spin"):
-                columns.append(TextColumn(part, vector=letter))
-                cells.append(format_numbers([project_on_phase(row, part, k) for row in rows], scale, relative_error))
+                columns.append(OutputColumn(part, vector=letter))
+                cells.append(make_cells([project_on_phase(row, part, k) for row in rows], scale, relative_error))
     if any(row.with_turn or row.against_turn for row in rows):
-        columns += [TextColumn("forward", vector="turn"), TextColumn("backward", vector="turn")]
+        columns += [OutputColumn("forward", vector="turn"), OutputColumn("backward", vector="turn")]
         cells += [
-            format_numbers([row.with_turn or 0.0 for row in rows], scale, relative_error),
-            format_numbers([row.against_turn or 0.0 for row in rows], scale, relative_error),
+            make_cells([row.with_turn or 0.0 for row in rows], scale, relative_error),
+            make_cells([row.against_turn or 0.0 for row in rows], scale, relative_error),
         ]
-    columns.append(TextColumn("", "left"))
+    columns.append(OutputColumn("", "verdict"))
     cells.append([make_remark(row, quantity) for row in rows])
     notes = (f"largest error {error:.1g} {unit}",) if any(row.size for row in rows) else ()
-    return TextTable(heading, tuple(columns), tuple(zip(*cells, strict=True)), notes)
+    return OutputTable(heading, columns, list(zip(*cells, strict=True)), notes)
 
 
-def make_load_table(results: BalanceResults) -> TextTable:
+def make_load_table(results: BalanceResults) -> OutputTable:
     """Make the table of the orders of the load torque on the shaft, the largest or the requested ones, and their
     mean.
     """
@@ -163,10 +180,9 @@ def project_on_phase(row: OrderRow, part: str, k: int) -> float:
     return float(amplitude[k] * math.cos(phase[k] - reference))
 
 
-def format_numbers(values: Sequence[float], scale: float, relative_error: float = WRITTEN) -> list[str]:
-    """Format numbers of one family, with the digits that the relative error of the largest allows."""
-    number_style = choose_style(scale, relative_error * scale)
-    return trim_zeros([number_style.write(value) for value in values])
+def make_cells(values: Sequence[float], scale: float, relative_error: float = WRITTEN) -> list[NumberCell]:
+    """Make the cells of numbers of one family, with the digits that the relative error of the largest allows."""
+    return make_number_cells(values, choose_style(scale, relative_error * scale))
 
 
 def format_degrees(phase: float) -> str:
@@ -175,22 +191,22 @@ def format_degrees(phase: float) -> str:
     return "0" if text == "-0" else text
 
 
-def make_residual_table(results: BalanceResults) -> TextTable:
+def make_residual_table(results: BalanceResults) -> OutputTable:
     """Make the table of root mean square and peak of force, moment and torque."""
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for name in ("force", "moment", "torque"):
         if name in results.residual:
             residual = results.residual[name]
             relative_error = max(WRITTEN, residual.error / residual.peak) if residual.peak else WRITTEN
-            rms, peak = format_numbers([residual.rms, residual.peak], residual.peak, relative_error)
-            place, within = (
-                (format_place(results, residual.peak_angle), f"{residual.error:.1g}") if residual.peak else ("", "")
-            )
-            rows.append((f"{name} [{get_unit(results, name)}]", rms, peak, within, place))
+            cells = make_cells([residual.rms, residual.peak], residual.peak, relative_error)
+            error = NumberCell(residual.error, write="{:.1g}".format) if residual.peak else None
+            place = format_place(results, residual.peak_angle) if residual.peak else ""
+            rows.append((f"{name} [{get_unit(results, name)}]", *cells, error, place))
     columns = (
-        TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("error"), TextColumn("at", "left"),
+        OutputColumn("", "path"), OutputColumn("rms"), OutputColumn("peak"), OutputColumn("error"),
+        OutputColumn("at", "text"),
     )  # fmt: skip
-    return TextTable(RESIDUAL, columns, tuple(rows))
+    return OutputTable(RESIDUAL, columns, rows)
 
 
 def format_place(results: BalanceResults, angle: float) -> str:
@@ -295,22 +311,18 @@ def to_plain_data(value: Any) -> Any:
     return value
 
 
-def to_csv(results: BalanceResults) -> str:
-    """Return the orders in long form, one number per line."""
-    lines = [CSV_COLUMNS]
+def iter_records(results: BalanceResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield the orders in long form, one number per row."""
     for kind, rows in results.orders.items():
         unit = get_unit(results, kind)
         for row in rows:
             for quantity, component, of, value in iter_order_values(row):
-                lines.append(f"{kind},{row.order:g},{quantity},{component},{of or unit},{value!r}")
+                yield kind, f"{row.order:g}", quantity, component, of or unit, value
     for kind, residual in results.residual.items():
         unit = get_unit(results, kind.partition("_")[0])
-        lines += [
-            f"{kind},,{name},,{unit},{value!r}"
-            for name, value in (("rms", residual.rms), ("peak", residual.peak), ("error", residual.error))
-        ]
-        lines.append(f"{kind},,at,,rad,{residual.peak_angle!r}")
-    return "\n".join(lines) + "\n"
+        for name, value in (("rms", residual.rms), ("peak", residual.peak), ("error", residual.error)):
+            yield kind, "", name, "", unit, value
+        yield kind, "", "at", "", "rad", residual.peak_angle
 
 
 def iter_order_values(row: OrderRow) -> Iterator[tuple[str, str, str, float]]:

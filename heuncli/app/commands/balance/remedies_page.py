@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 
 from heuncli.analyses.balancing.results import BalanceResults, Counterbalance, CycleLoad, Flywheel
 from heuncli.base.tolerances import WRITTEN
-from heuncli.output.tables.text_table import TextColumn, TextTable
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, make_number_cells
 from heuncli.results.results import Array
-from heuncli.study.quantities.digits import OPEN, choose_style, trim_zeros
+from heuncli.study.quantities.digits import OPEN, choose_style
 
 WEIGHTS = "COUNTERWEIGHTS  for minimum {}; mass times radius from the body's axis, else its point; angle in body axes"
 COST = "COST  model solved again with the counterweights, loads and gravity included: over the cycle, before -> after"
@@ -30,7 +30,7 @@ AXES = ("x", "y", "z")
 RPM = 30.0 / math.pi
 
 
-def make_remedy_tables(results: BalanceResults) -> Iterator[TextTable]:
+def make_remedy_tables(results: BalanceResults) -> Iterator[OutputTable]:
     """Yield the tables of the requested remedies."""
     if results.counterbalance is not None:
         yield make_weights_table(results.counterbalance)
@@ -39,25 +39,25 @@ def make_remedy_tables(results: BalanceResults) -> Iterator[TextTable]:
         yield make_wheel_table(results.flywheel)
 
 
-def make_weights_table(counterbalance: Counterbalance) -> TextTable:
+def make_weights_table(counterbalance: Counterbalance) -> OutputTable:
     """Make the table of the counterweights, with notes on what remains."""
     columns = (
-        TextColumn("at", "left"), TextColumn("mass·radius [kg·m]"), TextColumn("angle°"), TextColumn("from", "left"),
-        TextColumn("radius [m]"), TextColumn("mass [kg]"),
+        OutputColumn("at", "path"), OutputColumn("mass·radius", unit="kg·m"), OutputColumn("angle°"),
+        OutputColumn("from", "text"), OutputColumn("radius", unit="m"), OutputColumn("mass", unit="kg"),
     )  # fmt: skip
-    products = format_numbers([weight.product for weight in counterbalance.weights])
-    masses = format_numbers([weight.mass for weight in counterbalance.weights])
-    rows = tuple(
+    products = make_cells([weight.product for weight in counterbalance.weights])
+    masses = make_cells([weight.mass for weight in counterbalance.weights])
+    rows = [
         (
             f"{weight.body}.{weight.place}",
             products[k],
-            f"{math.degrees(weight.angle):.4f}",
+            NumberCell(math.degrees(weight.angle), write="{:.4f}".format),
             format_direction(weight.reference_direction),
-            f"{weight.radius:.6g}",
+            weight.radius,
             masses[k],
         )
         for k, weight in enumerate(counterbalance.weights)
-    )
+    ]
     notes = [
         f"remaining force: {counterbalance.summaries['force']}",
         f"remaining moment: {counterbalance.summaries['moment']}",
@@ -65,7 +65,7 @@ def make_weights_table(counterbalance: Counterbalance) -> TextTable:
     notes += [SEVERAL] if counterbalance.several else []
     unneeded = [f"{weight.body}.{weight.place}" for weight in counterbalance.weights if weight.product == 0.0]
     notes += [f"a counterweight at {' or '.join(unneeded)} does not help"] if unneeded else []
-    return TextTable(
+    return OutputTable(
         WEIGHTS.format(OBJECTIVES[counterbalance.objective].format(counterbalance.lever or 0.0)),
         columns,
         rows,
@@ -81,23 +81,23 @@ def format_direction(first: Array) -> str:
     return f"({', '.join(f'{value + 0.0:.4g}' for value in first)})"
 
 
-def make_cost_table(counterbalance: Counterbalance, results: BalanceResults) -> TextTable:
+def make_cost_table(counterbalance: Counterbalance, results: BalanceResults) -> OutputTable:
     """Make the table of the loads before and after."""
     labels = LABELS if results.rate is not None else RATE_FREE_LABELS
     columns = (
-        TextColumn("", "left"), TextColumn("rms"), TextColumn("-> after"), TextColumn("peak"), TextColumn("-> after"),
-        TextColumn("ratio"),
+        OutputColumn("", "path"), OutputColumn("rms"), OutputColumn("-> after"), OutputColumn("peak"),
+        OutputColumn("-> after"), OutputColumn("ratio"),
     )  # fmt: skip
     rows = []
     for name, old in counterbalance.loads_without.items():
         new = counterbalance.loads_with[name]
         largest = max((x for x in (old.peak, new.peak) if x is not None), default=0.0)
         error = max(old.error or 0.0, new.error or 0.0)
-        cells = [format_number(value, largest, error) for value in (old.rms, new.rms, old.peak, new.peak)]
+        cells = [make_cell(value, largest, error) for value in (old.rms, new.rms, old.peak, new.peak)]
         rows.append((labels.get(name, f"{name} [N]"), *cells, format_ratio(old, new)))
     notes = [NO_RATE] if results.rate is None else []
     notes += [INDETERMINATE] if any(loads.rms is None for loads in counterbalance.loads_without.values()) else []
-    return TextTable(COST, columns, tuple(rows), tuple(notes))
+    return OutputTable(COST, columns, tuple(rows), tuple(notes))
 
 
 def format_ratio(old: CycleLoad, new: CycleLoad) -> str:
@@ -107,7 +107,7 @@ def format_ratio(old: CycleLoad, new: CycleLoad) -> str:
     return f"{new.rms / old.rms:.3g}" if new.rms > WRITTEN * old.rms else "0"
 
 
-def make_wheel_table(wheel: Flywheel) -> TextTable:
+def make_wheel_table(wheel: Flywheel) -> OutputTable:
     """Make the table of the flywheel, with the textbook's value; each number with its error."""
     errors = wheel.error
     rows = (
@@ -125,8 +125,8 @@ def make_wheel_table(wheel: Flywheel) -> TextTable:
         ("slowest", *format_speed(wheel.slowest, errors["slowest"]), "with the flywheel"),
         ("fastest", *format_speed(wheel.fastest, errors["fastest"]), "with the flywheel"),
     )  # fmt: skip
-    columns = TextColumn("", "left"), TextColumn("", "left"), TextColumn("error"), TextColumn("", "left")
-    return TextTable(FLYWHEEL.format(wheel.joint, wheel.delta), columns, rows)
+    columns = OutputColumn("", "text"), OutputColumn("", "text"), OutputColumn("error"), OutputColumn("", "text")
+    return OutputTable(FLYWHEEL.format(wheel.joint, wheel.delta), columns, rows)
 
 
 def format_certain(value: float, error: float) -> str:
@@ -142,14 +142,14 @@ def format_speed(rate: float, error: float) -> tuple[str, str]:
     return f"{format_certain(rate * RPM, error * RPM)} rpm", f"{error * RPM:.1g}"
 
 
-def format_number(value: float | None, largest: float, error: float) -> str:
-    """Format a number of a family with a common error, or `open` if it is indeterminate."""
+def make_cell(value: float | None, largest: float, error: float) -> Cell:
+    """Make the cell of a number of a family with a common error, or `open` if it is indeterminate."""
     uncertainty = max(WRITTEN * largest, error)
-    return OPEN if value is None else choose_style(largest, uncertainty, uncertainty).write(value)
+    style = choose_style(largest, uncertainty, uncertainty)
+    return OPEN if value is None else NumberCell(value, uncertainty, style.write)
 
 
-def format_numbers(values: Sequence[float]) -> list[str]:
-    """Format numbers of one family with the digits of the largest."""
+def make_cells(values: Sequence[float]) -> list[NumberCell]:
+    """Make the cells of numbers of one family with the digits of the largest."""
     scale = max((abs(value) for value in values), default=0.0)
-    number_style = choose_style(scale, WRITTEN * scale)
-    return trim_zeros([number_style.write(value) for value in values])
+    return make_number_cells(values, choose_style(scale, WRITTEN * scale))

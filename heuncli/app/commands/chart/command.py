@@ -5,30 +5,25 @@ from __future__ import annotations
 import math
 
 from heuncli.analyses.work_precision.plan import ChartOptions
-from heuncli.analyses.work_precision.results import ChartResults
 from heuncli.analyses.work_precision.study import chart
 from heuncli.app.cli import timeout
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.figure_files import require_save_form
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
-from heuncli.app.cli.output import emit, save
+from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.chart import page as report
+from heuncli.app.commands.chart.page import make_document
 from heuncli.app.commands.chart.request import ChartRequest
 from heuncli.base.errors import Problem
 from heuncli.base.method_rows import AUTO, METHODS, find_method
 from heuncli.base.records import replace
 from heuncli.output.drawing.drawing_files import encode_drawing
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, format_plain
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.methods import method_hint
-
-MIN_WIDTH = 60  # columns of a chart on a terminal
 
 
 def main(request: ChartRequest) -> int:
@@ -52,30 +47,9 @@ def main(request: ChartRequest) -> int:
         from heuncli.output.figures.work_precision import make_work_precision_figure
 
         save(encode_drawing(lay_out(make_work_precision_figure(results)), figure_form), request.save)
-    emit(render_text(results, form, request.output), request.output, late=True)
+    emit_document(make_document(results), form, request.output, late=True)
     print_warnings(spec, None, request.quiet)
     return 0
-
-
-def render_text(results: ChartResults, form: str, output: str | None) -> str:
-    """Render the chart in one of the formats."""
-    if form == "json":
-        return dump_json(report.to_block(results))
-    if form == "csv":
-        return report.to_csv(results)
-    from heuncli.app.cli import terminal
-    from heuncli.app.cli.text_figures import render_panels
-    from heuncli.output.figures.work_precision import make_work_precision_figure
-
-    run_table = report.make_table(results)
-    if output is None and terminal.is_terminal():
-        width = min(max(terminal.find_width() - 1, MIN_WIDTH), DEFAULT_WIDTH)
-        rows = "".join(terminal.render_tables([run_table]))
-    else:
-        width = DEFAULT_WIDTH
-        rows = "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(run_table, DEFAULT_WIDTH))
-    panels = render_panels(make_work_precision_figure(results), output)
-    return f"{report.render_heading(results, width)}\n{rows}\n{panels}"
 
 
 def parse_methods(words: str | None) -> tuple[str, ...] | None:

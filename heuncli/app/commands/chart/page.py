@@ -1,9 +1,7 @@
-"""Render a chart of speed versus accuracy as a table, as JSON (manual/results.md) and as CSV, one line per run."""
+"""Make the document of a chart of speed versus accuracy; its JSON is described in manual/results.md."""
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
@@ -19,8 +17,17 @@ from heuncli.analyses.work_precision.results import (
     remove_instant,
 )
 from heuncli.base.method_rows import find_method
-from heuncli.output.tables.export import FORMAT
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.document import (
+    Cell,
+    NumberCell,
+    OutputColumn,
+    OutputDocument,
+    OutputTable,
+    Part,
+    make_panels,
+)
 from heuncli.version import VERSION
 
 HEADING = "RUNS  median processor time of the integration only; errors at the compared instants; * Pareto front"
@@ -36,36 +43,49 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def format_heading(chart: ChartResults) -> list[tuple[str, str]]:
+def make_document(chart: ChartResults) -> OutputDocument:
+    """Make the document: the runs, and their errors over their times."""
+    return OutputDocument(
+        chart.title,
+        list_facts(chart),
+        iter_parts(chart),
+        lambda: to_block(chart),
+        lambda: OutputTable("", make_columns(" ".join(COLUMNS)), list(map(make_record, chart.runs))),
+    )
+
+
+def list_facts(chart: ChartResults) -> list[tuple[str, str]]:
     """Return label and text of the lines above the table."""
     reference = chart.reference
     instants = f"{reference.instants} instants" if reference.instants != 1 else "1 instant"
     return [
-        ("heun", f"{VERSION}  {chart.title}"),
         ("chart", f"speed versus accuracy, compared at {instants} up to t = {reference.last_time:.6g} s"),
         ("reference", reference.description),
         *(("", note) for note in (*reference.notes, *chart.notes)),
     ]
 
 
-def render_heading(chart: ChartResults, width: int = DEFAULT_WIDTH) -> str:
-    """Render the heading as text of `width` columns."""
-    return format_labelled_lines(format_heading(chart), width)
+def iter_parts(chart: ChartResults) -> Iterator[Part]:
+    """Yield the table and the panel."""
+    from heuncli.output.figures.work_precision import make_work_precision_figure  # where it is drawn
+
+    yield make_table(chart)
+    yield from make_panels(make_work_precision_figure(chart))
 
 
-def make_table(chart: ChartResults) -> TextTable:
+def make_table(chart: ChartResults) -> OutputTable:
     """Make the table of the runs, one row each, under the name of their method."""
     kinds = chart.kinds
     columns = [
-        TextColumn("", "left"),
-        TextColumn("tolerance or step", "left"),
-        TextColumn("time [ms]"),
-        TextColumn("steps"),
+        OutputColumn("", "text"),
+        OutputColumn("tolerance or step", "text"),
+        OutputColumn("time [ms]"),
+        OutputColumn("steps"),
     ]
-    columns += [TextColumn("evaluations"), *(TextColumn(kind, "left") for kind in kinds)]
+    columns += [OutputColumn("evaluations"), *(OutputColumn(kind, "text") for kind in kinds)]
     remarks = any(run.status != COMPLETED for run in chart.runs)
-    columns += [TextColumn("", "left")] * remarks
-    rows: list[tuple[str, ...] | str] = []
+    columns += [OutputColumn("", "text")] * remarks
+    rows: list[tuple[Cell, ...] | str] = []
     for name, runs in chart.runs_by_method.items():
         rows.append(format_title(name))
         rows += [
@@ -77,7 +97,7 @@ def make_table(chart: ChartResults) -> TextTable:
     if any(run.upper_bounds for run in chart.runs):
         notes.append(f"{AT_MOST}: the run differs from the reference by no more than the error of the reference")
     notes += list_reasons(chart)
-    return TextTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
+    return OutputTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
 
 
 def group_runs(runs: Sequence[ChartRun]) -> Iterator[list[ChartRun]]:
@@ -97,7 +117,7 @@ def format_title(name: str) -> str:
     return name if row is None else f"{row.name}  order {row.order}, {row.kind}, {row.steps}: {row.purpose}"
 
 
-def make_cells(run: ChartRun, kinds: Sequence[str], last: ChartRun) -> Iterator[str]:
+def make_cells(run: ChartRun, kinds: Sequence[str], last: ChartRun) -> Iterator[Cell]:
     """Yield the cells of a run, without the remark.
 
     last: the last of the runs that share the row
@@ -105,9 +125,9 @@ def make_cells(run: ChartRun, kinds: Sequence[str], last: ChartRun) -> Iterator[
     is_complete = run.status == COMPLETED
     yield "*" if run.front else ""
     yield format_setting(run.row) if last is run else f"{format_setting(run.row)} to {format_setting(last.row)}"
-    yield format_milliseconds(run.seconds) if is_complete and run.seconds is not None else ""
-    yield str(run.steps) if is_complete else ""
-    yield str(run.evaluations) if is_complete else ""
+    yield NumberCell(run.seconds, write=format_milliseconds) if is_complete and run.seconds is not None else None
+    yield run.steps if is_complete else None
+    yield run.evaluations if is_complete else None
     for kind in kinds:
         yield format_error(run, kind)
 
@@ -181,15 +201,9 @@ def make_run_block(run: ChartRun) -> dict[str, Any]:
     }
 
 
-def to_csv(chart: ChartResults) -> str:
-    """Return one line per run; unknown values are empty."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for run in chart.runs:
-        row = make_run_block(run)
-        row |= {f"error_{kind}": value for kind, value in run.error.items()}
-        row |= {"at_most": " ".join(row["at_most"]), "front": "true" if run.front else "false"}
-        values = [row.get(name) for name in COLUMNS]
-        writer.writerow(["" if v is None else repr(v) if isinstance(v, float) else v for v in values])
-    return text.getvalue()
+def make_record(run: ChartRun) -> list[Cell]:
+    """Make the row of a run in the CSV; unknown values are empty."""
+    block = make_run_block(run)
+    block |= {f"error_{kind}": value for kind, value in run.error.items()}
+    block |= {"at_most": " ".join(block["at_most"]), "front": "true" if run.front else "false"}
+    return [block.get(name) for name in COLUMNS]

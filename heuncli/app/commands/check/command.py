@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from heuncli.app.cli import jobs
+from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, select_exit_code
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, encode_text, print_stderr
@@ -17,7 +18,7 @@ from heuncli.app.commands.check import goldens
 from heuncli.app.commands.check.check_result import FAILED, CheckResult
 from heuncli.app.commands.check.checking import CheckTask, check_spec
 from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs
-from heuncli.app.commands.check.page import FORMS, CheckSummary
+from heuncli.app.commands.check.page import CheckSummary, make_document, render_github
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
 from heuncli.app.commands.check.spec_selection import select_specs
 from heuncli.base import files
@@ -51,7 +52,10 @@ def main(request: CheckRequest) -> int:
     _require_other_files(request, paths)  # also the tables of invalid specs
     summary = CheckSummary(checked, skipped, orphans, request.strict)
     if form in JOB_FORMATS or any(not one.error for one in checked):  # without any solved spec there is no result
-        emit(FORMS[form](summary), request.output)
+        if form == "github":
+            emit(render_github(summary), request.output)
+        else:
+            emit_document(make_document(summary, form), form, request.output, style=UNLIMITED)
     if request.junit is not None:
         from heuncli.app.commands.check.junit import render_junit
 

@@ -1,4 +1,4 @@
-"""Render the check results as text: a table of failures, JSON, markdown for a summary, lines for a GitHub workflow."""
+"""Make the document of check results, a table of failures first, and lines for a GitHub workflow."""
 
 from __future__ import annotations
 
@@ -9,11 +9,9 @@ from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.app.commands.check.folders import SkippedFolder
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
+from heuncli.output.documents.document import OutputDocument, OutputTable, Sentence, Verbatim, make_text_columns
 from heuncli.output.snapshots.outcomes import GOLDEN, Outcome
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.markdown_text import escape_line, fence_text
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_markdown, format_plain
 from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
 HEADS = ("file", "of", "at", "expected", "found", "why it fails")
@@ -35,34 +33,27 @@ class CheckSummary(NamedTuple):
     strict: bool = False
 
 
-def render_table(check_summary: CheckSummary) -> str:
-    """Render the failures as a table, the golden files written as another, and a summary line."""
-    parts = [format_plain(part) + "\n" for part in _make_tables(check_summary)]
-    return "".join(parts) + format_summary(check_summary) + "\n"
-
-
-def render_markdown(check_summary: CheckSummary) -> str:
-    """Render the same as markdown, for the summary of a job."""
+def make_document(check_summary: CheckSummary, form: str) -> OutputDocument:
+    """Make the document of the results: a page of failures and of golden files written that ends with its summary, or
+    the summary of a job in Markdown that begins with it.
+    """
+    tables, summary = _make_tables(check_summary), Sentence(format_summary(check_summary))
+    if form != "markdown":
+        return OutputDocument(parts=[*tables, summary], make_block=lambda: _make_summary_block(check_summary))
     failed = any(one.exit_code for one in check_summary.results) or (
         check_summary.strict and bool(check_summary.orphans)
     )
-    notes = [f"{one.path}: {outcome.note}" for one, outcome in _iter_outcomes(check_summary) if outcome.note]
-    head = f"### heun check: {'failed' if failed else 'passed'}\n\n{escape_line(format_summary(check_summary))}\n"
-    head += "".join(f"\n{escape_line(note)}\n" for note in notes)
-    tables = "".join("\n" + format_markdown(part) for part in _make_tables(check_summary))
-    errors = [str(problem) for one in check_summary.results for problem in one.problems]
-    return head + tables + "".join(f"\n{fence_text(text)}\n" for text in errors)
+    notes = [Sentence(f"{one.path}: {outcome.note}") for one, outcome in _iter_outcomes(check_summary) if outcome.note]
+    errors = [Verbatim(str(problem)) for one in check_summary.results for problem in one.problems]
+    title = f"heun check: {'failed' if failed else 'passed'}"
+    return OutputDocument(title, parts=[summary, *notes, *tables, *errors], level=3)
 
 
-def _make_tables(check_summary: CheckSummary) -> list[TextTable]:
+def _make_tables(check_summary: CheckSummary) -> list[OutputTable]:
     failed = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if not outcome.has_passed]
     written_rows = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if _is_written(outcome)]
     tables = (("FAILED", HEADS, failed), ("CHANGED", CHANGED, written_rows))
-    return [_make_table(name, heads, rows) for name, heads, rows in tables if rows]
-
-
-def _make_table(name: str, heads: Sequence[str], rows: Sequence[tuple[str, ...]]) -> TextTable:
-    return TextTable(name, tuple(TextColumn(head, "left") for head in heads), tuple(rows))
+    return [OutputTable(name, make_text_columns(heads), rows) for name, heads, rows in tables if rows]
 
 
 def _is_written(outcome: Outcome) -> bool:
@@ -78,9 +69,7 @@ def _iter_outcomes(check_summary: CheckSummary) -> Iterator[tuple[CheckResult, O
 def _make_row(one: CheckResult, outcome: Outcome) -> tuple[str, ...]:
     place = f"{one.path}:{outcome.line}"
     name = f"{outcome.case}: {outcome.subject}" if outcome.case else outcome.subject
-    return tuple(
-        map(escape, (place, name, outcome.when, outcome.expected_text, outcome.found_text, outcome.failure or ""))
-    )
+    return (place, name, outcome.when, outcome.expected_text, outcome.found_text, outcome.failure or "")
 
 
 def format_summary(check_summary: CheckSummary) -> str:
@@ -105,8 +94,8 @@ def format_summary(check_summary: CheckSummary) -> str:
     return ", ".join(parts)
 
 
-def render_json(check_summary: CheckSummary) -> str:
-    """Render every outcome as JSON, and the error of each spec that was not solved."""
+def _make_summary_block(check_summary: CheckSummary) -> dict[str, Any]:
+    """Return every outcome as the JSON has it, and the error of each spec that was not solved."""
     cases: list[dict[str, Any]] = []
     for one in check_summary.results:
         if one.error:
@@ -120,7 +109,7 @@ def render_json(check_summary: CheckSummary) -> str:
         for path in check_summary.orphans
     ]
     passed = sum(bool(case["passed"]) for case in cases)
-    return dump_json({"passed": passed, "failed": len(cases) - passed, "cases": cases})
+    return {"passed": passed, "failed": len(cases) - passed, "cases": cases}
 
 
 def render_github(check_summary: CheckSummary) -> str:
@@ -155,6 +144,3 @@ def format_failure(outcome: Outcome) -> str:
     values = (("expected", outcome.expected_text), ("found", outcome.found_text), ("allowed", outcome.tolerance_text))
     parts = [f"{name} {value}" for name, value in values if value]
     return "\n".join([outcome.failure or "", *parts])
-
-
-FORMS = {"table": render_table, "json": render_json, "markdown": render_markdown, "github": render_github}

@@ -10,17 +10,19 @@ from heuncli.analyses.published.cases import read_case
 from heuncli.analyses.published.comparison import compare_case
 from heuncli.analyses.published.files import list_names
 from heuncli.app.cli import jobs, timeout
+from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, run_contained, select_exit_code
 from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.app.commands.check.page import CheckSummary, render_github
-from heuncli.app.commands.check.references_page import FORMS, ReferenceResult, iter_outcomes
+from heuncli.app.commands.check.references_page import ReferenceResult, iter_outcomes, make_document
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
 from heuncli.base import files
 from heuncli.base.errors import HeunError, Problem
 from heuncli.base.spelling import suggest
+from heuncli.output.documents.as_text import PLAIN
 from heuncli.study.model.options import Options
 
 EXCLUDED_OPTIONS = (("--golden", "golden"), ("--update", "update"), ("--strict", "strict"), ("-k", "select"))
@@ -41,8 +43,11 @@ def main(request: CheckRequest) -> tuple[int, list[CheckResult]]:
     form = choose_format(request.format, request.output, FORMATS)
     checked = _check_all(names_chosen, request)
     spec_results = [one.result for one in checked]
-    text = render_github(CheckSummary(spec_results)) if form == "github" else FORMS[form](checked, bool(request.paths))
-    emit(text, request.output)
+    if form == "github":
+        emit(render_github(CheckSummary(spec_results)), request.output)
+    else:
+        style = PLAIN if request.paths else UNLIMITED
+        emit_document(make_document(checked, form, show_numbers=bool(request.paths)), form, request.output, style=style)
     if request.junit is not None:
         from heuncli.app.commands.check.junit import render_junit
 

@@ -1,6 +1,4 @@
-"""Render published cases as text: a table with one line per case, or with every number of one; also markdown and
-JSON.
-"""
+"""Make the document of published cases: a table with one row per case, or with every number of some."""
 
 from __future__ import annotations
 
@@ -12,22 +10,27 @@ from heuncli.analyses.published.cases import KINDS, PublishedCase
 from heuncli.analyses.published.comparison import AGREES, NumberComparison, TableComparison
 from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    TextColumn,
-    TextTable,
-    format_labelled_lines,
-    format_markdown,
-    format_plain,
+from heuncli.output.documents.document import (
+    Cell,
+    Facts,
+    NumberCell,
+    OutputColumn,
+    OutputDocument,
+    OutputTable,
+    Part,
+    Sentence,
+    make_text_columns,
 )
+from heuncli.output.snapshots.outcomes import Outcome
+from heuncli.output.tables.plurals import format_count
 
 REFERENCE = "reference"
 CASES = ("case", "description", "numbers", "kind", "digits", "in last digits", "relative", "verdict")
-NUMBERS = ("quantity", "at", "published", "heun", "difference", "in last digits", "heun error", "verdict")
-NUMBER_COLUMNS = tuple(TextColumn(head, "left") for head in NUMBERS)
+NUMBER_COLUMNS = (
+    OutputColumn("quantity", "path"),
+    *make_text_columns(("at", "published", "heun", "difference", "in last digits", "heun error")),
+    OutputColumn("verdict", "verdict"),
+)
 NEGLIGIBLE = 1e-12  # of the largest number of a table; larger differences are shown
 
 
@@ -68,32 +71,29 @@ def iter_outcomes(tables: Sequence[TableComparison]) -> Iterator[Outcome]:
             )
 
 
-def render_table(results: Sequence[ReferenceResult], show_numbers: bool) -> str:
-    """Render one line per case, or with `show_numbers` the source and all numbers of each, and a summary line."""
+def make_document(results: Sequence[ReferenceResult], form: str, *, show_numbers: bool) -> OutputDocument:
+    """Make the document: a row per case, or with `show_numbers` the source and all numbers of each, and a summary."""
+    parts: list[Part] = []
     if not show_numbers:
-        return "".join(map(format_plain, _make_case_tables(results))) + format_summary(results) + "\n"
-    parts = [_format_heading(one) + format_plain(_make_number_table(one), DEFAULT_WIDTH) + "\n" for one in results]
-    return "".join(parts) + format_summary(results) + "\n"
+        parts += _make_case_tables(results)
+    for one in results if show_numbers else ():
+        if form != "markdown":
+            what = [("case", one.case.name), ("what", one.case.description), ("source", one.case.source)]
+            parts.append(Facts([*what, ("spec", f"heun new {one.case.name}")]))
+        heading = f"{one.case.description}  {one.case.source}" if form == "markdown" else ""
+        parts.append(OutputTable(heading, NUMBER_COLUMNS, list(_iter_number_rows(one))))
+    return OutputDocument(
+        parts=[*parts, Sentence(format_summary(results))], make_block=lambda: _make_results_block(results)
+    )
 
 
-def render_markdown(results: Sequence[ReferenceResult], show_numbers: bool) -> str:
-    """Render the same as markdown."""
-    if not show_numbers:
-        return "\n".join([*map(format_markdown, _make_case_tables(results)), f"{format_summary(results)}\n"])
-    parts = [
-        f"### {one.case.description}\n\n{one.case.source}\n\n{format_markdown(_make_number_table(one))}\n"
-        for one in results
-    ]
-    return "".join(parts) + format_summary(results) + "\n"
-
-
-def render_json(results: Sequence[ReferenceResult], show_numbers: bool) -> str:
-    """Render every number of every case as JSON."""
+def _make_results_block(results: Sequence[ReferenceResult]) -> dict[str, Any]:
+    """Return every number of every case as the JSON has it."""
     numbers = [number for one in results for number in one.numbers]
     passed = sum(number.verdict == AGREES for number in numbers)
     broken = sum(bool(one.result.error) for one in results)
     blocks = [_make_block(one) for one in results]
-    return dump_json({"passed": passed, "failed": len(numbers) - passed + broken, "cases": blocks})
+    return {"passed": passed, "failed": len(numbers) - passed + broken, "cases": blocks}
 
 
 def format_summary(results: Sequence[ReferenceResult]) -> str:
@@ -106,13 +106,13 @@ def format_summary(results: Sequence[ReferenceResult]) -> str:
     return ", ".join([*parts, *([f"{format_count(broken, 'case')} not solved"] if broken else [])])
 
 
-def make_case_row(one: ReferenceResult) -> tuple[str, ...]:
+def make_case_row(one: ReferenceResult) -> tuple[Cell, ...]:
     """Make the row of a case."""
     if one.result.error:
         return one.case.name, one.case.description, *[""] * 5, "not solved"
     wrong = sum(number.verdict != AGREES for number in one.numbers)
     return (
-        one.case.name, one.case.description, str(len(one.numbers)), list_kinds(one.case), format_digits(one.numbers),
+        one.case.name, one.case.description, len(one.numbers), list_kinds(one.case), format_digits(one.numbers),
         *format_largest_difference(one.tables), f"{wrong} differ{'s' * (wrong == 1)}" if wrong else AGREES,
     )  # fmt: skip
 
@@ -146,22 +146,20 @@ def format_digits(numbers: Sequence[NumberComparison]) -> str:
     return f"{min(known)} to {max(known)}" if min(known) < max(known) else f"{min(known)}"
 
 
-def _make_case_tables(results: Sequence[ReferenceResult]) -> Iterator[TextTable]:
+def _make_case_tables(results: Sequence[ReferenceResult]) -> Iterator[OutputTable]:
     """Yield a table with one row per case, and for each case the numbers that do not agree."""
-    columns = tuple(TextColumn(head, "point" if head == "numbers" else "left") for head in CASES)
-    yield TextTable("", columns, tuple(map(make_case_row, results)))
+    columns = tuple(OutputColumn(head, "number" if head == "numbers" else "text") for head in CASES)
+    yield OutputTable("", columns, tuple(map(make_case_row, results)))
     for one in results:
         wrong = [number for number in one.numbers if number.verdict != AGREES]
         if wrong:
-            yield TextTable(f"DIFFERS  {one.case.name}", NUMBER_COLUMNS, tuple(map(_make_number_row, wrong)))
+            yield OutputTable(f"DIFFERS  {one.case.name}", NUMBER_COLUMNS, tuple(map(_make_number_row, wrong)))
 
 
-def _make_number_table(one: ReferenceResult) -> TextTable:
-    rows: list[tuple[str, ...] | str] = []
+def _iter_number_rows(one: ReferenceResult) -> Iterator[tuple[Cell, ...] | str]:
     for part in one.tables:
-        rows.append(_describe_table(part))
-        rows += map(_make_number_row, part.numbers)
-    return TextTable("", NUMBER_COLUMNS, tuple(rows))
+        yield _describe_table(part)
+        yield from map(_make_number_row, part.numbers)
 
 
 def _describe_table(part: TableComparison) -> str:
@@ -174,16 +172,16 @@ def _describe_table(part: TableComparison) -> str:
     return f"{table_.where} ({KINDS[table_.kind]}){case}{axes}{let}{error}"
 
 
-def _make_number_row(one: NumberComparison) -> tuple[str, ...]:
+def _make_number_row(one: NumberComparison) -> tuple[Cell, ...]:
     last = f"{one.in_last_digits:.2g}" if one.published.last_digit else ""
     return (
         one.number.path,
         _format_instant(one),
         one.published.text,
         _format_number(one),
-        f"{one.difference:.1e}",
+        NumberCell(one.difference, write="{:.1e}".format),
         last,
-        f"{one.stated_error:.0e}",
+        NumberCell(one.stated_error, write="{:.0e}".format),
         one.verdict,
     )
 
@@ -198,11 +196,6 @@ def _format_number(one: NumberComparison) -> str:
         return "open"
     digits = one.published.digit_count + 2 if one.published.digit_count else 17
     return f"{one.computed:.{min(digits, 17)}g}"
-
-
-def _format_heading(one: ReferenceResult) -> str:
-    what = (("case", one.case.name), ("what", one.case.description), ("source", one.case.source))
-    return format_labelled_lines([*what, ("spec", f"heun new {one.case.name}")], DEFAULT_WIDTH) + "\n"
 
 
 def _make_block(one: ReferenceResult) -> dict[str, Any]:
@@ -239,6 +232,3 @@ def _make_number_block(one: NumberComparison) -> dict[str, Any]:
         "allowed": one.tolerance,
         "verdict": one.verdict,
     }
-
-
-FORMS = {"table": render_table, "markdown": render_markdown, "json": render_json}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.diff.page import FORMS, Difference, sort_changes
+from heuncli.app.commands.diff.page import Difference, make_document, render_github, sort_changes
 from heuncli.app.commands.diff.request import FORMATS, DiffRequest
 from heuncli.app.commands.diff.sides import (
     RESULT,
@@ -49,7 +50,11 @@ def main(request: DiffRequest) -> int:
     compared = sum(len(run.numbers) + len(run.certain_sums) + len(run.open) for run in after.runs.values())
     notes += [OTHER_SPEC] if not changed and before.digest and after.digest and before.digest != after.digest else []
     notes += [HOLDS_LESS.format(escape(side.path)) for side in (before, after) if not side.holds_courses]
-    emit(FORMS[form](Difference(request.before, request.after, sort_changes(changed), compared, notes)), request.output)
+    difference = Difference(request.before, request.after, sort_changes(changed), compared, notes)
+    if form == "github":
+        emit(render_github(difference), request.output)
+    else:
+        emit_document(make_document(difference, form), form, request.output, style=UNLIMITED)
     return CHANGED if changed and request.exit_code else 0
 
 

@@ -1,19 +1,16 @@
-"""Render the changes as text: a table, JSON, markdown, lines for a GitHub workflow; the largest change first."""
+"""Make the document of the changes, and lines for a GitHub workflow; the largest change first."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.text_safety import escape
+from heuncli.output.documents.document import OutputDocument, OutputTable, Part, Sentence, make_text_columns
 from heuncli.output.snapshots.change import Change
 from heuncli.output.snapshots.change_words import format_difference, format_value
 from heuncli.output.snapshots.changes import EXTRA, MISSING, THROUGHOUT
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.markdown_text import escape_line
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import TextColumn, TextTable, format_markdown, format_plain
 from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
 HEADS = ("quantity", "at", "before", "after", "change", "allowed")
@@ -45,26 +42,24 @@ def sort_changes(changes: Sequence[tuple[str, Change]]) -> list[tuple[str, Chang
     return sorted(changes, key=lambda pair: (-pair[1].relative, pair[0], pair[1].path, pair[1].what))
 
 
-def render_table(difference: Difference) -> str:
-    """Render the changes as a table, and a summary line."""
-    changes = _make_table(difference)
-    return (format_plain(changes) + "\n" if changes.rows else "") + "".join(
-        f"{line}\n" for line in _format_notes(difference)
-    )
+def make_document(difference: Difference, form: str) -> OutputDocument:
+    """Make the document of a difference: a page that ends with its summary, or a comment in Markdown that begins with
+    it.
+    """
+    notes = list(map(Sentence, difference.notes))
+    table = _make_table(difference)
+    if form == "markdown":
+        paths = Sentence(f"{difference.old_path} → {difference.new_path}")
+        return OutputDocument(f"heun diff: {format_summary(difference)}", parts=[paths, table, *notes], level=3)
+    omitted = len(difference.changes) - MAX_ROWS
+    more = [Sentence(f"{omitted} more: --format json")] if omitted > 0 else []
+    parts: list[Part] = [table, *more, Sentence(format_summary(difference)), *notes]
+    return OutputDocument(parts=parts, make_block=lambda: _make_difference_block(difference))
 
 
-def render_markdown(difference: Difference) -> str:
-    """Render the same as markdown, for a comment or a summary."""
-    changes = _make_table(difference)
-    paths = escape_line(f"{difference.old_path} → {difference.new_path}")
-    head = f"### heun diff: {format_summary(difference)}\n\n{paths}\n"
-    notes = "".join(f"\n{escape_line(note)}\n" for note in difference.notes)
-    return head + ("\n" + format_markdown(changes) if changes.rows else "") + notes
-
-
-def _make_table(difference: Difference) -> TextTable:
+def _make_table(difference: Difference) -> OutputTable:
     rows = [_make_row(case, change) for case, change in difference.changes[:MAX_ROWS]]
-    return TextTable("CHANGED", tuple(TextColumn(head, "left") for head in HEADS), tuple(rows))
+    return OutputTable("CHANGED", make_text_columns(HEADS), rows)
 
 
 def _make_row(case: str, change: Change) -> tuple[str, ...]:
@@ -74,12 +69,7 @@ def _make_row(case: str, change: Change) -> tuple[str, ...]:
     allowed = f"{change.tolerance:.2g}" if change.tolerance and not change.reason else ""
     values = (WORDS.get(text, text) for text in (format_value(x, change.unit) for x in (change.old, change.new)))
     at = "" if change.what in (EXTRA, MISSING) else WORDS.get(change.what, change.what)
-    return tuple(map(escape, (name, at, *values, change_text, allowed)))
-
-
-def _format_notes(difference: Difference) -> list[str]:
-    omitted = len(difference.changes) - MAX_ROWS
-    return [*([f"{omitted} more: --format json"] if omitted > 0 else []), format_summary(difference), *difference.notes]
+    return (name, at, *values, change_text, allowed)
 
 
 def format_summary(difference: Difference) -> str:
@@ -92,15 +82,16 @@ def format_summary(difference: Difference) -> str:
     )
 
 
-def render_json(difference: Difference) -> str:
-    """Render every change as JSON."""
+def _make_difference_block(difference: Difference) -> dict[str, Any]:
+    """Return every change as the JSON has it."""
     changed = [_make_block(case, change) for case, change in difference.changes]
-    block: Mapping[str, Any] = {
+    return {
         "before": difference.old_path,
         "after": difference.new_path,
         "compared": difference.compared_count,
+        "notes": list(difference.notes),
+        "changes": changed,
     }
-    return dump_json({**block, "notes": list(difference.notes), "changes": changed})
 
 
 def _make_block(case: str, change: Change) -> dict[str, Any]:
@@ -124,6 +115,3 @@ def render_github(difference: Difference) -> str:
 def _format_change(row: Sequence[str]) -> str:
     values = f"{row[2]} → {row[3]}" if row[2] or row[3] else ""
     return "\n".join(part for part in (values, row[4]) if part)
-
-
-FORMS = {"table": render_table, "json": render_json, "markdown": render_markdown, "github": render_github}

@@ -12,16 +12,16 @@ from heuncli.analyses.variants.conditions import Comparison, parse_condition, re
 from heuncli.analyses.variants.course import Sample, make_sample
 from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
 from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
-from heuncli.app.cli.output import emit
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, require_tolerance
 from heuncli.app.cli.target import choose_format
 from heuncli.app.cli.units import note_si_format, parse_units
 from heuncli.app.cli.variant_warnings import print_variant_warnings
-from heuncli.app.commands.find.page import FORMS, FindPage
+from heuncli.app.commands.find.page import FindPage, make_document
 from heuncli.app.commands.find.request import FindRequest
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.units import parse_unit
@@ -72,7 +72,7 @@ def main(request: FindRequest) -> int:
     require_known_measure(findings)
     page_units = units_shown if request.units else use_condition_unit(units_shown, condition)
     page = FindPage(evaluator.spec.title, condition, interval, findings, scan, max_variants, page_units)
-    emit(FORMS[form](page), request.output)
+    emit_document(make_document(page), form, request.output)
     note_si_format(request.units, form, request.quiet)
     print_variant_warnings(evaluator.spec, cached, request.quiet)
     return int(request.strict and (not is_met(findings, condition) or bool(findings.unsolved_stretches)))

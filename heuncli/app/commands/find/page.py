@@ -1,10 +1,8 @@
-"""Render the findings of `heun find` as a table, JSON and CSV."""
+"""Make the document of the findings of `heun find`."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from heuncli.analyses.find.results import (
@@ -22,22 +20,12 @@ from heuncli.analyses.variants.course import Sample
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.page_width import split_to_width
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputDocument, OutputTable, append_unit
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    TextColumn,
-    TextTable,
-    append_unit,
-    format_head,
-    format_labelled_lines,
-    format_plain,
-)
 from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
-from heuncli.version import VERSION
 
 DIRECTIONS = {1: "rises", -1: "falls", 0: "at the end"}
 SCAN = (
@@ -46,7 +34,7 @@ SCAN = (
 )
 ENDED = "stopped after {}: there may be more, and those shown may not be fully refined (--evaluations)"
 MAX_WITHHELD = 2  # variants in singular poses that are listed one by one
-CSV_COLUMNS = ("kind", "value", "error", "unit", "measure", "measure_error", "measure_unit", "word", "reason")
+CSV_COLUMNS = make_columns("kind value error unit measure measure_error measure_unit word reason")
 
 
 class FindPage(NamedTuple):
@@ -75,60 +63,51 @@ class FindPage(NamedTuple):
         return append_unit(format_with_error((gap + self.condition.value) * size, error * size), unit)
 
 
-def render_table(page: FindPage) -> str:
-    """Render the page as text."""
-    parts = [format_labelled_lines(format_heading(page))]
+def make_document(page: FindPage) -> OutputDocument:
+    """Make the document: crossings, where the condition is met, other findings in sentences; all of them as data."""
     tables = [table for table in (_make_crossings_table(page), _make_met_table(page)) if table.rows]
-    tables.append(TextTable("", notes=tuple(format_notes(page))))
-    return "\n".join(
-        [
-            *parts,
-            *(
-                "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(one, DEFAULT_WIDTH))
-                for one in tables
-            ),
-        ]
+    notes = OutputTable("", notes=list(iter_notes(page)))
+    return OutputDocument(
+        page.title,
+        list_facts(page),
+        [*tables, notes],
+        lambda: to_block(page),
+        lambda: OutputTable("", CSV_COLUMNS, list(iter_records(page))),
     )
 
 
-def format_heading(page: FindPage) -> list[tuple[str, str]]:
+def list_facts(page: FindPage) -> list[tuple[str, str]]:
     """Return label and text of the lines above the table."""
     interval, condition, findings = page.interval, page.condition, page.findings
     value = page.format_measure(0.0, 0.0)
     ends = f"{interval.low:.10g} to {interval.high:.10g} {interval.unit}".rstrip()
     scan = SCAN.format(page.scan, f"{findings.spacing:.4g} {interval.unit}".rstrip())
     return [
-        ("heun", f"{VERSION}  {page.title}"),
         ("find", f"{condition.measure} {condition.relation} {value}, {interval.name} from {ends}"),
         ("runs", f"{format_count(len(findings.samples), 'variant')}: {scan}"),
     ]
 
 
-def _make_crossings_table(page: FindPage) -> TextTable:
+def _make_crossings_table(page: FindPage) -> OutputTable:
     unit = page.units.find(page.condition.unit)[0]
     columns = (
-        TextColumn(format_head(page.interval.name, page.interval.unit or "1")),
-        TextColumn("error"),
-        TextColumn(format_head("measure", unit or "1")),
-        TextColumn("error"),
-        TextColumn("", "left"),
-        TextColumn("", "left"),
-    )
-    rows = tuple(_make_crossing_row(page, each) for each in page.findings.crossings)
-    return TextTable("CROSSINGS  where the measure passes the value, as the parameter increases", columns, rows)
+        OutputColumn(page.interval.name, unit=page.interval.unit), OutputColumn("error"),
+        OutputColumn("measure", unit=unit), OutputColumn("error"), OutputColumn("", "verdict"),
+        OutputColumn("", "text"),
+    )  # fmt: skip
+    rows = [_make_crossing_row(page, each) for each in page.findings.crossings]
+    return OutputTable("CROSSINGS  where the measure passes the value, as the parameter increases", columns, rows)
 
 
-def _make_crossing_row(page: FindPage, each: Crossing) -> tuple[str, ...]:
+def _make_crossing_row(page: FindPage, each: Crossing) -> tuple[Cell, ...]:
     size = page.units.find(page.condition.unit)[1]
     value = ((each.sample.gap or 0.0) + page.condition.value) * size
     error = each.sample.error * size
     word = DIRECTIONS[each.direction] + (", too flat to be located more closely" if each.flat else "")
     cells = (
-        format_with_error(each.sample.x, each.error),
-        format_error(each.error),
-        format_with_error(value, error),
-        format_error(error),
-    )
+        NumberCell(each.sample.x, each.error), NumberCell(each.error, write=format_error),
+        NumberCell(value, error), NumberCell(error, write=format_error),
+    )  # fmt: skip
     return (*cells, word, format_set_option(page, each.sample.x))
 
 
@@ -138,24 +117,26 @@ def format_set_option(page: FindPage, x: float) -> str:
     return f"--set {page.interval.name}='{text}'" if " " in text else f"--set {page.interval.name}={text}"
 
 
-def _make_met_table(page: FindPage) -> TextTable:
-    name = format_head(page.interval.name, page.interval.unit or "1")
-    columns = (TextColumn(f"from {name}"), TextColumn("", "left"), TextColumn(f"to {name}"), TextColumn("", "left"))
-    rows = tuple(
-        (*_format_edge(page, each.low), *_format_edge(page, each.high)) for each in page.findings.met_stretches
-    )
-    return TextTable(f"MET  where the measure is {page.condition.relation} the value", columns, rows)
+def _make_met_table(page: FindPage) -> OutputTable:
+    interval = page.interval
+    columns = [
+        column
+        for word in ("from", "to")
+        for column in (OutputColumn(f"{word} {interval.name}", unit=interval.unit), OutputColumn("", "verdict"))
+    ]
+    rows = [(*_make_edge(each.low), *_make_edge(each.high)) for each in page.findings.met_stretches]
+    return OutputTable(f"MET  where the measure is {page.condition.relation} the value", columns, rows)
 
 
-def _format_edge(page: FindPage, edge: MetEdge) -> tuple[str, str]:
+def _make_edge(edge: MetEdge) -> tuple[NumberCell, str]:
     error = f", ± {format_error(edge.error)}" if edge.error else ""
     words = {
         "end": "end of the interval", "unsolved": "last solved variant", "bracket": "not resolved",
     }  # fmt: skip
-    return format_with_error(edge.x, edge.error), words.get(edge.kind, edge.kind) + error
+    return NumberCell(edge.x, edge.error), words.get(edge.kind, edge.kind) + error
 
 
-def format_notes(page: FindPage) -> Iterator[str]:
+def iter_notes(page: FindPage) -> Iterator[str]:
     """Yield sentences on findings that are not rows of a table."""
     findings, condition = page.findings, page.condition
     if condition.side and not (findings.met_stretches or ("=" in condition.relation and not findings.is_met_nowhere)):
@@ -242,60 +223,60 @@ def _describe_unsolved(page: FindPage, each: UnsolvedStretch) -> Iterator[str]:
         yield f"  and {format_count(len(each.withheld) - MAX_WITHHELD, 'more variant')} in singular positions"
 
 
-def to_json(page: FindPage) -> str:
-    """Return all findings as JSON; measures in SI, places in the unit of the interval and in SI."""
+def to_block(page: FindPage) -> dict[str, Any]:
+    """Return all findings as the JSON has them; measures in SI, places in the unit of the interval and in SI."""
     interval, condition, findings = page.interval, page.condition, page.findings
-    return dump_json(
-        {
-            "heun": 1,
-            "title": page.title,
-            "measure": condition.measure,
-            "relation": condition.relation,
-            "value": condition.value,
-            "unit": condition.unit,
-            "unknown": {"name": interval.name, "from": interval.low, "to": interval.high, "unit": interval.unit},
-            "runs": len(findings.samples),
-            "scan": page.scan,
-            "spacing": findings.spacing,
-            "complete": findings.is_complete,
-            "crossings": [_make_crossing_block(page, each) for each in findings.crossings],
-            "touches": [
-                {**_make_place_block(page, each.sample), "from": each.low, "to": each.high, "side": each.side}
-                for each in findings.touches
-            ],
-            "jumps": [
+    return {
+        "heun": 1,
+        "title": page.title,
+        "measure": condition.measure,
+        "relation": condition.relation,
+        "value": condition.value,
+        "unit": condition.unit,
+        "unknown": {"name": interval.name, "from": interval.low, "to": interval.high, "unit": interval.unit},
+        "runs": len(findings.samples),
+        "scan": page.scan,
+        "spacing": findings.spacing,
+        "complete": findings.is_complete,
+        "crossings": [_make_crossing_block(page, each) for each in findings.crossings],
+        "touches": [
+            {**_make_place_block(page, each.sample), "from": each.low, "to": each.high, "side": each.side}
+            for each in findings.touches
+        ],
+        **{
+            key: [
                 {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
-                for each in findings.jumps
-            ],
-            "brackets": [
-                {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
-                for each in findings.brackets
-            ],
-            "not_excluded": [
-                {"from": _make_place_block(page, each.left), "to": _make_place_block(page, each.right)}
-                for each in findings.not_excluded
-            ],
-            "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in findings.met_stretches],
-            "unsolved": [
-                {
-                    "from": each.low,
-                    "to": each.high,
-                    "code": each.code,
-                    "reason": each.reason,
-                    "variants": each.variants,
-                    "first": each.first,
-                    "last": each.last,
-                    "from_error": each.first - each.low,
-                    "to_error": each.high - each.last,
-                    "alone": [_make_withheld_block(page, one) for one in each.withheld],
-                }
-                for each in findings.unsolved_stretches
-            ],
-            **{word: _make_place_block(page, each) for word, each in _iter_extremes(findings)},
-            "refined": findings.is_refined,
-            "course": [_make_place_block(page, each) for each in findings.samples],
-        }
-    )
+                for each in pairs
+            ]
+            for key, pairs in _list_pairs(findings).items()
+        },
+        "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in findings.met_stretches],
+        "unsolved": [
+            {
+                "from": each.low,
+                "to": each.high,
+                "code": each.code,
+                "reason": each.reason,
+                "variants": each.variants,
+                "first": each.first,
+                "last": each.last,
+                "from_error": each.first - each.low,
+                "to_error": each.high - each.last,
+                "alone": [_make_withheld_block(page, one) for one in each.withheld],
+            }
+            for each in findings.unsolved_stretches
+        ],
+        **{word: _make_place_block(page, each) for word, each in _iter_extremes(findings)},
+        "refined": findings.is_refined,
+        "course": [_make_place_block(page, each) for each in findings.samples],
+    }
+
+
+def _list_pairs(
+    findings: IntervalFindings,
+) -> Mapping[str, Sequence[MeasureJump | UnresolvedBracket | PossibleMeeting]]:
+    """Return the findings between two neighbouring samples, by their keys in JSON."""
+    return {"jumps": findings.jumps, "brackets": findings.brackets, "not_excluded": findings.not_excluded}
 
 
 def _iter_extremes(findings: IntervalFindings) -> Iterator[tuple[str, Sample]]:
@@ -329,44 +310,29 @@ def _make_withheld_block(page: FindPage, sample: Sample) -> dict[str, Any]:
     return _make_place_block(page, sample._replace(gap=sample.withheld_gap, withheld_gap=None))
 
 
-def to_csv(page: FindPage) -> str:
-    """Return the findings as CSV: crossings, touches, ends of jumps and of met intervals, extremes, and every
-    variant.
-    """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(CSV_COLUMNS)
+def iter_records(page: FindPage) -> Iterator[tuple[Cell, ...]]:
+    """Yield the rows of the CSV: crossings, touches, ends of jumps and of met intervals, extremes, every variant."""
     findings = page.findings
     for crossing in findings.crossings:
-        writer.writerow(
-            _make_csv_row(page, "crossing", crossing.sample, crossing.error, DIRECTIONS[crossing.direction])
-        )
+        yield _make_record(page, "crossing", crossing.sample, crossing.error, DIRECTIONS[crossing.direction])
     for touch in findings.touches:
-        writer.writerow(_make_csv_row(page, "touch", touch.sample, touch.high - touch.low, ""))
-    for jump in findings.jumps:
-        writer.writerow(_make_csv_row(page, "jump", jump.left, 0.0, "before"))
-        writer.writerow(_make_csv_row(page, "jump", jump.right, 0.0, "after"))
-    for bracket in findings.brackets:
-        writer.writerow(_make_csv_row(page, "bracket", bracket.left, 0.0, "before"))
-        writer.writerow(_make_csv_row(page, "bracket", bracket.right, 0.0, "after"))
-    for each in findings.not_excluded:
-        writer.writerow(_make_csv_row(page, "not excluded", each.left, 0.0, "before"))
-        writer.writerow(_make_csv_row(page, "not excluded", each.right, 0.0, "after"))
+        yield _make_record(page, "touch", touch.sample, touch.high - touch.low, "")
+    for key, pairs in _list_pairs(findings).items():
+        kind = key.removesuffix("s").replace("_", " ")
+        for each in pairs:
+            yield _make_record(page, kind, each.left, 0.0, "before")
+            yield _make_record(page, kind, each.right, 0.0, "after")
     for met in findings.met_stretches:
         for edge, word in zip(met, ("from", "to"), strict=True):
-            writer.writerow(["met", edge.x, edge.error, page.interval.unit, "", "", "", word, edge.kind])
+            yield "met", edge.x, edge.error, page.interval.unit, "", "", "", word, edge.kind
     for word, sample in _iter_extremes(findings):
-        writer.writerow(_make_csv_row(page, "extreme", sample, 0.0, word))
+        yield _make_record(page, "extreme", sample, 0.0, word)
     for sample in findings.samples:
-        writer.writerow(_make_csv_row(page, "course", sample, 0.0, sample.why[0]))
-    return text.getvalue()
+        yield _make_record(page, "course", sample, 0.0, sample.why[0])
 
 
-def _make_csv_row(page: FindPage, kind: str, sample: Sample, error: float, word: str) -> list[Any]:
+def _make_record(page: FindPage, kind: str, sample: Sample, error: float, word: str) -> tuple[Cell, ...]:
     known = sample.gap is not None
-    measure = (sample.gap or 0.0) + page.condition.value if known else ""
-    cells = [kind, sample.x, error, page.interval.unit, measure, sample.error if known else "", page.condition.unit]
-    return [*cells, word, sample.why[1]]
-
-
-FORMS: dict[str, Callable[[FindPage], str]] = {"table": render_table, "json": to_json, "csv": to_csv}
+    measure = (sample.gap or 0.0) + page.condition.value if known else None
+    cells = (kind, sample.x, error, page.interval.unit, measure, sample.error if known else None, page.condition.unit)
+    return (*cells, word, sample.why[1])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.cli import timeout
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
@@ -19,7 +20,6 @@ from heuncli.app.commands.lagrange.options import (
     require_together,
 )
 from heuncli.app.commands.lagrange.request import LagrangeRequest
-from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
@@ -46,24 +46,20 @@ def main(request: LagrangeRequest) -> int:
     spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     require_instant(request.at, spec)
-    emit(render_result(spec, request, question, form, units_shown), request.output)
+    write_result(spec, request, question, form, units_shown)
     note_si_format(request.units, form, request.quiet)
     print_warnings(spec, None, request.quiet)
     return 0
 
 
-def render_result(
-    spec: Spec, request: LagrangeRequest, question: LagrangeOptions, form: str, units_shown: Units
-) -> str:
-    """Compute the requested result, and render it in a format; tables in the given units."""
+def write_result(spec: Spec, request: LagrangeRequest, question: LagrangeOptions, form: str, units: Units) -> None:
+    """Compute the requested result, and write it in a format; tables in the given units."""
     if request.over is not None:
         course = find_inertia_curve(spec, parse_range(request.over, spec))
-        if form == "json":
-            return dump_json(course_page.to_block(course))
-        return course_page.to_csv(course) if form == "csv" else course_page.render_page(course, units_shown)
+        emit_document(course_page.make_document(course, units), form, request.output)
+        return
     results = solve_lagrange(spec, question)
     if form == "m" and results.state_space is not None:
-        return forms.to_m(results.state_space)
-    if form == "json":
-        return dump_json(forms.to_block(results, parse_names(request.only)))
-    return forms.to_csv(results) if form == "csv" else page.render_page(results, parse_names(request.only), units_shown)
+        emit(forms.to_m(results.state_space), request.output)
+    else:
+        emit_document(page.make_document(results, parse_names(request.only), units), form, request.output)

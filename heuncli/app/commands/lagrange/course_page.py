@@ -1,34 +1,27 @@
-"""Render inertia and forces over a range of the coordinate, as a table, as JSON, and in long form."""
+"""Make the document of inertia and forces over a range of the coordinate."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from heuncli.analyses.lagrange.coordinate_units import LENGTH, get_units
 from heuncli.analyses.lagrange.results import InertiaCurve
-from heuncli.app.commands.lagrange.page import format_number
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    TextColumn,
-    TextTable,
-    format_head,
-    format_labelled_lines,
-    format_plain,
-)
+from heuncli.app.commands.lagrange.page import make_cell
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.study.quantities.labels import distinguish
 from heuncli.study.quantities.table_units import Units
-from heuncli.version import VERSION
 
 TOTAL = "k"
+CSV_COLUMNS = make_columns("coordinate at quantity component unit value")
 COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
 
 
-def render_page(course: InertiaCurve, units: Units) -> str:
-    """Render the page of a course as text, in the given units."""
-    lines = [("heun", f"{VERSION}  {course.title}")]
+def make_document(course: InertiaCurve, units: Units) -> OutputDocument:
+    """Make the document of a course; its table in the given units."""
     unit_set = get_units(course.name)
     unit, size = units.find(unit_set.value)
     low, high = int(np.argmin(course.epsilon)), int(np.argmax(course.epsilon))
@@ -40,17 +33,17 @@ def render_page(course: InertiaCurve, units: Units) -> str:
         if np.isnan(course.mean)
         else f"mean {course.mean:.6g} {unit_set.inertia} over the range"
     )
-    lines.append(("inertia", f"ε {mean}; smallest value {least}, largest {largest}"))
-    return (
-        format_labelled_lines(lines)
-        + "\n"
-        + "".join(
-            format_plain(part, DEFAULT_WIDTH) for part in split_to_width(make_table(course, units), DEFAULT_WIDTH)
-        )
+    facts = [("inertia", f"ε {mean}; smallest value {least}, largest {largest}")]
+    return OutputDocument(
+        course.title,
+        facts,
+        [make_table(course, units)],
+        lambda: to_block(course),
+        lambda: OutputTable("", CSV_COLUMNS, list(iter_records(course))),
     )
 
 
-def make_table(course: InertiaCurve, units: Units) -> TextTable:
+def make_table(course: InertiaCurve, units: Units) -> OutputTable:
     """Make the table with one row per value of the coordinate."""
     unit_set = get_units(course.name)
     length_scale = np.abs(course.values).max() if unit_set is LENGTH else 1.0
@@ -62,15 +55,15 @@ def make_table(course: InertiaCurve, units: Units) -> TextTable:
     ]
     forces = [(TOTAL, course.total_force), *((distinguish(name, (TOTAL,)), k) for name, k in course.forces.items())]
     columns_of_values += [(name, unit_set.force, k, course.force_scale) for name, k in forces]
-    heads, cells = [], []
+    columns, cells = [], []
     for name, unit, values, scale in columns_of_values:
         shown_unit, size = units.find(unit)
-        heads.append(format_head(name, shown_unit))
+        columns.append(OutputColumn(name, unit=shown_unit))
         largest = max(scale, float(np.abs(values).max(initial=0.0)))
-        cells.append([format_number(x * size, largest * size) for x in values])
+        cells.append([make_cell(x * size, largest * size) for x in values])
     rows = tuple(zip(*cells, strict=True))
     unit, size = units.find(unit_set.rate)
-    return TextTable(COURSE.format(rate=course.rate * size, unit=unit), tuple(map(TextColumn, heads)), rows)
+    return OutputTable(COURSE.format(rate=course.rate * size, unit=unit), columns, rows)
 
 
 def to_block(course: InertiaCurve) -> dict[str, Any]:
@@ -98,14 +91,13 @@ def to_block(course: InertiaCurve) -> dict[str, Any]:
     }
 
 
-def to_csv(course: InertiaCurve) -> str:
-    """Return the course in long form, one line per value and quantity."""
+def iter_records(course: InertiaCurve) -> Iterator[tuple[Cell, ...]]:
+    """Yield the course in long form, one row per value and quantity."""
     unit_set = get_units(course.name)
-    lines = ["coordinate,at,quantity,component,unit,value"]
     for i, value in enumerate(course.values.tolist()):
-        head = f"{course.name},{value!r}"
-        lines.append(f"{head},epsilon,,{unit_set.inertia},{float(course.epsilon[i])!r}")
-        lines.append(f"{head},half_slope,,{unit_set.slope},{float(course.half[i])!r}")
-        lines.append(f"{head},force,,{unit_set.force},{float(course.total_force[i])!r}")
-        lines += [f"{head},force,{name},{unit_set.force},{float(k[i])!r}" for name, k in course.forces.items()]
-    return "\n".join(lines) + "\n"
+        lead = (course.name, value)
+        yield *lead, "epsilon", "", unit_set.inertia, float(course.epsilon[i])
+        yield *lead, "half_slope", "", unit_set.slope, float(course.half[i])
+        yield *lead, "force", "", unit_set.force, float(course.total_force[i])
+        for name, k in course.forces.items():
+            yield *lead, "force", name, unit_set.force, float(k[i])

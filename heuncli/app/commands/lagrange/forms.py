@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,11 @@ from heuncli.analyses.lagrange.coordinate_units import MIXED_INERTIA_UNIT, get_u
 from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
 from heuncli.analyses.lagrange.section_forces import to_lists
 from heuncli.base.joint_kinds import is_length
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.document import Cell
 from heuncli.version import VERSION
 
-CSV_COLUMNS = "name,quantity,component,unit,value"
+CSV_COLUMNS = make_columns("name quantity component unit value")
 ALWAYS = ("title", "time", "coordinates", "units", "driven", "notes")
 PARTS = ("free", "mixed", "driven")  # of the energy
 KEYS = {  # of JSON, by what --only names
@@ -100,9 +102,8 @@ def make_full_block(results: LagrangeResults) -> dict[str, Any]:
     }
 
 
-def to_csv(results: LagrangeResults) -> str:
-    """Return the results in long form, one number per line; for matrices the component names the second coordinate."""
-    lines = [CSV_COLUMNS]
+def iter_records(results: LagrangeResults) -> Iterator[tuple[Cell, ...]]:
+    """Yield the results in long form, one number per row; for matrices the component names the second coordinate."""
     for i, name in enumerate(results.names):
         units = get_units(name)
         for quantity, unit, values in (
@@ -111,13 +112,12 @@ def to_csv(results: LagrangeResults) -> str:
             ("coriolis", units.force, results.coriolis), ("force", units.force, results.total_force),
             ("drive", units.force, results.drives),
         ):  # fmt: skip
-            lines.append(f"{name},{quantity},,{unit},{float(values[i])!r}")
+            yield name, quantity, "", unit, float(values[i])
         for cause, k in results.forces.items():
-            lines.append(f"{name},force,{cause},{units.force},{float(k[i])!r}")
+            yield name, "force", cause, units.force, float(k[i])
         for j, other in enumerate(results.names):
             unit = units.inertia if is_length(name) == is_length(other) else MIXED_INERTIA_UNIT
-            lines.append(f"{name},epsilon,{other},{unit},{float(results.epsilon[i, j])!r}")
-    return "\n".join(lines) + "\n"
+            yield name, "epsilon", other, unit, float(results.epsilon[i, j])
 
 
 def make_state_space_block(linear: StateSpace) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Render Lagrange's equations at an instant as tables."""
+"""Make the document of Lagrange's equations at an instant."""
 
 from __future__ import annotations
 
@@ -11,19 +11,11 @@ import numpy as np
 from heuncli.analyses.lagrange.coordinate_units import ANGLE, LENGTH, get_units
 from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
 from heuncli.analyses.lagrange.section_forces import list_cuts
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    TextColumn,
-    TextTable,
-    format_head,
-    format_labelled_lines,
-    format_plain,
-)
+from heuncli.app.commands.lagrange.forms import CSV_COLUMNS, iter_records, to_block
+from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable, format_head
 from heuncli.results.results import Array
 from heuncli.study.quantities.labels import distinguish
 from heuncli.study.quantities.table_units import Units
-from heuncli.version import VERSION
 
 HEADING = "LAGRANGE  {at}: coordinates q and rates q'; ε q'' + C = k + drive"
 MASS = "MASS MATRIX  ε = ∂²E/∂q'∂q'; effective inertia with the other coordinates fixed or free"
@@ -46,25 +38,23 @@ COLUMNS: tuple[tuple[str, attrgetter[str]], ...] = (
 )  # fmt: skip
 
 
-def render_page(results: LagrangeResults, parts: Sequence[str] = (), units: Units = SI) -> str:
-    """Render the page as text.
+def make_document(results: LagrangeResults, parts: Sequence[str] = (), units: Units = SI) -> OutputDocument:
+    """Make the document.
 
     parts: the parts to show, as forms.KEYS names them; empty: all
     """
-    heading = format_labelled_lines([("heun", f"{VERSION}  {results.title}"), *format_energy(results, units)])
-    selected = [table for part, table in make_tables(results, units) if not parts or part in parts]
-    return "\n".join(
-        [
-            heading,
-            *(
-                "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH))
-                for table in selected
-            ),
-        ]
+    tables = (table for part, table in make_tables(results, units) if not parts or part in parts)
+    facts = list(list_facts(results, units))
+    return OutputDocument(
+        results.title,
+        facts,
+        tables,
+        lambda: to_block(results, parts),
+        lambda: OutputTable("", CSV_COLUMNS, list(iter_records(results))),
     )
 
 
-def format_energy(results: LagrangeResults, units: Units) -> Iterator[tuple[str, str]]:
+def list_facts(results: LagrangeResults, units: Units) -> Iterator[tuple[str, str]]:
     """Yield label and text of the lines above the tables."""
     unit, size = units.find("J")
     free, mixed, driven = (size * part for part in results.energies)
@@ -81,7 +71,7 @@ def format_energy(results: LagrangeResults, units: Units) -> Iterator[tuple[str,
         yield "", note
 
 
-def make_tables(results: LagrangeResults, units: Units) -> Iterator[tuple[str, TextTable]]:
+def make_tables(results: LagrangeResults, units: Units) -> Iterator[tuple[str, OutputTable]]:
     """Yield the parts to show, one table each; matrices only for few coordinates."""
     yield "equations", make_equation_table(results, units)
     yield "mass", make_mass_table(results)
@@ -98,7 +88,7 @@ def make_tables(results: LagrangeResults, units: Units) -> Iterator[tuple[str, T
         yield from (("state_space", table) for table in make_linear_tables(results.state_space))
 
 
-def make_linear_tables(linear: StateSpace) -> Iterator[TextTable]:
+def make_linear_tables(linear: StateSpace) -> Iterator[OutputTable]:
     """Yield the table of A and B, and that of C and D."""
     for heading, left, right, rows in (
         (STATE_SPACE, linear.A, linear.B, [f"d/dt {name}" for name in linear.states]),
@@ -107,18 +97,18 @@ def make_linear_tables(linear: StateSpace) -> Iterator[TextTable]:
         whole = np.hstack([left, right])
         sizes = np.abs(whole).max(axis=1, initial=0.0)
         cells_of_rows = tuple(
-            (name, *(format_number(x, size) for x in row)) for name, row, size in zip(rows, whole, sizes, strict=True)
+            (name, *(make_cell(x, size) for x in row)) for name, row, size in zip(rows, whole, sizes, strict=True)
         )
-        yield TextTable(
-            heading, (TextColumn("", "left"), *map(TextColumn, (*linear.states, *linear.inputs))), cells_of_rows
+        yield OutputTable(
+            heading, (OutputColumn("", "text"), *map(OutputColumn, (*linear.states, *linear.inputs))), cells_of_rows
         )
 
 
-def format_number(value: float | None, scale: float = 0.0) -> str:
-    """Format a number to six digits; rounding errors relative to the scale become 0."""
+def make_cell(value: float | None, scale: float = 0.0) -> Cell:
+    """Make the cell of a number, which is printed to six digits; rounding errors relative to the scale become 0."""
     if value is None or np.isnan(value):
-        return ""
-    return "0" if abs(value) <= ROUNDING * scale else f"{value:.6g}"
+        return None
+    return 0 if abs(value) <= ROUNDING * scale else float(value)
 
 
 def format_label(results: LagrangeResults, i: int) -> str:
@@ -126,7 +116,7 @@ def format_label(results: LagrangeResults, i: int) -> str:
     return f"{results.names[i]}{'  driven' if results.is_driven[i] else ''}"
 
 
-def make_equation_table(results: LagrangeResults, units: Units) -> TextTable:
+def make_equation_table(results: LagrangeResults, units: Units) -> OutputTable:
     """Make the table with one row per coordinate; units stand in the heads, or in the heading if angles and lengths are
     mixed.
     """
@@ -146,8 +136,7 @@ def make_equation_table(results: LagrangeResults, units: Units) -> TextTable:
         unit_set = get_units(name)
         sizes = [units.find(unit(unit_set))[1] for _, unit in COLUMNS]
         cells = (
-            format_number(x[i] * factor, scale[i] * factor)
-            for x, scale, factor in zip(columns, scales, sizes, strict=True)
+            make_cell(x[i] * factor, scale[i] * factor) for x, scale, factor in zip(columns, scales, sizes, strict=True)
         )
         rows.append((format_label(results, i), *cells))
     heading, kinds = HEADING.format(at=results.instant_text), {get_units(name) for name in results.names}
@@ -158,10 +147,10 @@ def make_equation_table(results: LagrangeResults, units: Units) -> TextTable:
         heading += MIXED.format(
             *(units.find(unit)[0] for unit_set in (ANGLE, LENGTH) for unit in (unit_set.value, unit_set.force))
         )
-    return TextTable(heading, (TextColumn("coordinate", "left"), *map(TextColumn, heads)), tuple(rows))
+    return OutputTable(heading, (OutputColumn("coordinate", "text"), *map(OutputColumn, heads)), tuple(rows))
 
 
-def make_mass_table(results: LagrangeResults) -> TextTable:
+def make_mass_table(results: LagrangeResults) -> OutputTable:
     """Make the table of the mass matrix if it is small, and of the effective inertias."""
     shows_matrix = len(results.names) <= MAX_COORDINATES and {one.name for one in results.apparent_inertias} == set(
         results.names
@@ -169,16 +158,14 @@ def make_mass_table(results: LagrangeResults) -> TextTable:
     sizes = entry_scales(results.epsilon)
     rows = []
     for one in results.apparent_inertias:
-        matrix_cells = []
+        matrix_cells: list[Cell] = []
         if shows_matrix:
             i = results.names.index(one.name)
-            matrix_cells = [format_number(x, size) for x, size in zip(results.epsilon[i], sizes[i], strict=True)]
-        rows.append(
-            (one.name, *matrix_cells, one.unit, format_number(one.others_locked), format_number(one.others_free))
-        )
-    columns = [TextColumn(f"ε {name}") for name in results.names] if shows_matrix else []
-    heads = (TextColumn("at", "left"), *columns, TextColumn("unit", "left"), TextColumn("others fixed"))
-    return TextTable(MASS, (*heads, TextColumn("others free")), tuple(rows))
+            matrix_cells = [make_cell(x, size) for x, size in zip(results.epsilon[i], sizes[i], strict=True)]
+        rows.append((one.name, *matrix_cells, one.unit, make_cell(one.others_locked), make_cell(one.others_free)))
+    columns = [OutputColumn(f"ε {name}") for name in results.names] if shows_matrix else []
+    heads = (OutputColumn("at", "text"), *columns, OutputColumn("unit", "text"), OutputColumn("others fixed"))
+    return OutputTable(MASS, (*heads, OutputColumn("others free")), tuple(rows))
 
 
 def entry_scales(matrix: Array) -> Array:
@@ -187,28 +174,30 @@ def entry_scales(matrix: Array) -> Array:
     return np.asarray(np.outer(root, root))
 
 
-def make_reciprocal_table(results: LagrangeResults) -> TextTable:
+def make_reciprocal_table(results: LagrangeResults) -> OutputTable:
     """Make the table of the inverse of the mass matrix."""
     rows_of_matrix = zip(results.names, results.eta, entry_scales(results.eta), strict=True)
-    rows = tuple((name, *map(format_number, row, sizes)) for name, row, sizes in rows_of_matrix)
-    return TextTable(RECIPROCAL, (TextColumn("", "left"), *map(TextColumn, results.names)), rows)
+    rows = tuple((name, *map(make_cell, row, sizes)) for name, row, sizes in rows_of_matrix)
+    return OutputTable(RECIPROCAL, (OutputColumn("", "text"), *map(OutputColumn, results.names)), rows)
 
 
-def make_force_table(results: LagrangeResults, units: Units) -> TextTable:
+def make_force_table(results: LagrangeResults, units: Units) -> OutputTable:
     """Make the table of the generalized forces k by cause."""
     display_units = [units.find(get_units(name).force) for name in results.names]
 
-    def row(cause: str, k: Array) -> tuple[str, ...]:
+    def row(cause: str, k: Array) -> tuple[Cell, ...]:
         told = zip(k, results.scale, display_units, strict=True)
-        return cause, *(format_number(x * by, size * by) for x, size, (_, by) in told)
+        return cause, *(make_cell(x * by, size * by) for x, size, (_, by) in told)
 
     rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in results.forces.items()]
     rows += [row(name, k) for name, k in zip(OWN_ROWS, (results.total_force, results.coriolis), strict=True)]
-    heads = (TextColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True))
-    return TextTable(FORCES, (TextColumn("cause", "left"), *heads), tuple(rows))
+    heads = (
+        OutputColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True)
+    )
+    return OutputTable(FORCES, (OutputColumn("cause", "text"), *heads), tuple(rows))
 
 
-def make_christoffel_table(results: LagrangeResults) -> TextTable:
+def make_christoffel_table(results: LagrangeResults) -> OutputTable:
     """Make the table of the Christoffel symbols that are not 0, each pair l, k once."""
     assert results.gamma is not None and results.alpha is not None
     sizes = [float(np.abs(x).max(initial=0.0)) for x in (results.gamma, results.alpha)]
@@ -217,27 +206,29 @@ def make_christoffel_table(results: LagrangeResults) -> TextTable:
     for i, j, k in product(range(f), repeat=3):
         if k < j:
             continue
-        both = [format_number(x[i, j, k], size) for x, size in zip((results.gamma, results.alpha), sizes, strict=True)]
-        if both != ["0", "0"]:
+        both = [make_cell(x[i, j, k], size) for x, size in zip((results.gamma, results.alpha), sizes, strict=True)]
+        if both != [0, 0]:
             rows.append((results.names[i], results.names[j], results.names[k], *both))
-    heads = (*(TextColumn(name, "left") for name in ("i", "l", "k")), TextColumn("γ"), TextColumn("α"))
-    return TextTable(CHRISTOFFEL, heads, tuple(rows), () if rows else ("all are 0",))
+    heads = (*(OutputColumn(name, "text") for name in ("i", "l", "k")), OutputColumn("γ"), OutputColumn("α"))
+    return OutputTable(CHRISTOFFEL, heads, tuple(rows), () if rows else ("all are 0",))
 
 
-def make_section_table(results: LagrangeResults, units: Units) -> TextTable:
+def make_section_table(results: LagrangeResults, units: Units) -> OutputTable:
     """Make the table of s' of each cut."""
     display_units = [units.find(get_units(name).force) for name in results.names]
     sizes = [factor for _, factor in display_units]
     rows = [
-        (cut, *format_cells(s, sizes, section.scale))
+        (cut, *make_cells(s, sizes, section.scale))
         for name, section in results.sections.items()
         for cut, s in list_cuts(name, section)
     ]
-    heads = (TextColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True))
-    return TextTable(SECTIONS, (TextColumn("section", "left"), *heads), tuple(rows))
+    heads = (
+        OutputColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True)
+    )
+    return OutputTable(SECTIONS, (OutputColumn("section", "text"), *heads), tuple(rows))
 
 
-def make_impulse_table(results: LagrangeResults, units: Units) -> TextTable:
+def make_impulse_table(results: LagrangeResults, units: Units) -> OutputTable:
     """Make the table of each impulse h, of the drives, of the jumps of the rates, and of what the sections transmit."""
     unit_sets = [get_units(name) for name in results.names]
     impulses, rates = (
@@ -247,13 +238,13 @@ def make_impulse_table(results: LagrangeResults, units: Units) -> TextTable:
     for blow in results.impulses:
         time_text = f"t = {blow.t:.6g} s"
         rows += [
-            (time_text, "h", *format_cells(blow.h, impulses)),
-            (time_text, "[q']", *format_cells(blow.jumps, rates)),
+            (time_text, "h", *make_cells(blow.h, impulses)),
+            (time_text, "[q']", *make_cells(blow.jumps, rates)),
         ]
-        rows += [(time_text, "drives", *format_cells(blow.drives, impulses))] if blow.drives.any() else []
+        rows += [(time_text, "drives", *make_cells(blow.drives, impulses))] if blow.drives.any() else []
         for section, passed in blow.sections.items():
             rows += [
-                (time_text, f"r' {cut}", *format_cells(r, impulses, passed.scale))
+                (time_text, f"r' {cut}", *make_cells(r, impulses, passed.scale))
                 for cut, r in list_cuts(section, passed)
             ]
     unit, size = units.find("J")
@@ -261,13 +252,19 @@ def make_impulse_table(results: LagrangeResults, units: Units) -> TextTable:
     for kind in sorted(set(unit_sets)):
         unit_names = ", ".join(units.find(unit)[0] for unit in (kind.momentum, kind.rate))
         notes.append(f"along {'lengths' if kind is LENGTH else 'angles'}: {unit_names}")
-    heads = (TextColumn("impulse", "left", is_shown_once=True), TextColumn("", "left"), *map(TextColumn, results.names))
-    return TextTable(BLOWS, heads, tuple(rows), tuple(notes))
+    heads = (
+        OutputColumn("impulse", "text", is_shown_once=True),
+        OutputColumn("", "text"),
+        *map(OutputColumn, results.names),
+    )
+    return OutputTable(BLOWS, heads, tuple(rows), tuple(notes))
 
 
-def format_cells(values: Array | None, sizes: Sequence[float], reach: Array | float = 0.0) -> list[str]:
-    """Format numbers along the coordinates in display units, rounding errors as 0; `open` if they are indeterminate."""
+def make_cells(values: Array | None, sizes: Sequence[float], reach: Array | float = 0.0) -> list[Cell]:
+    """Make the cells of numbers along the coordinates in display units; rounding errors are 0, indeterminate numbers
+    `open`.
+    """
     if values is None:
         return ["open"] * len(sizes)
     factors = np.array(sizes)
-    return [format_number(x, size) for x, size in zip(values * factors, reach * factors, strict=True)]
+    return [make_cell(x, size) for x, size in zip(values * factors, reach * factors, strict=True)]

@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
-import json
+from typing import Any
 
-from heuncli.app.cli.output import emit
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.methods.request import MethodsRequest
-from heuncli.output.tables.methods_table import make_methods_table, to_json_block
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, format_plain
+from heuncli.base.method_rows import AUTO, DEFAULT, METHODS
+from heuncli.output.documents.document import OutputColumn, OutputDocument, OutputTable
 
 FORMATS = ("table", "json")
+HEADING = "METHODS  integration methods, for analysis: {method: NAME} and --method NAME"
+COLUMNS = (
+    OutputColumn("name", "text"), OutputColumn("order"), OutputColumn("kind", "text"), OutputColumn("steps", "text"),
+    OutputColumn("orientation", "text", key="attitude"), OutputColumn("purpose", "text"),
+)  # fmt: skip
+NOTES = (
+    f"{AUTO} (default) selects by the model and its behaviour during the run: normally {DEFAULT}.",
+    "steps: adaptive steps follow analysis: {tolerance: 1e-9}; fixed steps are set by analysis: {step: 0.001}.",
+    "orientation: parameters of a body's orientation within a step. SciPy methods are independent checks.",
+)
 
 
 def main(request: MethodsRequest) -> int:
     """Run the command; returns the exit code."""
     form = choose_format(request.format, request.output, FORMATS)
-    text = (
-        json.dumps(to_json_block(), indent=1) + "\n"
-        if form == "json"
-        else format_plain(make_methods_table(), DEFAULT_WIDTH)
-    )
-    emit(text, request.output)
+    rows = [tuple(getattr(method, column.name) for column in COLUMNS) for method in METHODS]
+    emit_document(OutputDocument(parts=[OutputTable(HEADING, COLUMNS, rows, NOTES)], make_block=make_block), form,
+                  request.output)  # fmt: skip
     return 0
+
+
+def make_block() -> dict[str, Any]:
+    """Make the JSON: the default, and a mapping for each method."""
+    keys = [column.name for column in COLUMNS]
+    return {"default": AUTO, "methods": [{key: getattr(method, key) for key in keys} for method in METHODS]}

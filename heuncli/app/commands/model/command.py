@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
@@ -12,8 +13,8 @@ from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
 from heuncli.app.commands.model.request import ModelRequest
 from heuncli.base.errors import Problem
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.model_text import format_model
+from heuncli.output.documents.document import OutputDocument, Sentence
+from heuncli.output.tables.model_text import make_description_parts
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import describe
 
@@ -28,14 +29,20 @@ def main(request: ModelRequest) -> int:
     spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
-    text = dump_json(dict(model)) if form == "json" else format_model(spec.title, model)
+    pieces = [*render_document(make_document(spec.title, model), form, request.output)]
     if request.sketch:
         from heuncli.app.commands.model.sketch import render_sketch  # rarely used
 
-        text += "\n" + render_sketch(spec, request)
-    emit(text, request.output)
+        pieces += ["\n", render_sketch(spec, request)]
+    emit(pieces, request.output)
     print_warnings(spec, None, request.quiet)
     return 0
+
+
+def make_document(title: str, model: Mapping[str, Any]) -> OutputDocument:
+    """Make the document of the model block."""
+    parts = [Sentence(title or "untitled"), *make_description_parts(model, label_indent="  ")]
+    return OutputDocument(parts=parts, make_block=lambda: dict(model))
 
 
 def require_sketch(request: ModelRequest, form: str) -> None:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from heuncli.analyses.modes.exclusion import exclude_entries
 from heuncli.analyses.modes.study import compute_spec_modes
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
-from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
 from heuncli.app.cli.without_option import find_excluded
-from heuncli.app.commands.modes import page as report
+from heuncli.app.commands.modes.page import make_document
 from heuncli.app.commands.modes.request import ModesRequest
-from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 
 
@@ -24,10 +23,6 @@ def main(request: ModesRequest) -> int:
     entries = find_excluded(spec, request.without)
     require_other_file(request.output, [request.spec])
     scene_modes = compute_spec_modes(exclude_entries(spec, entries), entries)
-    if form == "json":
-        text = dump_json(scene_modes.to_block())
-    else:
-        text = report.to_csv(scene_modes) if form == "csv" else report.render_page(scene_modes)
-    emit(text, request.output)
+    emit_document(make_document(scene_modes), form, request.output)
     print_warnings(spec, None, request.quiet)
     return 0

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.app.cli import timeout
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.probe import page as report
+from heuncli.app.commands.probe.page import make_document
 from heuncli.app.commands.probe.request import ProbeRequest
-from heuncli.output.tables.export import dump_json
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 
@@ -24,6 +23,6 @@ def main(request: ProbeRequest) -> int:
     spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     results = probe(spec, Options(time_limit=timeout.remaining_time()))
-    emit(dump_json(results.to_block()) if form == "json" else report.render_page(results), request.output)
+    emit_document(make_document(results), form, request.output)
     print_warnings(spec, None, request.quiet)
     return 0

@@ -1,4 +1,4 @@
-"""Render the probe of a motion as text: verdict, growth and stiffness, condition numbers, attitudes, instants."""
+"""Make the document of a probe of a motion: verdict, growth and stiffness, condition numbers, attitudes, instants."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.analyses.motion_diagnostics.results import GrowthResults, Probe, StiffnessResults
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_labelled_lines, format_plain
-from heuncli.version import VERSION
+from heuncli.output.documents.document import NumberCell, OutputColumn, OutputDocument, OutputTable
 
 MAX_EVENTS = 30  # events that a table lists; JSON has more
 REST = "rest"  # stands in `model` in place of a method
@@ -24,17 +22,13 @@ NAMES = {"mass": "mass matrix", "closure": "loop closures"}
 REASON_NAMES = {"condition": "condition number"}  # where a key is not the term
 
 
-def render_page(results: Probe) -> str:
-    """Render the page as text."""
-    parts = (part for table in make_tables(results) for part in split_to_width(table, DEFAULT_WIDTH))
-    return format_labelled_lines(list(format_heading(results))) + "".join(
-        "\n" + format_plain(part, DEFAULT_WIDTH) for part in parts
-    )
+def make_document(results: Probe) -> OutputDocument:
+    """Make the document of a probe."""
+    return OutputDocument(results.title, list(list_facts(results)), make_tables(results), results.to_block)
 
 
-def format_heading(results: Probe) -> Iterator[tuple[str, str]]:
+def list_facts(results: Probe) -> Iterator[tuple[str, str]]:
     """Yield label and text of the lines above the tables."""
-    yield "heun", f"{VERSION}  {results.title}"
     yield "probe", f"{results.model['space']}, {describe_motion(results)}"
     yield "verdict", results.verdict
     yield from (("", text) for text in results.trouble[1:])
@@ -58,31 +52,31 @@ def format_reasons(results: Probe) -> list[str]:
     return [f"{', '.join(keys)}: {text}" for text, keys in keys_by_reason.items()]
 
 
-def make_tables(results: Probe) -> Iterator[TextTable]:
+def make_tables(results: Probe) -> Iterator[OutputTable]:
     """Yield all tables that have something to show."""
     if grown := tuple(make_growth_row(name, g) for name, g in list_growths(results) if g is not None):
         heads = ("of", "e-folding time [s]", "growth factor", "until [s]", "double precision lost at [s]")
-        yield TextTable(GROWTH, make_columns(heads, 1), grown)
+        yield OutputTable(GROWTH, make_columns(heads, 1), grown)
     if results.stiffness is not None and results.stiffness.steps:
         yield make_steps_table(results.stiffness, results.duration)
     if known := results.list_conditions():
-        rows = tuple((NAMES[name], format_condition(at.value), f"{at.time:.6g}", at.where) for name, at in known)
-        yield TextTable(
-            CONDITION, (*make_columns(("of", "condition", "t [s]"), 1), TextColumn("located in", "left")), rows
+        rows = tuple((NAMES[name], make_condition_cell(at.value), at.time, at.where) for name, at in known)
+        yield OutputTable(
+            CONDITION, (*make_columns(("of", "condition", "t [s]"), 1), OutputColumn("located in", "text")), rows
         )
     if results.attitudes:
         sequences = tuple(results.attitudes[0].euler)
         column_heads = ("body", "half revolutions", *(f"{s} at [s]" if i else s for s in sequences for i in (0, 1)))
         bodies = tuple(
-            (t.body, str(t.half_turns), *(x for k, at in t.euler.values() for x in (format_condition(k), f"{at:.6g}")))
+            (t.body, t.half_turns, *(x for k, at in t.euler.values() for x in (make_condition_cell(k), at)))
             for t in results.attitudes
         )
-        yield TextTable(ATTITUDES, make_columns(column_heads, 1), bodies)
+        yield OutputTable(ATTITUDES, make_columns(column_heads, 1), bodies)
     if results.events:
         yield make_events_table(results)
 
 
-def make_steps_table(stiffness: StiffnessResults, duration: float) -> TextTable:
+def make_steps_table(stiffness: StiffnessResults, duration: float) -> OutputTable:
     """Make the table of the steps of explicit methods; that for accuracy only for a motion. "any" is longer than the
     run.
     """
@@ -91,27 +85,27 @@ def make_steps_table(stiffness: StiffnessResults, duration: float) -> TextTable:
         f"{stiffness.oscillation:.3g} rad/s"
     )
     if not duration:
-        rows = tuple((s.method, str(s.order), format_step(s.stability, math.inf)) for s in stiffness.steps)
-        return TextTable(STEPS_HERE, make_columns(("method", "order", "stable [s]"), 1), rows, (note,))
-    motion_rows = tuple(
-        (s.method, str(s.order), *(format_step(x, duration) for x in (s.stability, s.accuracy)))
+        rows = tuple((s.method, s.order, format_step(s.stability, math.inf)) for s in stiffness.steps)
+        return OutputTable(STEPS_HERE, make_columns(("method", "order", "stable [s]"), 1), rows, (note,))
+    motion_rows = [
+        (s.method, s.order, format_step(s.stability, duration), format_step(s.accuracy, duration))
         for s in stiffness.steps
-    )
-    return TextTable(STEPS, make_columns(("method", "order", "stable [s]", "accurate [s]"), 1), motion_rows, (note,))
+    ]
+    return OutputTable(STEPS, make_columns(("method", "order", "stable [s]", "accurate [s]"), 1), motion_rows, (note,))
 
 
-def make_events_table(results: Probe) -> TextTable:
+def make_events_table(results: Probe) -> OutputTable:
     """Make the table of the instants, limited to the first MAX_EVENTS."""
-    rows = [(f"{e.time:.6g}", e.kind, e.message) for e in results.events[:MAX_EVENTS]]
+    rows = [(e.time, e.kind, e.message) for e in results.events[:MAX_EVENTS]]
     omitted = len(results.events) - len(rows) + sum(count for _, _, count in results.further_events)
     notes = (f"{omitted} more; JSON lists up to 100 of each kind and place",) if omitted else ()
-    heads = (TextColumn("t [s]"), TextColumn("event", "left"), TextColumn("", "left"))
-    return TextTable(EVENTS, heads, tuple(rows), notes)
+    heads = (OutputColumn("t", "instant", "s"), OutputColumn("event", "text"), OutputColumn("", "text"))
+    return OutputTable(EVENTS, heads, tuple(rows), notes)
 
 
-def make_columns(heads: tuple[str, ...], word_count: int) -> tuple[TextColumn, ...]:
+def make_columns(heads: tuple[str, ...], word_count: int) -> tuple[OutputColumn, ...]:
     """Make the columns; the first `word_count` of them hold words and are left-aligned."""
-    return tuple(TextColumn(head, "left") if k < word_count else TextColumn(head) for k, head in enumerate(heads))
+    return tuple(OutputColumn(head, "text") if k < word_count else OutputColumn(head) for k, head in enumerate(heads))
 
 
 def list_growths(results: Probe) -> tuple[tuple[str, GrowthResults | None], ...]:
@@ -136,6 +130,11 @@ def make_growth_row(name: str, growth: GrowthResults) -> tuple[str, ...]:
 def format_condition(value: float) -> str:
     """Format a condition number for a cell."""
     return f"{value:.3g}" if value < 1e15 else "singular"
+
+
+def make_condition_cell(value: float) -> NumberCell:
+    """Make the cell of a condition number."""
+    return NumberCell(value, write=format_condition)
 
 
 def format_step(value: float, longest: float) -> str:

@@ -27,9 +27,9 @@ def main(request: ReportRequest) -> int:
 
     report = make_report(data)
     if form == "html":
-        from heuncli.output.client_report.as_html import render_html as written
+        from heuncli.output.documents.as_html import render_html as written
     else:
-        from heuncli.output.client_report.as_markdown import render_markdown as written
+        from heuncli.output.documents.as_markdown import render_markdown as written
     emit(written(report), request.output)
     return 0 if all(outcome.has_passed for outcome in data.outcomes) else FAILED
 

@@ -6,23 +6,25 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import select_exit_code
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.units import TABLES, note_si_format
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
-from heuncli.base.text_safety import escape
+from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_markdown, format_plain
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
 
-HEADS = ("of", "unit", "min", "at [s]", "case", "max", "at [s]", "case")
-DIGITS = 6
+COLUMNS = (
+    OutputColumn("of", "path"), OutputColumn("unit", "text"),
+    OutputColumn("min"), OutputColumn("at", "instant", "s"), OutputColumn("case", "text"),
+    OutputColumn("max"), OutputColumn("at", "instant", "s"), OutputColumn("case", "text"),
+)  # fmt: skip
 ALL_ALIKE = "all equal"  # if cases differ by no more than their errors
 NO_IMPULSES = "without impulses, which are in the tables of each case"
 
@@ -60,13 +62,9 @@ def _render_text(
         return "".join(_iter_csv(texts))
     if task.collective:
         return "\n".join(texts.values())
-    table = _make_table(make_envelope(runs), task.units, _make_notes(runs))
-    if task.form == "markdown":
-        return "\n".join([*texts.values(), format_markdown(table)])
     assert task.form in TABLES
-    return "\n".join(
-        [*texts.values(), *(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH))]
-    )
+    document = OutputDocument(parts=[_make_table(make_envelope(runs), task.units, _make_notes(runs))])
+    return "\n".join([*texts.values(), "".join(render_document(document, task.form, task.request.output))])
 
 
 def _iter_csv(texts: Mapping[str, str]) -> Iterator[str]:
@@ -95,13 +93,12 @@ def _make_bound_block(extreme: Bound | None) -> dict[str, Any] | None:
     return block | ({"alike": list(extreme.similar)} if extreme.similar else {})
 
 
-def _make_table(rows: Sequence[NumberEnvelope], units: Units, notes: Sequence[str]) -> TextTable:
+def _make_table(rows: Sequence[NumberEnvelope], units: Units, notes: Sequence[str]) -> OutputTable:
     """Make the table of the envelope; rows that are 0 in all cases are left out."""
     rows_shown = [row for row in rows if row.unclear or not all(map(_is_zero, (row.least, row.greatest)))]
-    columns = tuple(TextColumn(head, "left" if head in ("of", "unit", "case") else "point") for head in HEADS)
     unclear = [f"{row.path}: {row.unclear_text}" for row in rows_shown if row.unclear]
     body = tuple(_make_row(row, units) for row in rows_shown if row.least or row.greatest)
-    return TextTable("ENVELOPE  of all load cases", columns, body, notes=(*notes, *map(escape, unclear)))
+    return OutputTable("ENVELOPE  of all load cases", COLUMNS, body, (*notes, *unclear))
 
 
 def _is_zero(extreme: Bound | None) -> bool:
@@ -120,17 +117,16 @@ def _format_governing(extreme: Bound) -> str:
     )
 
 
-def _make_row(row: NumberEnvelope, units: Units) -> tuple[str, ...]:
+def _make_row(row: NumberEnvelope, units: Units) -> tuple[Cell, ...]:
     unit, size = units.find(row.unit)
-    ends: list[str] = []
+    ends: list[Cell] = []
     for extreme in (row.least, row.greatest):
         if extreme is None:
-            ends += ["", "", ""]
+            ends += [None, None, ""]
             continue
-        instant = "" if extreme.time is None or extreme.is_rounding else f"{extreme.time:.6g}"
-        text = "0" if extreme.is_rounding else f"{extreme.value * size:.{DIGITS}g}"
-        ends += [text, instant, escape(_format_governing(extreme))]
-    return (escape(row.path), unit, *ends)
+        instant = None if extreme.is_rounding else extreme.time
+        ends += [0 if extreme.is_rounding else float(extreme.value * size), instant, _format_governing(extreme)]
+    return (row.path, unit, *ends)
 
 
 def _make_notes(runs: Mapping[str, RunSnapshot]) -> list[str]:

@@ -9,18 +9,18 @@ from typing import Any
 
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import collect_results
-from heuncli.app.cli.units import TABLES
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.document import OutputDocument
 from heuncli.output.snapshots.collectives import count_collectives, make_option_problem
 from heuncli.output.snapshots.measure import require_known_paths
-from heuncli.output.tables.collective_tables import CLOSED, iter_csv_lines, make_tables, to_json_block
-from heuncli.output.tables.export import FORMAT, dump_json
-from heuncli.output.tables.text_table import TextTable
+from heuncli.output.tables.collective_tables import CLOSED, make_records, make_tables, to_json_block
+from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.load_cycles.collective import BINS, Counting
+from heuncli.study.load_cycles.collective import BINS, Collective, Counting
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import MeasureRequest, NotOneNumber
 from heuncli.study.queries.study import Study
@@ -119,8 +119,8 @@ def require_paths(task: CollectiveTask, spec: Spec) -> None:
     require_known_paths([MeasureRequest("abs", path) for path in task.paths], spec, OPTION)
 
 
-def render_collectives(task: CollectiveTask, study: Study, form: str, units: Units) -> str | list[TextTable]:
-    """Count the collectives of a study; returns them as text, or as tables. Raises UsageError."""
+def make_collectives_document(task: CollectiveTask, study: Study, units: Units) -> OutputDocument:
+    """Count the collectives of a study, and make their document. Raises UsageError."""
     try:
         collect_results([partial(find_values, study.results, path) for path in task.paths])
         counted = count_collectives(study, task.paths, task.counting)
@@ -128,15 +128,17 @@ def render_collectives(task: CollectiveTask, study: Study, form: str, units: Uni
         raise UsageError(
             *(problem._replace(message=f"{OPTION}: {problem.message}") for problem in error.problems)
         ) from None
-    results = study.results
-    if form == "json":
-        head = {"heun": FORMAT, "title": results.title, "spec": results.spec, "version": results.version}
-        if "axes" in results.model:
-            head["axes"] = results.model["axes"]
-        return dump_json(
-            head | {"status": results.status, "collectives": {one.history.path: to_json_block(one) for one in counted}}
-        )
-    if form not in TABLES:
-        return "".join(iter_csv_lines(counted))
     has_impulses = bool(study.history.impulses)
-    return [table for one in counted for table in make_tables(one, units, has_impacts=has_impulses)]
+    tables = [table for one in counted for table in make_tables(one, units, has_impacts=has_impulses)]
+    return OutputDocument(
+        study.results.title, parts=tables, make_block=partial(make_block, study.results, counted),
+        make_records=partial(make_records, counted),
+    )  # fmt: skip
+
+
+def make_block(results: Results, counted: Sequence[Collective]) -> dict[str, Any]:
+    """Make the JSON of collectives."""
+    head = {"heun": FORMAT, "title": results.title, "spec": results.spec, "version": results.version}
+    axes = {"axes": results.model["axes"]} if "axes" in results.model else {}
+    collectives = {one.history.path: to_json_block(one) for one in counted}
+    return head | axes | {"status": results.status, "collectives": collectives}

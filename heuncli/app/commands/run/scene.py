@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from heuncli.app.api import solve_spec
+from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import format_timings, parse_instants, print_warnings
 from heuncli.app.cli.units import TABLES, note_si_format
@@ -15,10 +16,9 @@ from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
+from heuncli.output.documents.document import OutputDocument, OutputTable
 from heuncli.output.snapshots.tables import TablesQuery, make_tables
-from heuncli.output.tables.heading import format_heading, format_heading_markdown
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_markdown, format_plain
+from heuncli.output.tables.heading import make_heading
 from heuncli.results.results import Results
 from heuncli.results.stored_arrays import StoredArray, iter_chunks
 from heuncli.scene.file_format.models import Spec
@@ -60,11 +60,11 @@ def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
         if task.measures:
             return study, [_render_measures(task, study)]
         if task.collective is not None:
-            from heuncli.app.commands.run.collective import render_collectives
+            from heuncli.app.commands.run.collective import make_collectives_document
 
-            return study, [
-                _render_collectives(task, study, render_collectives(task.collective, study, task.form, task.units))
-            ]
+            document = make_collectives_document(task.collective, study, task.units)
+            facts = make_heading(study.results, request.verbose)
+            return study, [*render_document(document._replace(facts=facts), task.form, request.output)]
         is_explicit = (request.only is not None or spec.report is not None) and "foundation" in selection.reports
         labels = replace(make_labels(spec), units=task.units)
         if task.form not in TABLES:
@@ -118,33 +118,13 @@ def _report(
 ) -> str:
     times = parse_instants(request.at, study) if request.at is not None else None
     tables = make_tables(study, labels, TablesQuery(selection, times, request.all, details))
-    return _add_heading(request, form, study, tables)
+    return _render_document(request, form, study, tables)
 
 
-def _render_collectives(task: RunTask, study: Study, content: str | list[TextTable]) -> str:
-    """Render collectives as text."""
-    return content if isinstance(content, str) else _add_heading(task.request, task.form, study, content)
-
-
-def _add_heading(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
+def _render_document(request: RunRequest, form: str, study: Study, tables: list[OutputTable]) -> str:
     """Render tables below the heading of the run."""
-    if form == "markdown":
-        return format_heading_markdown(study.results, request.verbose) + "\n".join(map(format_markdown, tables))
-    return format_heading(study.results, request.verbose) + "".join(
-        "\n" + text for text in _choose_renderer(request)(tables)
-    )
-
-
-def _choose_renderer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
-    """Return the function that renders tables: fitted to the terminal if output goes there, else to a page."""
-    if request.output is None:
-        from heuncli.app.cli import terminal  # not needed for a file
-
-        if terminal.is_terminal():
-            return terminal.render_tables
-    return lambda tables: [
-        format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)
-    ]
+    document = OutputDocument(study.results.title, make_heading(study.results, request.verbose), tables)
+    return "".join(render_document(document, form, request.output))
 
 
 def _check_strict(results: Results, warnings: list[str]) -> int:

@@ -12,16 +12,16 @@ from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread, combin
 from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue, Reason
 from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
-from heuncli.app.cli.output import emit
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import collect_results, parse_overrides, require_tolerance
 from heuncli.app.cli.target import choose_format
 from heuncli.app.cli.units import note_si_format, parse_units
 from heuncli.app.cli.variant_warnings import print_variant_warnings
-from heuncli.app.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
+from heuncli.app.commands.sensitivity.page import MeasureFindings, SensitivityPage, make_document
 from heuncli.app.commands.sensitivity.request import SensitivityRequest
 from heuncli.base.errors import Problem
 from heuncli.output.snapshots import measure
@@ -57,7 +57,7 @@ def main(request: SensitivityRequest) -> int:
             evaluator.solve({})  # raises the error with its location
         all_findings = [analyse_measure(cached, k, head, numbers, spreads) for k, head in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(all_findings), cached.runs, units_shown)
-    emit(FORMS[form](page), request.output)
+    emit_document(make_document(page), form, request.output)
     note_si_format(request.units, form, request.quiet)
     print_variant_warnings(spec, cached, request.quiet)
     return int(request.strict and any(one.kind == "refused" for each in all_findings for one in each.slopes.values()))

@@ -1,45 +1,42 @@
-"""Render sensitivities and tolerance effects as tables, JSON and CSV."""
+"""Make the document of sensitivities and tolerance effects."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
 from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.export import dump_json
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    TextColumn,
-    TextTable,
+from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.document import (
+    Cell,
+    NumberCell,
+    OutputColumn,
+    OutputDocument,
+    OutputTable,
     append_unit,
     format_head,
-    format_labelled_lines,
-    format_plain,
 )
+from heuncli.output.tables.plurals import format_count
 from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.error_digits import format_with_error
 from heuncli.study.quantities.table_units import Units
-from heuncli.version import VERSION
 
 COLUMNS = (
-    TextColumn("parameter", "left"), TextColumn("value"), TextColumn("", "left"), TextColumn("derivative"),
-    TextColumn("error"), TextColumn("", "left"), TextColumn("% per %"), TextColumn("", "left"),
+    OutputColumn("parameter", "text"), OutputColumn("value"), OutputColumn("", "text"), OutputColumn("derivative"),
+    OutputColumn("error"), OutputColumn("", "text"), OutputColumn("% per %"), OutputColumn("", "text"),
 )  # fmt: skip
 SPREAD_COLUMNS = (
-    TextColumn("parameter", "left"), TextColumn("spread ±"), TextColumn("", "left"), TextColumn("contributes ±"),
-    TextColumn("error"), TextColumn("at its lower end"), TextColumn("at its upper end"), TextColumn("", "left"),
+    OutputColumn("parameter", "path"), OutputColumn("spread ±"), OutputColumn("", "text"),
+    OutputColumn("contributes ±"), OutputColumn("error"), OutputColumn("at its lower end"),
+    OutputColumn("at its upper end"), OutputColumn("", "text"),
 )  # fmt: skip
-CSV_COLUMNS = (
-    "measure", "measure_unit", "kind", "name", "value", "unit", "derivative", "error", "relative", "relative_error",
-    "spread", "contribution", "contribution_error", "code", "reason",
-)  # fmt: skip
+CSV_COLUMNS = make_columns(
+    "measure measure_unit kind name value unit derivative error relative relative_error spread contribution "
+    "contribution_error code reason"
+)
 LINEARITY_TOLERANCE = 0.05  # of the worst case; corners that differ by more get a note
 ALONE = "numbers without a unit are in SI"
 
@@ -94,26 +91,24 @@ def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[SpecN
     return sorted(page.numbers, key=weight)
 
 
-def render_table(page: SensitivityPage) -> str:
-    """Render a table per measure, and one of its tolerances."""
-    head = [("heun", f"{VERSION}  {page.title}"), ("sensitivity", f"{format_count(page.runs, 'variant')}; {ALONE}")]
-    tables: list[TextTable] = []
+def make_document(page: SensitivityPage) -> OutputDocument:
+    """Make the document: a table per measure, and one of its tolerances."""
+    tables: list[OutputTable] = []
     for (text, unit), findings in zip(page.heads, page.findings, strict=True):
         tables.append(_make_derivative_table(page, text, unit, findings))
         if findings.spread is not None:
             tables.append(_make_spread_table(page, text, unit, findings, findings.spread))
-    return "\n".join(
-        [
-            format_labelled_lines(head),
-            *(
-                "".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(one, DEFAULT_WIDTH))
-                for one in tables
-            ),
-        ]
+    facts = [("sensitivity", f"{format_count(page.runs, 'variant')}; {ALONE}")]
+    return OutputDocument(
+        page.title,
+        facts,
+        tables,
+        lambda: to_block(page),
+        lambda: OutputTable("", CSV_COLUMNS, list(iter_records(page))),
     )
 
 
-def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings: MeasureFindings) -> TextTable:
+def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings: MeasureFindings) -> OutputTable:
     display_unit, size = page.units.find(unit)
     base = findings.base
     value = (
@@ -121,30 +116,34 @@ def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings
         if base.value is not None
         else ""
     )
-    rows = tuple(
+    rows = [
         row for number in sort_numbers(page, findings) for row in _make_rows(page, number, findings, display_unit, size)
-    )
-    return TextTable(f"DERIVATIVES  of {text}{value}", COLUMNS, rows)
+    ]
+    return OutputTable(f"DERIVATIVES  of {text}{value}", COLUMNS, rows)
 
 
 def _make_rows(
     page: SensitivityPage, number: SpecNumber, findings: MeasureFindings, unit: str, size: float
-) -> Iterator[tuple[str, ...]]:
+) -> Iterator[tuple[Cell, ...]]:
     """Yield the row of a number; two rows, one for each side, if the measure has a kink there."""
     slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
-    lead = (number.name, format_with_error(number.value, 0.0), number.unit)
+    lead = (number.name, NumberCell(number.value), number.unit)
     per = f"{unit if unit not in ('', '1') else '1'}/{_format_denominator(number.unit)}"
     if slope.left is not None and slope.right is not None:
         bends = f"on the right: the slope changes within {format_error(slope.step)} of the value"
         for (value, error), side in ((slope.left, "on the left"), (slope.right, bends)):
-            yield (*lead, format_with_error(value * size, error * size), format_error(error * size), per, "", side)
+            yield (*lead, *_make_pair(value * size, error * size), per, "", side)
         return
     if slope.value is None:
         yield (*lead, "", "", "", "", f"{slope.why[1]} [{slope.why[0]}]")
         return
-    percent = format_with_error(share[0], max(share[1], 1e-6 * abs(share[0]))) if share else ""
-    value, error = slope.value * size, slope.error * size
-    yield (*lead, format_with_error(value, error), format_error(error), per, percent, _make_remark(slope))
+    percent = NumberCell(share[0], max(share[1], 1e-6 * abs(share[0]))) if share else None
+    yield (*lead, *_make_pair(slope.value * size, slope.error * size), per, percent, _make_remark(slope))
+
+
+def _make_pair(value: float, error: float) -> tuple[NumberCell, NumberCell]:
+    """Make the cells of a number and of its error."""
+    return NumberCell(value, error), NumberCell(error, write=format_error)
 
 
 def _make_remark(slope: NoisyDerivative) -> str:
@@ -161,25 +160,22 @@ def _format_denominator(unit: str) -> str:
 
 def _make_spread_table(
     page: SensitivityPage, text: str, unit: str, findings: MeasureFindings, total: SpreadSum
-) -> TextTable:
+) -> OutputTable:
     display_unit, size = page.units.find(unit)
     largest = sorted(total.contributions, key=lambda one: -(one.size or 0.0))
-    rows = tuple(_make_contribution_row(one, size) for one in largest)
-    return TextTable(
-        format_head(f"SPREAD  of {text}", display_unit),
-        SPREAD_COLUMNS,
-        rows,
-        tuple(_describe_sums(total, findings.base, display_unit, size)),
+    rows = [_make_contribution_row(one, size) for one in largest]
+    heading = format_head(f"SPREAD  of {text}", display_unit)
+    return OutputTable(heading, SPREAD_COLUMNS, rows, list(_describe_sums(total, findings.base, display_unit, size)))
+
+
+def _make_contribution_row(one: Contribution, size: float) -> tuple[Cell, ...]:
+    ends = tuple(
+        None if end is None else NumberCell(end * size, write="{:+.6g}".format) for end in (one.below, one.above)
     )
-
-
-def _make_contribution_row(one: Contribution, size: float) -> tuple[str, ...]:
-    ends = tuple("" if end is None else f"{end * size:+.6g}" for end in (one.below, one.above))
-    lead = (one.name, f"{one.spread:.6g}", one.unit)
+    lead = (one.name, one.spread, one.unit)
     if one.size is None:
         return (*lead, "", "", *ends, "not known")
-    return (*lead, format_with_error(one.size * size, one.error * size), format_error(one.error * size), *ends,
-            "searched" if one.bent else "")  # fmt: skip
+    return (*lead, *_make_pair(one.size * size, one.error * size), *ends, "searched" if one.bent else "")
 
 
 def _describe_nonlinear(total: SpreadSum, size: float) -> Iterator[str]:
@@ -228,8 +224,8 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
     yield text
 
 
-def to_json(page: SensitivityPage) -> str:
-    """Return all as JSON; measures in SI, derivatives per unit as written and per SI unit."""
+def to_block(page: SensitivityPage) -> dict[str, Any]:
+    """Return all as the JSON has it; measures in SI, derivatives per unit as written and per SI unit."""
     measures = [
         {
             "measure": text, "unit": unit, "value": findings.base.value, "error": findings.base.error,
@@ -238,7 +234,7 @@ def to_json(page: SensitivityPage) -> str:
         }
         for (text, unit), findings in zip(page.heads, page.findings, strict=True)
     ]  # fmt: skip
-    return dump_json({"heun": 1, "title": page.title, "runs": page.runs, "measures": measures})
+    return {"heun": 1, "title": page.title, "runs": page.runs, "measures": measures}
 
 
 def _make_block(number: SpecNumber, findings: MeasureFindings) -> dict[str, Any]:
@@ -277,29 +273,19 @@ def _make_spread_block(total: SpreadSum) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def to_csv(page: SensitivityPage) -> str:
-    """Return one CSV line per measure and number, and one per sum of tolerances."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(CSV_COLUMNS)
+def iter_records(page: SensitivityPage) -> Iterator[tuple[Cell, ...]]:
+    """Yield the rows of the CSV: one per measure and number, and one per sum of tolerances."""
     for (words, unit), findings in zip(page.heads, page.findings, strict=True):
         shares = {one.name: one for one in findings.spread.contributions} if findings.spread else {}
         for number in sort_numbers(page, findings):
-            slope, share, one = (
-                findings.slopes[number.name],
-                compute_elasticity(number, findings),
-                shares.get(number.name),
-            )
-            spread = (one.spread, one.size, one.error) if one is not None else ("", "", "")
-            error = slope.error if slope.value is not None else ""
+            slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
+            one = shares.get(number.name)
+            spread = (one.spread, one.size, one.error) if one is not None else (None,) * 3
+            error = slope.error if slope.value is not None else None
             lead = (words, unit, slope.kind or "derivative", number.name, number.value, number.unit, slope.value, error)
-            writer.writerow([*lead, *(share or ("", "")), *spread, *slope.why])
+            yield (*lead, *(share or (None, None)), *spread, *slope.why)
         sums = (
             (("worst", findings.spread.worst), ("root_sum_square", findings.spread.square)) if findings.spread else ()
         )
         for word, total in sums:
-            writer.writerow([words, unit, word, *[""] * 8, *(total or ("", "")), "", ""])
-    return text.getvalue()
-
-
-FORMS: dict[str, Callable[[SensitivityPage], str]] = {"table": render_table, "json": to_json, "csv": to_csv}
+            yield (words, unit, word, *[None] * 8, *(total or (None, None)), None, None)

@@ -9,22 +9,23 @@ from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.app.cli import timeout
+from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
-from heuncli.app.cli.output import emit, save
+from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
 from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.cli.units import note_si_format, parse_units
-from heuncli.app.commands.tune import page
-from heuncli.app.commands.tune.history import to_csv
+from heuncli.app.commands.tune.history import make_history
+from heuncli.app.commands.tune.page import make_document
 from heuncli.app.commands.tune.request import FORMATS, TuneRequest
-from heuncli.app.commands.tune.result_block import TunedScene, format_command, to_block
+from heuncli.app.commands.tune.result_block import TunedScene, format_command
 from heuncli.app.commands.tune.trial_solver import TrialSolver
 from heuncli.app.commands.tune.tuning_options import TuningOptions, make_task, parse_options
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.files import STDOUT
-from heuncli.output.tables.export import dump_json
+from heuncli.output.documents.as_csv import iter_csv
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
@@ -49,13 +50,8 @@ def main(request: TuneRequest) -> int:
     spec = evaluator.spec
     scene = TunedScene(spec.title, spec.path, spec.sha256, format_command(options, evaluator.recipe, results))
     if request.history is not None:
-        save(to_csv(results).encode(), request.history)
-    text = (
-        dump_json(to_block(results, scene))
-        if form == "json"
-        else page.render_page(results, scene, units_shown, request.output)
-    )
-    emit(text, request.output, late=True)
+        save("".join(iter_csv(make_history(results))).encode(), request.history)
+    emit_document(make_document(results, scene, units_shown), form, request.output, late=True)
     note_si_format(request.units, form, request.quiet)
     return finish(request, results, spec)
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator
 
 from heuncli.analyses.tune.results import TuneResults
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_head
 
 
 def iter_best(results: TuneResults) -> Iterator[float | None]:
@@ -21,28 +20,20 @@ def iter_best(results: TuneResults) -> Iterator[float | None]:
         yield best
 
 
-def to_csv(results: TuneResults) -> str:
-    """Format one line per variant: variables in their units, measures in SI with the goal's error and instant."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+def make_history(results: TuneResults) -> OutputTable:
+    """Make the table of the variants: variables in their units, measures in SI with the goal's error and instant."""
     task = results.task
-    names = [f"{one.name} [{one.unit}]" if one.unit else one.name for one in task.variables]
-    measures = [f"{one.measure} [{one.unit}]" if one.unit else one.measure for one in task.constraints]
-    goal = f"{task.goal.measure} [{task.goal.unit}]" if task.goal.unit else task.goal.measure
-    writer.writerow(["number", "phase", *names, goal, "error", "at [s]", *measures, "best so far", "code"])
+    variables = [format_head(one.name, one.unit) for one in task.variables]
+    measures = [format_head(one.measure, one.unit) for one in task.constraints]
+    goal = format_head(task.goal.measure, task.goal.unit)
+    heads = ["number", "phase", *variables, goal, "error", "at [s]", *measures, "best so far", "code"]
+    rows: list[tuple[Cell, ...]] = []
     for trial, best in zip(results.history, iter_best(results), strict=True):
-        values = [repr(one.to_number(x)) for one, x in zip(task.variables, trial.place, strict=True)]
+        values = [one.to_number(x) for one, x in zip(task.variables, trial.place, strict=True)]
         found = trial.outcome.measures
-        cells = (
-            [_format_number(found[0].value), _format_number(found[0].error), _format_number(found[0].time)]
-            if found
-            else [""] * 3
+        cells = (found[0].value, found[0].error, found[0].time) if found else (None,) * 3
+        others = [one.value for one in found[1:]] if found else [None] * len(measures)
+        rows.append(
+            (trial.number, trial.phase, *values, *cells, *others, best, "" if trial.is_solved else trial.failure.code)
         )
-        others = [_format_number(one.value) for one in found[1:]] if found else [""] * len(measures)
-        code = "" if trial.is_solved else trial.failure.code
-        writer.writerow([trial.number, trial.phase, *values, *cells, *others, _format_number(best), code])
-    return text.getvalue()
-
-
-def _format_number(value: float | None) -> str:
-    return "" if value is None else repr(value)
+    return OutputTable("", [OutputColumn(head) for head in heads], rows)

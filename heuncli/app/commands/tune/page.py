@@ -1,27 +1,26 @@
-"""Render a tuning as tables: how it ended, the variables, the measures, and the command line to paste."""
+"""Make the document of a tuning: how it ended, the variables, the measures, and the command line to paste."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from heuncli.analyses.tune.results import ToleranceMove, ToleranceRange, TuneResults
 from heuncli.analyses.variants.measures import MeasureValue
-from heuncli.app.cli import terminal
-from heuncli.app.commands.tune.result_block import TunedScene
-from heuncli.base.text_safety import escape
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import (
-    DEFAULT_WIDTH,
-    Align,
-    TextColumn,
-    TextTable,
+from heuncli.app.commands.tune.result_block import TunedScene, to_block
+from heuncli.output.documents.document import (
+    Cell,
+    NumberCell,
+    OutputColumn,
+    OutputDocument,
+    OutputTable,
+    Part,
+    Sentence,
+    Verbatim,
     format_head,
-    format_labelled_lines,
-    format_plain,
+    make_text_columns,
 )
 from heuncli.study.quantities.digits import choose_style, format_error
 from heuncli.study.quantities.table_units import Units
-from heuncli.version import VERSION
 
 VARIABLES = "VARIABLES  values and bounds, in the unit of the bounds"
 MOVES = "MOVES  how far each variable alone may change, down and up, before the goal gets worse"
@@ -30,29 +29,22 @@ PASTED = "Command that reproduces these numbers exactly:"
 AT_BOUND = {"low": "lower bound", "high": "upper bound", "": ""}
 UNTIL = {"worse": "", "bound": " (bound)", "jump": " (jumps)", "less": "", "more": ""}
 BOUND_OF = {"less": "<", "more": ">"}
-LEFT: Align = "left"
 
 
-def render_page(results: TuneResults, scene: TunedScene, units: Units, output: str | None) -> str:
-    """Render the page as text, for the terminal if it goes to one."""
+def make_document(results: TuneResults, scene: TunedScene, units: Units) -> OutputDocument:
+    """Make the document: how it ended, the variables, the measures, and the command line to paste."""
     tables = [make_variables_table(results), make_measures_table(results, units)]
     if results.tolerance_ranges:
         tables.insert(1, make_moves_table(results, units))
-    if output is None and terminal.is_terminal():
-        parts = terminal.render_tables(tables)
-    else:
-        parts = [format_plain(part, DEFAULT_WIDTH) for table in tables for part in split_to_width(table, DEFAULT_WIDTH)]
-    body = "\n".join(parts)
-    heading = format_labelled_lines(list(format_heading(results, scene, units)))
-    return f"{heading}\n{body}\n{PASTED}\n{escape(scene.line)}\n"
+    parts: list[Part] = [*tables, Sentence(PASTED), Verbatim(scene.line)]
+    return OutputDocument(scene.title, list(list_facts(results, units)), parts, lambda: to_block(results, scene))
 
 
-def format_heading(results: TuneResults, scene: TunedScene, units: Units) -> Iterator[tuple[str, str]]:
+def list_facts(results: TuneResults, units: Units) -> Iterator[tuple[str, str]]:
     """Yield label and text of the lines above the tables."""
     task = results.task
     names = ", ".join(one.name for one in task.variables)
     kind = "maximise" if task.goal.is_maximised else "minimise"
-    yield "heun", f"{VERSION}  {scene.title}"
     yield "tune", f"{kind} {task.goal.measure}, by {names}"
     yield "", describe_ending(results, units)
     if not results.is_feasible:
@@ -102,35 +94,31 @@ def describe_nearest_unmet(results: TuneResults, units: Units) -> str:
     return f"closest limit: {one.measure} {one.relation} {limit:.6g} {unit}, exceeded by {excess:.3g} {unit}".rstrip()
 
 
-def make_variables_table(results: TuneResults) -> TextTable:
+def make_variables_table(results: TuneResults) -> OutputTable:
     """Make the table of the variables, one row each."""
     assert results.best is not None
     columns = (
-        TextColumn("variable", LEFT), TextColumn("spec"), TextColumn("best"), TextColumn("from"), TextColumn("to"),
-        TextColumn("at", LEFT),
+        OutputColumn("variable", "path"), OutputColumn("spec"), OutputColumn("best"), OutputColumn("from"),
+        OutputColumn("to"), OutputColumn("at", "verdict"),
     )  # fmt: skip
-    rows = []
-    for index, one in enumerate(results.task.variables):
-        label = f"{one.name} [{one.unit}]" if one.unit else one.name
-        base_text = "" if one.spec_value is None else f"{one.spec_value:.6g}"
-        value = f"{one.to_number(results.best.place[index]):.6g}"
-        rows.append((label, base_text, value, f"{one.low:.6g}", f"{one.high:.6g}", AT_BOUND[results.find_bound(index)]))
-    return TextTable(VARIABLES, columns, tuple(rows))
+    rows = [
+        (format_head(one.name, one.unit), one.spec_value, one.to_number(results.best.place[index]), one.low, one.high,
+         AT_BOUND[results.find_bound(index)])
+        for index, one in enumerate(results.task.variables)
+    ]  # fmt: skip
+    return OutputTable(VARIABLES, columns, rows)
 
 
-def make_moves_table(results: TuneResults, units: Units) -> TextTable:
+def make_moves_table(results: TuneResults, units: Units) -> OutputTable:
     """Make the table of how far each variable may move alone before the goal is worse."""
     unit, size = units.find(results.task.goal.unit)
     floor = f"{format_error(size * results.floor)} {unit}".rstrip()
-    columns = (
-        TextColumn("variable", LEFT), TextColumn(f"by {floor}: down", LEFT), TextColumn("up", LEFT),
-        TextColumn("by 1 %: down", LEFT), TextColumn("up", LEFT),
-    )  # fmt: skip
-    rows = []
-    for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=True):
-        label = f"{one.name} [{one.unit}]" if one.unit else one.name
-        rows.append((label, *_format_moves(range_)))
-    return TextTable(MOVES, columns, tuple(rows))
+    heads = ("variable", f"by {floor}: down", "up", "by 1 %: down", "up")
+    rows = [
+        (format_head(one.name, one.unit), *_format_moves(range_))
+        for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=True)
+    ]
+    return OutputTable(MOVES, make_text_columns(heads), rows)
 
 
 def _format_moves(freedom: ToleranceRange) -> Iterator[str]:
@@ -145,51 +133,46 @@ def _format_move(one: ToleranceMove | None) -> str:
     return f"{BOUND_OF.get(one.limit, '')}{distance}{UNTIL.get(one.limit, f' ({one.limit})')}"
 
 
-def make_measures_table(results: TuneResults, units: Units) -> TextTable:
+def make_measures_table(results: TuneResults, units: Units) -> OutputTable:
     """Make the table of the goal and the constraints, one row each."""
     columns = (
-        TextColumn("measure", LEFT), TextColumn("spec"), TextColumn("best"), TextColumn("error"),
-        TextColumn("at t [s]"), TextColumn("limit", LEFT), TextColumn("margin"), TextColumn("", LEFT),
+        OutputColumn("measure", "path"), OutputColumn("spec"), OutputColumn("best"), OutputColumn("error"),
+        OutputColumn("at t", "instant", "s"), OutputColumn("limit", "text"), OutputColumn("margin"),
+        OutputColumn("", "verdict"),
     )  # fmt: skip
     assert results.best is not None
     task = results.task
-    lines = [_make_measure_row(results, 0, task.goal.measure, task.goal.unit, units, ("", "", ""))]
+    rows = [_make_measure_row(results, 0, task.goal.measure, task.goal.unit, units, ("", "", ""))]
     for index, one in enumerate(task.constraints):
         size = units.find(one.unit)[1]
-        excess = one.compute_excess(results.best.constraint_values[index])
-        word = (
-            "not met"
-            if not one.is_met(results.best.constraint_values[index])
-            else "active"
-            if results.active_constraints[index]
-            else ""
-        )
+        value = results.best.constraint_values[index]
+        excess = one.compute_excess(value)
+        word = "not met" if not one.is_met(value) else "active" if results.active_constraints[index] else ""
         error = results.best.outcome.measures[index + 1].error or 0.0
-        margin = choose_style(size * max(abs(excess), abs(one.value)), size * error).write(-size * excess + 0.0)
+        style = choose_style(size * max(abs(excess), abs(one.value)), size * error)
+        margin = NumberCell(-size * excess + 0.0, size * error, style.write)
         limit = f"{one.relation} {size * one.value:.6g}"
-        lines.append(_make_measure_row(results, index + 1, one.measure, one.unit, units, (limit, margin, word)))
-    note = (
-        () if results.spec_outcome.measures else (f"spec: {results.spec_outcome.reason} [{results.spec_outcome.code}]",)
-    )
-    return TextTable(MEASURES, columns, tuple(lines), note)
+        rows.append(_make_measure_row(results, index + 1, one.measure, one.unit, units, (limit, margin, word)))
+    spec = results.spec_outcome
+    notes = [] if spec.measures else [f"spec: {spec.reason} [{spec.code}]"]
+    return OutputTable(MEASURES, columns, rows, notes)
 
 
 def _make_measure_row(
-    results: TuneResults, index: int, text: str, own_unit: str, units: Units, limit_cells: tuple[str, str, str]
-) -> tuple[str, ...]:
+    results: TuneResults, index: int, text: str, own_unit: str, units: Units, limit_cells: Sequence[Cell]
+) -> tuple[Cell, ...]:
     """Make the cells of a measure, with as many digits as its error allows."""
     assert results.best is not None
     unit, size = units.find(own_unit)
-    label = format_head(text, unit)
     base = results.spec_outcome.get_measure(index)
     best = results.best.outcome.measures[index]
-    error = format_error(size * best.error) if best.error is not None else ""
-    instant = "" if best.time is None else f"{best.time:.6g}"
-    return (label, _format_value(base, size), _format_value(best, size), error, instant, *limit_cells)
+    error = None if best.error is None else NumberCell(size * best.error, write=format_error)
+    return format_head(text, unit), _make_value(base, size), _make_value(best, size), error, best.time, *limit_cells
 
 
-def _format_value(one: MeasureValue, size: float) -> str:
-    """Format a number with its certain digits, or the word that replaces an unknown one."""
+def _make_value(one: MeasureValue, size: float) -> Cell:
+    """Make the cell of a number with its certain digits, or of the word that replaces an unknown one."""
     if one.value is None:
         return one.word
-    return choose_style(size * abs(one.value), size * (one.error or 0.0)).write(size * one.value)
+    error = size * (one.error or 0.0)
+    return NumberCell(size * one.value, error, choose_style(size * abs(one.value), error).write)

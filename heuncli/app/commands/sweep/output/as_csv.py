@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.sweep_store.columns import Cell, make_columns
+from heuncli.analyses.sweep_store.columns import make_columns
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.base.text_safety import escape
+from heuncli.output.documents.as_csv import format_line
 
 
 def iter_csv(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
     """Yield the lines one after the other."""
     columns = make_columns(head)
-    yield _format_line(columns.headings)
+    yield format_line(columns.headings)
     for row in rows:
-        yield _format_line(columns.make_cells(row))
-
-
-def _format_line(cells: Iterable[Cell]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(escape(cell) if isinstance(cell, str) else cell for cell in cells)
-    return text.getvalue()
+        yield format_line(columns.make_cells(row))

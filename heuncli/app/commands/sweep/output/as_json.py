@@ -21,7 +21,7 @@ from heuncli.analyses.variants.sampling import CONFIDENCE
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics, iter_statistics
 from heuncli.base.text_safety import escape
-from heuncli.output.tables.export import FORMAT
+from heuncli.output.documents.as_json import FORMAT
 
 
 def iter_json(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:

@@ -10,14 +10,14 @@ from heuncli.app.commands.sweep.output.statistics import iter_statistics
 from heuncli.app.commands.sweep.output.statistics_tables import make_statistics_tables
 from heuncli.app.commands.sweep.output.summary import make_summary_table
 from heuncli.app.commands.sweep.output.top_k import select_rows
+from heuncli.output.documents.document import OutputTable
 from heuncli.output.tables.sparkline import choose_characters
-from heuncli.output.tables.text_table import TextTable
 from heuncli.study.quantities.table_units import Units
 
 
 def make_tables(
     head: SweepHead, rows: Iterable[SweptRow], units: Units, all_of_them: bool, encoding: str | None = None
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the tables.
 
     all_of_them: show every row

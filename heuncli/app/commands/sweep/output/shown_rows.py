@@ -11,8 +11,8 @@ from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.app.commands.sweep.output.extremes import MeasureExtremes
 from heuncli.app.commands.sweep.output.top_k import ShownRows
+from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, choose_style, largest_magnitude, trim_zeros
 from heuncli.study.quantities.table_units import Units
@@ -25,11 +25,11 @@ NOTES = {
 }
 
 
-def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> TextTable:
+def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> OutputTable:
     """Make the table of the selected rows; marks stand after the least and the greatest value."""
     parameters = make_parameter_columns(head.plan)
     has_numbers = len(parameters) > 1
-    columns = [TextColumn("variant", "left")] * has_numbers + [make_parameter_column(one) for one in parameters]
+    columns = [OutputColumn("variant", "text")] * has_numbers + [make_parameter_column(one) for one in parameters]
     cells = [[str(row.number)] * has_numbers + make_parameter_cells(row, parameters) for row in selection.rows.values()]
     for measure in range(len(head.measures)):
         measure_columns, texts = _make_measure_columns(head, selection, measure, units)
@@ -37,7 +37,7 @@ def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> TextT
         for line, measure_cells in zip(cells, texts, strict=True):
             line += measure_cells
     if any(row.answer.code for row in selection.rows.values()):
-        columns.append(TextColumn("not solved", "left"))
+        columns.append(OutputColumn("not solved", "text"))
         for line, row in zip(cells, selection.rows.values(), strict=True):
             line.append(f"{row.answer.code}: {row.answer.reason}" if row.answer.code else "")
     notes = tuple(note for word, note in NOTES.items() if any(word in line for line in cells))
@@ -47,7 +47,7 @@ def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> TextT
         else format_variant_count(selection.size)
     )
     heading = f"SWEEP  {head.title or head.path}: {size}"
-    return TextTable(heading, tuple(columns), tuple(insert_gaps(list(selection.rows), cells, selection.size)), notes)
+    return OutputTable(heading, tuple(columns), tuple(insert_gaps(list(selection.rows), cells, selection.size)), notes)
 
 
 def format_variant_count(number: int) -> str:
@@ -55,9 +55,9 @@ def format_variant_count(number: int) -> str:
     return f"{number:,} variants" if number >= 1000 else format_count(number, "variant")
 
 
-def make_parameter_column(one: ParameterColumn) -> TextColumn:
+def make_parameter_column(one: ParameterColumn) -> OutputColumn:
     """Make the column of a parameter."""
-    return TextColumn(one.heading, "left" if one.unit is None else "point")
+    return OutputColumn(one.heading, "text" if one.unit is None else "number")
 
 
 def make_parameter_cells(row: SweptRow, parameters: Sequence[ParameterColumn]) -> list[str]:
@@ -85,23 +85,23 @@ def insert_gaps(places: Sequence[int], cells: Sequence[Sequence[str]], size: int
 
 def _make_measure_columns(
     head: SweepHead, selection: ShownRows, k: int, units: Units
-) -> tuple[list[TextColumn], list[list[str]]]:
+) -> tuple[list[OutputColumn], list[list[str]]]:
     """Make the columns of a measure (value, instant and mark) and their cells; no instants if all are the same."""
     measure, vector_name = head.measures[k], f"measure {k}"
     unit, size = units.find(measure.unit)
-    columns = [TextColumn(f"{measure.text} [{unit}]" if unit else measure.text, vector=vector_name)]
+    columns = [OutputColumn(f"{measure.text} [{unit}]" if unit else measure.text, vector=vector_name)]
     scale = size * largest_magnitude(selection.columns.values(k))
     results = [row.answer.get_measure(k) for row in selection.rows.values()]
     cells = [[text] for text in trim_zeros([format_measure(one, size, scale) for one in results])]
     instants = {one.time for one in results if one.time is not None}
     if len(instants) > 1:
-        columns.append(TextColumn("at [s]", vector=vector_name))
+        columns.append(OutputColumn("at [s]", vector=vector_name))
         for line, one in zip(cells, results, strict=True):
             line.append("" if one.time is None else f"{one.time:.5g}")
     best = selection.extremes[k]
     if best is not None and not best.is_constant:
         marks = pad_words(["", *(choose_mark(best, place) for place in selection.rows)])
-        columns.append(TextColumn(marks[0], vector=vector_name))
+        columns.append(OutputColumn(marks[0], vector=vector_name))
         for line, text in zip(cells, marks[1:], strict=True):
             line.append(text)
     return columns, cells
@@ -110,7 +110,7 @@ def _make_measure_columns(
 def pad_words(cells: Sequence[str]) -> list[str]:
     """Pad a column of words, head first, to equal width, so that they look left-aligned although the column is not.
 
-    A left-aligned column would be repeated in every part of a table that is too wide (`page_width`).
+    A left-aligned column would be repeated in every part of a table that is too wide (`text_table`).
     """
     width = max(map(len, cells))
     return [cell.ljust(width) for cell in cells]

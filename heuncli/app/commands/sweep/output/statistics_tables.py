@@ -11,8 +11,8 @@ from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.analyses.variants.sampling import CONFIDENCE, BoundedEstimate
 from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, format_variant_count
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics
+from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
-from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.table_units import Units
 
@@ -32,7 +32,7 @@ FEW = "all {} variants of a sample are known for {} samples only"
 
 def make_statistics_tables(
     head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, all_of_them: bool
-) -> list[TextTable]:
+) -> list[OutputTable]:
     """Make the tables; none if no parameter is random."""
     if not statistics:
         return []
@@ -57,8 +57,8 @@ def format_label(head: SweepHead, one: MeasureStatistics, unit: str = "") -> str
 
 def _make_statistics_table(
     head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, omitted: int
-) -> TextTable:
-    columns = (TextColumn("", "left"), TextColumn("value"), TextColumn("from"), TextColumn("to"))
+) -> OutputTable:
+    columns = (OutputColumn("", "text"), OutputColumn("value"), OutputColumn("from"), OutputColumn("to"))
     rows: list[tuple[str, ...] | str] = []
     notes = _make_notes(head)
     for one in statistics:
@@ -81,7 +81,7 @@ def _make_statistics_table(
         notes.append("left out: could not be solved, or the measure is not known")
     if omitted:
         notes.append(f"{format_count(omitted, 'block')} more: --all")
-    return TextTable(HEADING, columns, tuple(rows), tuple(notes))
+    return OutputTable(HEADING, columns, tuple(rows), tuple(notes))
 
 
 def _make_notes(head: SweepHead) -> list[str]:
@@ -110,9 +110,9 @@ def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[str, ...]:
 
 def _make_index_table(
     head: SweepHead, statistics: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
-) -> TextTable:
+) -> OutputTable:
     names = ("", "first order", "from", "to", "total", "from", "to")
-    columns = tuple(TextColumn(name, "left" if not name else "point") for name in names)
+    columns = tuple(OutputColumn(name, "text" if not name else "number") for name in names)
     rows: list[tuple[str, ...] | str] = []
     notes: list[str] = ["first order: of the parameter alone; total: including its interactions"]
     for one in statistics:
@@ -127,4 +127,4 @@ def _make_index_table(
             )
         if one.samples < MIN_BOUNDED:
             notes.append(UNBOUNDED.format(format_label(head, one), one.samples))
-    return TextTable(INDICES, columns, tuple(rows), tuple(notes))
+    return OutputTable(INDICES, columns, tuple(rows), tuple(notes))

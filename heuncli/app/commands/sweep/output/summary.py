@@ -9,9 +9,9 @@ from heuncli.analyses.sweep_store.rows import SweepHead
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, pad_words
 from heuncli.app.commands.sweep.output.top_k import ShownRows
+from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
 from heuncli.output.tables.sparkline import draw_histogram, draw_sparkline
-from heuncli.output.tables.text_table import TextColumn, TextTable
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import largest_magnitude, trim_zeros
 from heuncli.study.quantities.table_units import Units
@@ -23,7 +23,7 @@ HEADING = "MEASURES  minimum and maximum, and their variants"
 
 def make_summary_table(
     head: SweepHead, selection: ShownRows, units: Units, spark_letters: str, all_of_them: bool
-) -> TextTable:
+) -> OutputTable:
     """Make the table with a row per measure; with several axes a row for each combination of those before the last."""
     rows: list[tuple[str, ...]] = [("measure", "min", "", "max", "", format_course_head(head.plan))]
     notes: list[str] = []
@@ -47,8 +47,8 @@ def make_summary_table(
             notes.append(f"{measure.text}: the same in all variants within their errors")
     heads, *cells = zip(*(pad_words(column) for column in zip(*rows, strict=True)), strict=True)
     vectors = ("", "least", "least", "greatest", "greatest", "")
-    columns = (TextColumn(head, vector=vector) for head, vector in zip(heads[1:], vectors[1:], strict=True))
-    return TextTable(HEADING, (TextColumn("measure", "left"), *columns), tuple(cells), tuple(notes))
+    columns = (OutputColumn(head, vector=vector) for head, vector in zip(heads[1:], vectors[1:], strict=True))
+    return OutputTable(HEADING, (OutputColumn("measure", "text"), *columns), tuple(cells), tuple(notes))
 
 
 def format_course_head(plan: Plan) -> str:

@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator
 
 from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
 from heuncli.app.cli import terminal
+from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.output import emit
 from heuncli.base import files
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.page_width import split_to_width
-from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextTable, format_plain
+from heuncli.output.documents.document import OutputDocument
 from heuncli.study.quantities.table_units import Units
 
 
@@ -73,11 +73,5 @@ def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput)
     from heuncli.app.commands.sweep.output.page import make_tables
 
     on_terminal = output.output is None and terminal.is_terminal()
-    tables_made = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
-    texts = terminal.render_tables(tables_made) if on_terminal else [_render_plain(table) for table in tables_made]
-    for number, text in enumerate(texts):
-        yield "\n" * (number > 0) + text
-
-
-def _render_plain(table: TextTable) -> str:
-    return "\n".join(format_plain(part, DEFAULT_WIDTH) for part in split_to_width(table, DEFAULT_WIDTH))
+    tables = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
+    yield from render_document(OutputDocument(parts=tables), "table", output.output)

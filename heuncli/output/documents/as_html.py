@@ -1,4 +1,4 @@
-"""Render a report as one HTML file without scripts and without external resources. Text from a spec is never markup.
+"""Write a document as one HTML file without scripts and without external resources. Text from a spec is never markup.
 
 Every text goes through `escape_text`, every element through `make_element`: nothing else writes a `<`, except the
 figures, which are SVG made by heun and escape their own texts.
@@ -11,44 +11,50 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.base.text_safety import escape
-from heuncli.output.client_report.parts import (
+from heuncli.output.documents.document import (
+    Cell,
     Chapter,
-    ClientReport,
     Drawing,
     Facts,
     Listing,
+    OutputDocument,
+    OutputTable,
     Part,
-    ReportCell,
-    ReportTable,
     Sentence,
     Verbatim,
+    format_cell,
+    has_content,
+    is_governing,
 )
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.shapes import escape_xml as escaped_for_xml
 from heuncli.output.drawing.shapes import to_svg
 
-STYLE = Path(__file__).with_name("report.css")
+STYLE = Path(__file__).with_name("document.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 LONG_CELL = 34  # characters; a longer cell may wrap
 VOID_TAGS = ("meta", "br")  # tags without an end tag
 
 
-def render_html(report: ClientReport) -> str:
-    """Render the report as an HTML document, to be written in UTF-8."""
+def render_html(document: OutputDocument) -> str:
+    """Render the document as HTML, to be written in UTF-8; its chapters follow the other parts."""
+    parts = list(document.parts)
+    chapters = [part for part in parts if isinstance(part, Chapter)]
+    lead = [Facts(document.facts), *(part for part in parts if not isinstance(part, Chapter))]
     head_elements = [
         make_element("meta", charset="utf-8"),
         make_element("meta", name="viewport", content="width=device-width, initial-scale=1"),
         make_element("meta", http_equiv="Content-Security-Policy", content=POLICY),
-        make_element("title", escape_text(report.title)),
+        make_element("title", escape_text(document.title or "")),
         make_element("style", "\n" + STYLE.read_text(encoding="utf-8")),
     ]
     body = make_element(
         "header",
-        make_element("h1", escape_text(report.title)) + _render_parts(report.lead) + _render_contents(report.chapters),
+        make_element("h1", escape_text(document.title or "")) + _render_parts(lead) + _render_contents(chapters),
     )
-    body += "\n" + "\n".join(_render_chapter(number, chapter) for number, chapter in enumerate(report.chapters, 1))
-    document = make_element("head", "\n".join(head_elements)) + "\n" + make_element("body", make_element("main", body))
-    return "<!DOCTYPE html>\n" + make_element("html", document, lang="en") + "\n"
+    body += "\n" + _render_parts(chapters)
+    page = make_element("head", "\n".join(head_elements)) + "\n" + make_element("body", make_element("main", body))
+    return "<!DOCTYPE html>\n" + make_element("html", page, lang="en") + "\n"
 
 
 def escape_text(text: str) -> str:
@@ -70,16 +76,28 @@ def _render_contents(chapters: Sequence[Chapter]) -> str:
         make_element("li", make_element("a", escape_text(chapter.title), href=f"#{chapter.name}"))
         for chapter in chapters
     )
+    if not chapters:
+        return ""
     return make_element("nav", make_element("ol", "".join(links)), aria_label="Contents")
 
 
-def _render_chapter(number: int, chapter: Chapter) -> str:
-    title = make_element("h2", f"{number}&ensp;{escape_text(chapter.title)}")
-    return make_element("section", title + "\n" + _render_parts(chapter.parts), id=chapter.name)
+def _render_chapter(number: str, chapter: Chapter) -> str:
+    """Render a chapter; a chapter within one has a smaller title."""
+    title = make_element(f"h{2 + number.count('.')}", f"{number}&ensp;{escape_text(chapter.title)}")
+    return make_element("section", title + "\n" + _render_parts(chapter.parts, f"{number}."), id=chapter.name)
 
 
-def _render_parts(parts: Iterable[Part]) -> str:
-    return "\n".join(RENDERERS[type(part)](part) for part in parts)
+def _render_parts(parts: Iterable[Part], prefix: str = "") -> str:
+    """Render the parts; prefix: the number of the chapter that they belong to, before those of its own chapters."""
+    texts = []
+    number = 0
+    for part in filter(has_content, parts):
+        if isinstance(part, Chapter):
+            number += 1
+            texts.append(_render_chapter(f"{prefix}{number}", part))
+        else:
+            texts.append(RENDERERS[type(part)](part))
+    return "\n".join(texts)
 
 
 def _render_sentence(part: Sentence) -> str:
@@ -96,20 +114,20 @@ def _render_listing(part: Listing) -> str:
     return title + make_element("ul", "".join(make_element("li", escape_text(item)) for item in part.items))
 
 
-def render_table(part: ReportTable) -> str:
-    """Render a table under its caption, if it has one; its head is repeated on every printed page that it extends
+def render_table(part: OutputTable) -> str:
+    """Render a table under its heading, if it has one; its head is repeated on every printed page that it extends
     over.
     """
-    kinds = ["left" if column.align == "left" else "" for column in part.columns]
-    heads = [make_element("th", escape_text(column.head), scope="col", class_=kind)
+    kinds = ["" if column.is_number else "left" for column in part.columns]
+    heads = [make_element("th", escape_text(column.title), scope="col", class_=kind)
              for column, kind in zip(part.columns, kinds, strict=True)]  # fmt: skip
     table = ""
     if part.columns:
         body = "\n".join(_render_row(row, kinds) for row in part.rows)
         table = make_element("thead", make_element("tr", "".join(heads))) + "\n" + make_element("tbody", body)
-        label = part.caption.partition("  ")[0]
+        label = part.heading.partition("  ")[0]
         table = make_element("div", make_element("table", table, aria_label=label), class_="wide")
-    caption = make_element("h3", _render_heading(part.caption)) if part.caption else ""
+    caption = make_element("h3", _render_heading(part.heading)) if part.heading else ""
     notes = "".join(make_element("li", escape_text(note)) for note in part.notes)
     return make_element("div", caption + "\n" + table + (make_element("ul", notes, class_="notes") if notes else ""))
 
@@ -120,18 +138,19 @@ def _render_heading(text: str) -> str:
     return escape_text(name) + (" " + make_element("small", escape_text(rest)) if rest else "")
 
 
-def _render_row(row: Sequence[ReportCell] | str, kinds: Sequence[str]) -> str:
+def _render_row(row: Sequence[Cell] | str, kinds: Sequence[str]) -> str:
     if isinstance(row, str):
         title = make_element("th", _render_heading(row), colspan=str(len(kinds)), scope="colgroup")
         return make_element("tr", title, class_="across")
     cells = (_render_cell(cell, kind) for cell, kind in zip(row, kinds, strict=True))
-    return make_element("tr", "".join(cells), class_="begins" if row[0].text else "")
+    return make_element("tr", "".join(cells), class_="begins" if format_cell(row[0]) else "")
 
 
-def _render_cell(cell: ReportCell, kind: str) -> str:
-    text = escape_text(cell.text)
-    kinds = " ".join(filter(None, (kind, "long" * (len(cell.text) > LONG_CELL))))
-    return make_element("td", make_element("strong", text) if cell.is_governing else text, class_=kinds)
+def _render_cell(cell: Cell, kind: str) -> str:
+    text = format_cell(cell)
+    kinds = " ".join(filter(None, (kind, "long" * (len(text) > LONG_CELL))))
+    content = escape_text(text)
+    return make_element("td", make_element("strong", content) if is_governing(cell) else content, class_=kinds)
 
 
 def _render_drawing(part: Drawing) -> str:
@@ -142,6 +161,8 @@ def _render_drawing(part: Drawing) -> str:
 
 
 def _render_verbatim(part: Verbatim) -> str:
+    if not part.is_numbered:
+        return make_element("pre", "\n".join(map(escape_text, part.text.split("\n"))))
     lines = "".join(make_element("li", make_element("code", escape_text(line))) for line in part.text.split("\n"))
     return make_element("ol", lines, class_="text")
 
@@ -150,7 +171,7 @@ RENDERERS: dict[type[Part], Callable[[Any], str]] = {
     Sentence: _render_sentence,
     Facts: _render_facts,
     Listing: _render_listing,
-    ReportTable: render_table,
+    OutputTable: render_table,
     Drawing: _render_drawing,
     Verbatim: _render_verbatim,
 }

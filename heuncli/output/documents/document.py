@@ -1,0 +1,218 @@
+"""A document: what a command or a report says, before a writer prints it as text, Markdown, HTML, JSON or CSV.
+
+A command builds one document from its result: facts below the title, tables with typed columns, sentences, figures.
+Numbers stay numbers with their errors until a writer prints them. `app/cli/documents.py` writes it in the asked format;
+`as_text`, `as_markdown`, `as_html`, `as_json` and `as_csv` are the writers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.study.quantities.digits import Style, trim_zeros
+from heuncli.study.quantities.error_digits import format_with_error
+
+if TYPE_CHECKING:
+    from heuncli.output.drawing.figure import Figure
+
+MAX_NAMES = 8  # of a list in a sentence
+Kind = Literal["number", "text", "instant", "path", "verdict"]  # of a column; numbers are aligned at their points
+Mood = Literal["plain", "good", "bad", "unsure"]
+
+
+class NumberCell(NamedTuple):
+    """A number in the unit of its column, with its error.
+
+    write: prints it, such as `style.write` of its family; None: with the digits that its own error leaves
+    """
+
+    value: float
+    error: float = 0.0
+    write: Callable[[float], str] | None = None
+
+    @property
+    def text(self) -> str:
+        """The number as it is printed."""
+        return format_with_error(self.value, self.error) if self.write is None else self.write(self.value)
+
+
+class TextCell(NamedTuple):
+    """A text; is_governing: whether its value governs, so that it is bold."""
+
+    text: str
+    is_governing: bool = False
+
+
+Cell = str | float | TextCell | NumberCell | None  # a plain number is printed to six digits, None is an empty cell
+
+
+class OutputColumn(NamedTuple):
+    """A column of a table.
+
+    key: its name in JSON and CSV, if these are made from the table; empty: its head
+    vector: in a table too wide for a page, neighbours of one vector stay together
+    is_shown_once: it is not repeated in the further parts of a wide table
+    is_optional: as the last column of a wide table it is left out
+    """
+
+    head: str
+    kind: Kind = "number"
+    unit: str = ""
+    key: str = ""
+    vector: str = ""
+    is_shown_once: bool = False
+    is_optional: bool = False
+
+    @property
+    def title(self) -> str:
+        """The head with the unit."""
+        return format_head(self.head, self.unit)
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it holds numbers, which are aligned at their decimal points; texts are aligned at the left."""
+        return self.kind in ("number", "instant")
+
+    @property
+    def name(self) -> str:
+        """Its name in JSON and CSV."""
+        return self.key or self.head
+
+
+class OutputTable(NamedTuple):
+    """A heading, columns, rows of cells, and notes below. A row that is a single string is a title over the rows after
+    it. What stands after two blanks in a heading or title explains it. For CSV the rows may be made one by one.
+    """
+
+    heading: str
+    columns: Sequence[OutputColumn] = ()
+    rows: Sequence[Sequence[Cell] | str] = ()
+    notes: Sequence[str] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing below the heading."""
+        return not self.rows and not self.notes
+
+
+class Facts(NamedTuple):
+    """Labels with their texts, one per line; further lines of one label have an empty one."""
+
+    rows: Sequence[tuple[str, str]]
+
+
+class Sentence(NamedTuple):
+    """One or a few sentences; mood: whether they report that all is well, a failure, or an uncertainty."""
+
+    text: str
+    mood: Mood = "plain"
+
+
+class Listing(NamedTuple):
+    """A list of sentences under a title."""
+
+    title: str
+    items: Sequence[str]
+
+
+class Drawing(NamedTuple):
+    """A figure with its caption."""
+
+    figure: Figure
+    caption: str = ""
+
+
+class Verbatim(NamedTuple):
+    """Lines that are shown as they are; is_numbered: with line numbers, as the text of a file."""
+
+    text: str
+    is_numbered: bool = False
+
+
+class Chapter(NamedTuple):
+    """A chapter; name: the target of links to it."""
+
+    name: str
+    title: str
+    parts: Sequence[Part]
+
+
+Part = Sentence | Facts | Listing | OutputTable | Drawing | Verbatim | Chapter
+
+
+class OutputDocument(NamedTuple):
+    """A title, its parts, and the same as data.
+
+    title: None if the parts say all
+    facts: label and text of the lines below the title
+    parts: may be made one by one, when a writer needs them
+    make_block: makes the JSON; None: from the tables
+    make_records: makes the rows of the CSV, with all digits; None: the first table
+    level: of the title in Markdown, 1 to 3
+    """
+
+    title: str | None = None
+    facts: Sequence[tuple[str, str]] = ()
+    parts: Iterable[Part] = ()
+    make_block: Callable[[], Any] | None = None
+    make_records: Callable[[], OutputTable] | None = None
+    level: int = 2
+
+
+def has_content(part: Part) -> bool:
+    """Return whether a part has any content below its heading."""
+    if isinstance(part, OutputTable):
+        return not part.is_empty
+    if isinstance(part, Listing):
+        return bool(part.items)
+    return bool(part.rows) if isinstance(part, Facts) else True
+
+
+def make_panels(figure: Figure) -> list[Drawing]:
+    """Make the drawing of the panels of a figure, without its sentences; none if it has no panels."""
+    return [Drawing(figure._replace(title="", words=(), notes=()))] if figure.panels else []
+
+
+def format_cell(cell: Cell) -> str:
+    """Format a cell as text, without escaping it."""
+    if isinstance(cell, str):
+        return cell
+    if isinstance(cell, (TextCell, NumberCell)):
+        return cell.text
+    return "" if cell is None else str(cell) if isinstance(cell, int) else f"{cell:.6g}"
+
+
+def is_governing(cell: Cell) -> bool:
+    """Return whether the value of a cell governs."""
+    return isinstance(cell, TextCell) and cell.is_governing
+
+
+def make_text_columns(heads: Iterable[str]) -> tuple[OutputColumn, ...]:
+    """Make columns of texts."""
+    return tuple(OutputColumn(head, "text") for head in heads)
+
+
+def make_number_cells(values: Sequence[float], style: Style, error: float = 0.0) -> list[NumberCell]:
+    """Make the cells of numbers of one family, without the zeros that they would all end in."""
+    texts = [style.write(value) for value in values]
+    spare = max((len(text) - len(short) for text, short in zip(texts, trim_zeros(texts), strict=True)), default=0)
+    write = style._replace(decimals=style.decimals - spare).write
+    return [NumberCell(value, error, write) for value in values]
+
+
+def format_head(label: str, unit: str) -> str:
+    """Format the head of a column of numbers; a plain number has no unit, or "1"."""
+    return label if unit in ("", "1") else f"{label} [{unit}]"
+
+
+def append_unit(text: str, unit: str) -> str:
+    """Append the unit to a number, unless it is a plain one."""
+    return text if unit in ("", "1") else f"{text} {unit}"
+
+
+def join_names(names: Sequence[str]) -> str:
+    """Join the first few names, and state how many more there are."""
+    rest = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(names[:MAX_NAMES]) + rest
