@@ -15,8 +15,8 @@ from heuncli.loads.equilibrium.coordinates import evaluate_at_rest, rounding_dis
 from heuncli.loads.equilibrium.search import RestPose
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.linearisation.displacements import make_rounded_scene
 from heuncli.motion.linearisation.indifference import ROUNDED_SCENES, Indifference
-from heuncli.motion.linearisation.rounded_scenes import make_rounded_scene
 from heuncli.results.results import Array, Mask
 
 PERTURBED_POSES = 2  # poses moved by rounding

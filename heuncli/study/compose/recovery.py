@@ -29,7 +29,7 @@ from heuncli.loads.kinetostatics.couplings import (
 from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.magnitudes import find_load_magnitudes, find_magnitudes, inertia_scale
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, select_instants
-from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
+from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import PairLoad
@@ -190,7 +190,7 @@ class Recovery:
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
         # hardly any scene needs it
-        from heuncli.motion.integration.diagnosis.coincident_points import separation_velocity
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import separation_velocity
 
         layout, recovered = self.setup.scene.layout, self.solutions
         return [

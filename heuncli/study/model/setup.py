@@ -12,11 +12,8 @@ from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
 from heuncli.loads.redundancy.count import count_redundancy
-from heuncli.motion.integration.determined_motion import NOT_DETERMINED, find_determined_motion
-from heuncli.motion.integration.integrated_scene import integrate_reduced
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.integrated_scene import NOT_DETERMINED, find_determined_motion, integrate_reduced
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED, Method, load_method_by_name
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.build import build, make_forms

@@ -33,7 +33,7 @@ from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.foundation import central_axis, total_load
 from heuncli.loads.kinetostatics.joint_axes import rotate_joint_loads
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
-from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
+from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.size import extent_points
 from heuncli.results.results import Array, ErrorEstimate, Mask

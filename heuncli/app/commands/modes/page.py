@@ -6,8 +6,7 @@ import math
 
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.text_safety import escape
-from heuncli.motion.linearisation.modes import SceneModes
-from heuncli.motion.linearisation.oscillations import Mode
+from heuncli.motion.linearisation.oscillations import Mode, SceneModes
 from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes
 from heuncli.output.tables.page_width import split_to_width
 from heuncli.output.tables.text_table import DEFAULT_WIDTH, TextColumn, TextTable, format_plain

@@ -1,4 +1,6 @@
-"""Find which body keeps the steps of a run short, and why: the fastest motion of the linearised equations there.
+"""Explain why steps are short or a run cannot continue: what moves, decays or grows fastest.
+
+Find which body keeps the steps of a run short, and why: the fastest motion of the linearised equations there.
 
     d/dt dy = A dy,   A v = l v,  |l| the largest          A: the tangent at the state
 
@@ -6,22 +8,31 @@ The body that moves most along v is reported, with the inertia that resists v. F
 that this body turns by 1 (or its centre shifts by 1), that is the sum of m x_c^2 + w I w. Near gimbal lock, or for a
 light body between springs, it is the light body's own inertia, and tiny compared with the loads.
 
-Imported where a run is given up, or takes long.
+Find what grows out of all proportion where a run cannot continue.
+
+Find what in a scene decays or swings so fast that explicit steps are short, from the tangent's largest eigenvalue.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record
-from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.multibody.mechanism.model import GROUND
-from heuncli.multibody.response import compute_motions, make_workspace, settle_state
+from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates, find_grown
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
+from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.response import compute_motions, make_workspace, settle_state, tangent
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
+
+# Fast body
 
 MAX_NOISE_SHARE = 0.1  # fraction of a step's tolerance above which rounding contributes to its estimated error
 
@@ -175,3 +186,80 @@ def describe_body(layout: Layout, number: int) -> str:
     """Describe a body with its mass and its largest inertia."""
     body = layout.mechanism.bodies[number]
     return f"bodies.{body.name} ({body.mass:.2g} kg, {largest_inertia(layout, number):.2g} kg\u00b7m\u00b2)"
+
+
+# Growth
+
+
+def find_growing(
+    scene: Evaluator, t: float, state: Array, passed_states: Sequence[tuple[float, Array]]
+) -> list[Problem]:
+    """Find the expressions that have grown so since a quarter of the time; passed_states: instants and states,
+    ascending.
+    """
+    earlier, earlier_state = next((k for k in reversed(passed_states) if k[0] <= 0.25 * t), passed_states[0])
+    evaluation = scene.evaluate(np.array([earlier, t]), np.array([earlier_state, state]))
+    coordinates = [evaluate_coordinates(scene.layout, evaluation, k) for k in range(2)]
+    return find_grown(scene.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
+
+
+def stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: float, cause: str = "") -> HeunError:
+    """Explain why a run does not advance: what grows, else how many steps it would need, and for which cause (a
+    sentence).
+    """
+    if problems:
+        return SolveError(*problems)
+    needed = f"about {needed_steps:.1g} would be needed" if needed_steps < math.inf else "no number of steps suffices"
+    hint = "check for loads, rates, stiffness or friction far above the others, or an inertia far below; or end earlier"
+    message = f"{done_text}; for the whole run {needed}, the limit is {tolerances.MOST_STEPS}"
+    message += f"; {cause}" if cause else ""
+    return LimitError(Problem("step-limit", message, hint=hint))
+
+
+def describe_largest_load(mechanism: Mechanism, evaluation: Evaluation) -> str:
+    """Describe the largest load at the first instant; empty if there is none."""
+    rows = evaluation.loads[0]
+    sizes = [(float(np.abs(rows["value"][k]).max(initial=0.0)), load.path) for load, k in mechanism.iter_load_rows()]
+    finite = [(value, name) for value, name in sizes if 0.0 < value < math.inf]
+    return "the largest load is {1}, {0:.3g}".format(*max(finite)) if finite else ""
+
+
+# Fastest motion
+
+STEP = 1e-8  # displacement of the state along the eigenvector: rad, or relative to the size, and rates [1/s]
+
+
+def describe_fastest_motion(scene: Evaluator, t: float, state: Array, h: float) -> str:
+    """Describe in a sentence what is fast at a state, how fast, and how fast the motion itself is; h: explicit steps
+    [s].
+    """
+    values, vectors = np.linalg.eig(tangent(scene.workspace, t, state))
+    k = int(np.argmax(np.abs(values)))
+    largest = complex(values[k])
+    does = "oscillates" if abs(largest.imag) > abs(largest.real) else "decays"
+    evaluation = scene.evaluate(np.array([t]), state[None, :])
+    omega = np.sqrt(np.sum(evaluation.bodies["omega"] ** 2, axis=2)).max(initial=0.0)
+    speed = np.sqrt(np.sum(evaluation.bodies["v"] ** 2, axis=2)).max(initial=0.0) / scene.size
+    load_name = find_responsible_load(scene, t, state, vectors[:, k], abs(largest))
+    return (
+        f"stiff: {load_name} {does} at {abs(largest):.2g} 1/s, the motion changes at {max(omega, speed):.2g} 1/s; "
+        f"this limits explicit steps to {h:.2g} s at t = {t:.3g} s"
+    )
+
+
+def find_responsible_load(scene: Evaluator, t: float, state: Array, eigenvector: Array, rate: float) -> str:
+    """Return the load that responds most to a motion along an eigenvector, by the work it does there."""
+    loads = scene.layout.mechanism.loads
+    if not loads:
+        return "the model"
+    work = np.zeros(len(scene.layout.tables["loads"]))
+    for part in (eigenvector.real, eigenvector.imag):
+        size = np.abs(part * scene.layout.weights).max(initial=0.0)
+        if size > 0.0:
+            moved_states = state[None, :] + np.array([[-1.0], [1.0]]) * (STEP / size * part)
+            loads_there = scene.evaluate(np.array([t, t]), moved_states).loads
+            change = {name: np.abs(loads_there[name][1] - loads_there[name][0]) for name in ("value", "span", "rate")}
+            work += change["value"] * (change["rate"] + rate * change["span"])
+    shares = {load: float(work[rows].sum()) for load, rows in scene.layout.mechanism.iter_load_rows()}
+    load = max(loads, key=lambda one: shares[one])
+    return f"{load.row.display_name} `{load.name}`" if shares[load] > 0.0 else "the model"
