@@ -20,7 +20,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.foundation import inertia_rows
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array
-from heuncli.scene.shapes.by_component import cross_components, squared_lengths
+from heuncli.scene.shapes.rotations import cross_components, squared_lengths
 
 CHUNK = 100_000  # instants times actions summed together
 

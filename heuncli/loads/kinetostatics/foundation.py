@@ -19,8 +19,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.reactions import project_to_plane
 from heuncli.multibody.mechanism.model import GROUND, JointLoad, Mechanism
 from heuncli.results.results import Array, Block, Mask
-from heuncli.scene.shapes.by_component import cross_components, instants_first, rotate_components
-from heuncli.scene.shapes.rotations import cross_rows
+from heuncli.scene.shapes.rotations import cross_components, cross_rows, instants_first, rotate_components
 
 ElementKeys = Mapping[tuple[str, str], str]  # of `foundation.elements`, by block of the spec and name
 BLOCK_OF = {

@@ -19,7 +19,7 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array, Block, Magnitudes
-from heuncli.scene.shapes.by_component import instants_first, quadratic_form, squared_lengths
+from heuncli.scene.shapes.rotations import instants_first, quadratic_form, squared_lengths
 
 
 def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:

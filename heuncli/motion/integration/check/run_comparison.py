@@ -31,7 +31,7 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.scene.shapes.by_component import largest_magnitude
+from heuncli.scene.shapes.rotations import largest_magnitude
 
 # Distance
 

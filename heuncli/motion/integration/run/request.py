@@ -1,4 +1,4 @@
-"""The request for a run, and how a run stops before its end. Those ways are errors, and reasons to restart with another method."""
+"""The request for a run, and how a run stops before its end: errors, and reasons to restart with another method."""
 
 from __future__ import annotations
 

@@ -37,9 +37,9 @@ from heuncli.multibody.tree.pack import lay_out_like
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import JointStart, body_state
 from heuncli.results.results import Array
+from heuncli.scene.expressions.composition import weighted_sum
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.expressions.sums import weighted_sum
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 ZERO = Expression.from_number(0.0)

@@ -1,12 +1,73 @@
-"""Resolve the point of a body that a value names: points.BODY.POINT.x, or points.POINT.x if only one body has it."""
+"""The words of an expression: its tokens, its own names, names that it cannot use, and points of bodies.
+
+Tokens are numbers, names and marks. For names of other programs and of results, others are proposed.
+
+Resolve the point of a body that a value names: points.BODY.POINT.x, or points.POINT.x if only one body has it.
+"""
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Collection, Mapping, Sequence
+from functools import lru_cache
 
 from heuncli.base.errors import Finding
 from heuncli.base.spelling import suggest
+from heuncli.results.results_schema import ROWS, SHARED_BLOCKS
+from heuncli.scene.expressions.codegen import MAX_NODES
 from heuncli.scene.expressions.programs import POINTS
+
+# Tokens
+
+TOKEN = re.compile(
+    r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
+)
+MAX_CACHED_TEXTS = 1024  # size of the cache: variants of a spec parse the same texts again
+END_PADDING = ("",) * 4  # the parser looks ahead this far
+
+
+@lru_cache(maxsize=MAX_CACHED_TEXTS)
+def tokenize(text: str) -> tuple[tuple[tuple[str, str, int], ...], tuple[str, ...], tuple[str, ...]]:
+    """Split a text into tokens: kind, word and end of each; then kinds and words alone, padded after the last."""
+    found = tuple((one.lastgroup or "", one[one.lastgroup or 0], one.end()) for one in TOKEN.finditer(text))
+    return found, tuple(kind for kind, _, _ in found) + END_PADDING, tuple(word for _, word, _ in found) + END_PADDING
+
+
+# Names
+
+CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
+UNARY_FUNCTIONS = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "step",
+)  # fmt: skip
+ARITY: dict[str, tuple[int, int]] = {
+    **dict.fromkeys(UNARY_FUNCTIONS, (1, 1)),
+    "atan2": (2, 2),
+    **dict.fromkeys(("min", "max", "hypot"), (2, MAX_NODES)),
+    "table": (2, 2),
+}
+WORDS = frozenset({"if", "else", "and", "or", "not"})
+RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
+LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # prefixes of functions in other programs
+
+OTHER_NAMES = {  # names from other programs, and heun's
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
+    "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
+    "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
+}  # fmt: skip
+RESULT_BLOCKS = SHARED_BLOCKS | {"stops", "couplings"}  # blocks of the results that follow from the motion
+REACTIONS = frozenset(
+    row.path.split(".")[2]
+    for row in ROWS
+    if row.path.startswith(("joints.JOINT.", "stops.STOP.")) and set(row.units) & {"N", "N·m"}
+) - {"shares"}
+LAW_HINT = (
+    "a law may use t, parameters and coordinates such as shaft.angle, shaft.rate, guide.travel, guide.speed; "
+    "a condition may use {of: joints.NAME.force.z, below: 0}"
+)
+
+
+# Point names
 
 GROUND = "ground"
 QUANTITIES = ("x", "y", "z", "vx", "vy", "vz")
