@@ -26,8 +26,7 @@ from heuncli.motion.integration.integrated_scene import find_determined_motion
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.multibody.mechanism.model import GROUND
-from heuncli.multibody.tree.held_speeds import find_speed_rows
-from heuncli.multibody.tree.layout import Layout, rate_indices
+from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.file_format.models import Analysis, Drive, Spec

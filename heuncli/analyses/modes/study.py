@@ -31,7 +31,7 @@ from heuncli.motion.linearisation.steady_motion import (
     linearise_scene,
 )
 from heuncli.multibody.mechanism.model import RopeLoad
-from heuncli.multibody.tree.held_speeds import find_speed_rows
+from heuncli.multibody.tree.layout import find_speed_rows
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.error_places import attach_locations

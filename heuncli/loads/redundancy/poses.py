@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.multibody.response import jacobian
-from heuncli.multibody.tree.held_speeds import find_speed_rows
+from heuncli.multibody.tree.layout import find_speed_rows
 
 
 def count_pose_freedoms(evaluator: Evaluator) -> int:

@@ -1,7 +1,7 @@
 """What is integrated: which scene, whether anything at all, and in which segments of time.
 
-The scene is the given one, or a reduced one with the same motion (multibody/reduction/model.py). A motion follows from
-the drives alone where these and the closed chains leave no freedom: then it is solved instant by instant instead of
+The scene is the given one, or a reduced one with the same motion (multibody/reduction/). A motion follows from the
+drives alone where these and the closed chains leave no freedom: then it is solved instant by instant instead of
 integrated. Within a segment no load or drive is discontinuous in time.
 """
 
@@ -17,10 +17,9 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.multibody.response import Workspace
-from heuncli.multibody.tree.held_speeds import find_speed_rows
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import Layout, find_speed_rows
 from heuncli.results.results import Array, Block
 from heuncli.scene.expressions.discontinuities import find_run_discontinuities
 

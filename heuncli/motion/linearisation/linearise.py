@@ -30,8 +30,7 @@ from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.model import GROUND, Joint
 from heuncli.multibody.response import compute_motions, make_workspace, settle_state
-from heuncli.multibody.tree.held_speeds import find_speed_rows
-from heuncli.multibody.tree.layout import Layout, rate_indices
+from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices
 from heuncli.scene.shapes.rotations import cross_rows, cross_vectors

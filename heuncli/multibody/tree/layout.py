@@ -1,4 +1,7 @@
-"""The assembled mechanism laid out for the kernel: its tables, and the data needed to read its solutions."""
+"""The assembled mechanism laid out for the kernel: its tables, and the data needed to read its solutions.
+
+Find the closure rows that constrain a speed and no pose: those of rolling wheels.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,15 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.base.records import record
+from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.programs import Pack
+
+# Layout
 
 
 @record
@@ -186,3 +192,17 @@ def rate_indices(layout: Layout) -> Array:
         if not freedom["driven"]:
             indices[freedom["answer_at"]] = freedom["u_at"]
     return indices
+
+
+# Held speeds
+
+SPEEDS = (kernel.ROLLS, kernel.ROLLS_ASIDE, kernel.BALL_ROLLS)
+
+
+def find_speed_rows(layout: Layout) -> Mask:
+    """Return which rows constrain a speed, (rows,); a wheel's row is the sum of one part."""
+    closures, parts = layout.tables["closures"], layout.tables["parts"]
+    sums = closures["kind"] == kernel.SUM
+    is_speed = np.zeros(len(closures), dtype=bool)
+    is_speed[sums] = np.isin(parts["kind"][closures["part"][sums]], SPEEDS)
+    return is_speed

@@ -20,9 +20,14 @@ from heuncli.multibody.mechanism.model import (
     RopeLoad,
     Stop,
 )
-from heuncli.multibody.tree.closure_paths import index_rows
-from heuncli.multibody.tree.coupled_rows import add_lift, assembled_length, loaded_bodies, make_part_row, make_sum_row
-from heuncli.multibody.tree.flat import moves_in_plane, remove_direction_tilt, remove_tilt
+from heuncli.multibody.tree.closure_rows import (
+    add_lift,
+    assembled_length,
+    index_rows,
+    loaded_bodies,
+    make_part_row,
+    make_sum_row,
+)
 from heuncli.multibody.tree.frame import LayoutFrame, make_frame
 from heuncli.multibody.tree.islands import add_islands
 from heuncli.multibody.tree.layout import Contact, Freedom, Layout
@@ -53,7 +58,7 @@ from heuncli.multibody.tree.starts import (
     point_distance,
     to_direction,
 )
-from heuncli.multibody.tree.tables import limits_table, to_sym3
+from heuncli.multibody.tree.tables import limits_table, moves_in_plane, remove_direction_tilt, remove_tilt, to_sym3
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Pack

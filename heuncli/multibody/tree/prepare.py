@@ -56,11 +56,11 @@ def prepare(
     """
     start = assemble(mechanism, t0, stages)
     if any(j.drive is not None and j.drive.adds_to_start for j in mechanism.joints):
-        from heuncli.multibody.tree.driven_starts import prescribe_coordinates  # few scenes have drives by a rate
+        from heuncli.multibody.tree.starts import prescribe_coordinates  # few scenes have drives by a rate
 
         mechanism = prescribe_coordinates(mechanism, start)
     if mechanism.couplings:
-        from heuncli.multibody.tree.couplings_at_start import add_start_couplings  # few scenes have them
+        from heuncli.multibody.tree.rope_routes import add_start_couplings  # few scenes have them
 
         mechanism = add_start_couplings(mechanism, start, t0)
     scene = lay_out_scene(mechanism, start, stages=stages)

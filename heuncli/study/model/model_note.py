@@ -13,7 +13,7 @@ from heuncli.loads.redundancy.count import RedundancyCount
 from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import BushingLoad, Mechanism, ThreadLoad
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Block, Mask

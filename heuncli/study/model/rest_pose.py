@@ -28,8 +28,7 @@ from heuncli.motion.linearisation.displacements import find_displacement
 from heuncli.motion.linearisation.indifference import find_indifference
 from heuncli.motion.linearisation.smoothness import examine_laws, find_roots
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.held_speeds import find_speed_rows
-from heuncli.multibody.tree.layout import Layout, rate_indices
+from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Status
 from heuncli.study.model.counts_and_lists import MAX_NAMES, format_count, list_some

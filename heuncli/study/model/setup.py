@@ -20,7 +20,7 @@ from heuncli.multibody.mechanism.build import build, make_forms
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.reduction import compose as reduction
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
@@ -111,7 +111,7 @@ def set_up(
     start_time = spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
     prepared = prepare_coupled(mechanism, start_time, stages)
     if any(drive.by_rate for drive in spec.drives.values()):
-        from heuncli.multibody.tree.driven_starts import require_lengths  # few scenes have them
+        from heuncli.multibody.tree.starts import require_lengths  # few scenes have them
 
         require_lengths(prepared.mechanism, max(spec.analysis.times))
     if not reduce:  # a scene declared planar is moved as in space, too

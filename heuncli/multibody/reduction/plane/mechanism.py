@@ -218,7 +218,7 @@ class FlatSceneBuilder:
         if not self.scene.mechanism.couplings:
             return ()
         from heuncli.multibody.reduction.plane.flat_couplings import flat_transform  # few scenes have them
-        from heuncli.multibody.reduction.restated_couplings import transform_couplings
+        from heuncli.multibody.reduction.smaller_scene import transform_couplings
 
         return transform_couplings(self.scene.layout, lambda own: flat_transform(self.plane_view, self.body_axes, own))
 
