@@ -18,7 +18,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.equilibrium.steady_states import has_constant_rate
-from heuncli.loads.redundancy.neighbours import find_neighbour_poses
+from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.linearisation.linearise import coordinate_rows
 from heuncli.motion.linearisation.oscillations import Mode, SceneModes, find_largest_coordinates, find_modes, make_shape

@@ -49,7 +49,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
         block["couplings"] = len(mechanism.couplings)
     block["reasons"] = describe_model(scene, block)
     if has_rolling_wheels(mechanism):
-        from heuncli.loads.redundancy.poses import count_pose_freedoms  # few scenes have wheels
+        from heuncli.loads.redundancy.count import count_pose_freedoms  # few scenes have wheels
 
         block["pose_freedoms"] = count_pose_freedoms(runner) - scene.undetermined_count
         block["reasons"].insert(1, describe_pose_freedoms(block))

@@ -118,9 +118,9 @@ def set_up(
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = make_runner(prepared, stages)
     if scene.mechanism.joint_friction and scene.layout.rows:
-        from heuncli.loads.redundancy import friction_check  # few scenes have such friction
+        from heuncli.loads.redundancy import indeterminate_components  # few scenes have such friction
 
-        friction_check.require_determinate_friction_at_start(scene, runner, start_time)
+        indeterminate_components.require_determinate_friction_at_start(scene, runner, start_time)
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, selection), left_out, find_rest)
     method_name = method or spec.analysis.method
