@@ -3,13 +3,6 @@
 The piece lies on the side that the normal n points to. A run of cuts has one normal. Where a joint, load or point mass
 lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the ends
 of the run only the inner one.
-
-Choose the axes of a cut: e1 as given, or a default that does not change abruptly with the slope of a bar.
-
-The normal of a cut across a bar is nearest to one axis of its body, the bar's own, even if the bar is drawn slightly
-inclined. Of the other two axes the first, x before y before z, becomes e1, made perpendicular to the normal. (With the
-axis most nearly in the plane, y and z would be equal for a bar along x, and the smallest slope would decide between
-them.)
 """
 
 from __future__ import annotations
@@ -25,6 +18,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
+from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.multibody.mechanism.model import GROUND, Mechanism, PointLoad
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
@@ -34,34 +28,6 @@ from heuncli.scene.shapes.rotations import cross_vectors
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
-
-
-# Section axes
-
-
-def find_nearest_axis(n: Array) -> int:
-    """Return the body axis nearest to a unit normal, x before y before z."""
-    components = np.abs(n)
-    return int(np.flatnonzero(components >= components.max() - tolerances.EQUAL_COMPONENTS)[0])
-
-
-def choose_default_axis(n: Array) -> int:
-    """Return the body axis that e1 is made of by default: the first that is not the nearest to the unit normal."""
-    return 1 if find_nearest_axis(n) == 0 else 0
-
-
-def make_first_axis(n: Array, given_direction: Sequence[float] | None) -> Array:
-    """Return e1: the given direction, or the default axis, made perpendicular to the unit normal."""
-    a = np.eye(3)[choose_default_axis(n)]
-    if given_direction is not None:
-        a = np.array(given_direction, dtype=float)
-        a = a / np.sqrt(a @ a)
-    in_plane = a - (a @ n) * n
-    e1: Array = in_plane / np.sqrt(in_plane @ in_plane)
-    return e1
-
-
-# Cuts
 
 BEFORE, BEYOND = 1.0, -1.0
 MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)
