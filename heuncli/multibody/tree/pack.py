@@ -28,9 +28,8 @@ from heuncli.multibody.tree.closure_rows import (
     make_part_row,
     make_sum_row,
 )
-from heuncli.multibody.tree.frame import LayoutFrame, make_frame
 from heuncli.multibody.tree.islands import add_islands
-from heuncli.multibody.tree.layout import Contact, Freedom, Layout
+from heuncli.multibody.tree.layout import Contact, Freedom, Layout, LayoutFrame, make_frame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
 from heuncli.multibody.tree.rows import (
     NO_PROGRAM,
@@ -574,7 +573,9 @@ class _LayoutBuilder:
             column_count=column_count,
             pack=Pack(),
             work_at=work_at,
+            islands=(),
             contacts=tuple(self.contacts),
+            measure=np.zeros(0),
             flat=self._is_flat() and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return make_frame(add_islands(layout))

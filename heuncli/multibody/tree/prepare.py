@@ -14,9 +14,8 @@ from heuncli.multibody.assembly.assemble import assemble
 from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.mechanism.size import scene_size
 from heuncli.multibody.stages import NO_CACHE, Stages
-from heuncli.multibody.tree.frame import LayoutFrame
 from heuncli.multibody.tree.idle_spins import IdleSpin, find_idle_spins, find_massless_axes
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import Layout, LayoutFrame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
 from heuncli.multibody.tree.pack import build_frame
 from heuncli.multibody.tree.rows import Program
